@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "support/held_hull.h"
+
 namespace hammer_loads::accuracy {
 namespace {
 
@@ -26,7 +28,7 @@ double covered(const ForceTrace& estimate, const ForceTrace& truth) {
 
 /// What the picture is to show: a ring of some kilonewtons, which linkage knows the size of and elastic follows.
 TEST(BlowTrace, ShowsARingThatOneLevelFollows) {
-  const BlowTrace trace = blowTrace(*load(configDirectory(), {}).value);
+  const BlowTrace trace = blowTrace(test::heldHull(*load(configDirectory(), {}).value));
   EXPECT_EQ(trace.truth.time.size(), 501U);
   EXPECT_GE(trace.linkage.time.size(), 45U);
   EXPECT_GE(trace.elastic.time.size(), 45U);

@@ -1,6 +1,10 @@
 /// What process_bag says at its end: missing, suspicious, how much was written.
+#include <geometry_msgs/WrenchStamped.h>
 #include <hammer_loads/HullLoads.h>
 #include <topic_tools/shape_shifter.h>
+
+#include <optional>
+#include <utility>
 
 #include "boom/booms.h"
 #include "commands/bag_files.h"
@@ -99,6 +103,40 @@ TEST_F(BagWarnings, DegreesAreNamed) {
       << crank.err;
 }
 
+/// Half of the day is good: its loads come out as the node had them, and neither ledger nor tables take the day.
+TEST_F(BagWarnings, ARecordingPartlyInDegreesGivesItsLoadsButNoFigures) {
+  std::optional<ros::Time> begin;
+  const ros::Duration good(15.0);
+  const std::string in = session("in.bag", [&](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
+    sensor_msgs::JointState m = *item.instantiate<sensor_msgs::JointState>();
+    if (!begin) begin = item.getTime();
+    const bool in_degrees = item.getTime() - *begin > good && item.getTopic() == "/hammer/crank";
+    for (double& angle : m.position) angle *= in_degrees ? 57.29577951308232 : 1.0;
+    bag.write(item.getTopic(), item.getTime(), m);
+  });
+  const std::string hammer = " --params " + configDirectory() + "/hammer_mo100.yaml";
+  const std::string out = path("partly.bag"), right = path("right.bag");
+  const test::Outcome outcome = run(in + " " + out + hammer);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: crank: angle or speed is in degrees"), std::string::npos) << outcome.err;
+  ASSERT_EQ(run(kSession + " " + right + hammer).exit_code, 0);
+  const auto wrenches = [&](const std::string& name) {
+    std::vector<std::pair<ros::Time, double>> found;
+    rosbag::Bag bag(name);
+    for (const rosbag::MessageInstance& item : rosbag::View(bag, rosbag::TopicQuery("/hammer_loads/hull_wrench")))
+      if (item.getTime() <= *begin + good)
+        found.emplace_back(item.getTime(), item.instantiate<geometry_msgs::WrenchStamped>()->wrench.force.z);
+    return found;
+  };
+  EXPECT_GT(wrenches(out).size(), 1400U);
+  EXPECT_EQ(wrenches(out), wrenches(right));
+  expectRefused(run("--no-bag " + in + " --db " + path("tables.sqlite") + hammer), {"no tables", "in degrees"});
+  expectRefused(run("--no-bag " + in + " --ledger " + path("ledger.sqlite") + hammer),
+                {"is not counted", "in degrees"});
+  expectRefused(run(in + " " + path("both.bag") + " --ledger " + path("ledger.sqlite") + hammer), {"is not counted"});
+  EXPECT_FALSE(std::filesystem::exists(path("both.bag"))) << "together or not at all";
+}
+
 TEST_F(BagWarnings, OutputsOfAnotherVersionAreNamed) {
   const std::string in = session("in.bag", [](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
     bag.write(item.getTopic(), item.getTime(), item);
@@ -112,8 +150,8 @@ TEST_F(BagWarnings, OutputsOfAnotherVersionAreNamed) {
     old.read(stream);
     bag.write("/hammer_loads/hull_loads", ros::Time(1700000001.0), old);
   }
-  expectWarned(warnings(in), {"warning: messages of another version of this package",
-                              "/hammer_loads/hull_loads (hammer_loads/HullLoads)", "rosbag fix"});
+  expectWarned(warnings(in), {"warning: messages of another version of this package cannot be read: "
+                              "/hammer_loads/hull_loads (hammer_loads/HullLoads)"});
   {
     rosbag::Bag bag(in, rosbag::bagmode::Append);
     bag.write("/hammer_loads/again", ros::Time(1700000001.0), HullLoads());

@@ -51,7 +51,8 @@ TEST(Calibrate, WritesParametersThatEveryOtherCommandReads) {
   const FreeName output;
   const Outcome outcome = runCalibrate(kBag + " --write " + output.path());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("crank_zero_rad"), std::string::npos);
+  EXPECT_NE(outcome.out.find("found: crank_zero_rad"), std::string::npos);
+  EXPECT_LE(test::linesOf(outcome.out).size(), 8U) << outcome.out;
   const Checked<Settings> settings = loadFiles(configDirectory(), {output.path()});
   ASSERT_TRUE(settings.value) << settings.problems.front();
   // The recording's encoder sits where it should: 4096 counts, drive inertia 0.6.
@@ -140,7 +141,7 @@ TEST(Calibrate, ReadsNoMoreOfALongRecordingThanItNeeds) {
   const TemporaryFile bag("", ".bag");
   const FreeName output;
   recordWork(bag.path(), 400.0, 100.0, "/drive/encoder");  // topic and parameters are those of the run_info in it
-  const Outcome outcome = runCalibrate(bag.path() + " --write " + output.path());
+  const Outcome outcome = runCalibrate(bag.path() + " --verbose --write " + output.path());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("parameters of /hammer_loads/run_info are used"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find('\r'), std::string::npos);  // no bar without a terminal

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "hammer_loads/hammer/state_table.h"
 #include "settings/hammer_yaml.h"
 #include "support/command.h"
 #include "support/csv.h"

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
+#include <utility>
 
+#include "hammer_loads/life/database.h"
 #include "hammer_loads/life/ledger_run.h"
 #include "settings/temporary_file.h"
 #include "support/command.h"
@@ -157,6 +160,55 @@ TEST(Life, WhatIsNoLedgerIsOneLineAndExitCode1) {
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
     EXPECT_NE(outcome.err.find(file), std::string::npos) << outcome.err;
+  }
+}
+
+/// What a run cannot have written; SQL, and what the line must name.
+const std::pair<const char*, const char*> kDamage[] = {
+    {"UPDATE epochs SET equivalent_cycles_per_hour = 0", "epochs: equivalent_cycles_per_hour 0.0"},
+    {"UPDATE epochs SET equivalent_cycles_per_hour = 9e999", "epochs: equivalent_cycles_per_hour"},
+    {"UPDATE epochs SET equivalent_cycles_per_hour = 'many'", "epochs: equivalent_cycles_per_hour 'many'"},
+    {"UPDATE epochs SET machine = x'00'", "epochs: machine"},
+    {"UPDATE channels SET greatest = 9e999", "no possible grid"},
+    {"UPDATE runs SET messages = -1", "runs: messages -1"},
+    {"UPDATE days SET duration_ns = -8", "days: duration_ns -8"},
+    {"UPDATE days SET turns = -1", "days: turns -1"},
+    {"UPDATE days SET turns = 9223372036854775807", "days: turns 9223372036854775807"},
+    {"UPDATE days SET date = '9999-99-99'", "days: date '9999-99-99'"},
+    {"UPDATE days SET date = 'now'", "days: date 'now'"},
+    {"UPDATE tallies SET counted = 'abc'", "tallies: counted 'abc'"},
+    {"UPDATE tallies SET gaps = 1.5", "tallies: gaps 1.5"},
+    {"UPDATE tallies SET least = 'low'", "tallies: least 'low'"},
+    {"UPDATE tallies SET greatest = 9e999", "tallies: greatest"},
+    {"UPDATE cycles SET count = 9223372036854775807", "cycles: count 9223372036854775807"},
+    {"UPDATE cycles SET count = -3", "cycles: count -3"},
+    {"UPDATE cycles SET low = 21", "cycles: low 21"},
+    {"UPDATE cycles SET steps = 4294967297", "cycles: steps 4294967297"},
+    {"UPDATE residues SET class = 4294967301", "residues: class 4294967301"},
+    {"UPDATE residues SET class = -1", "residues: class -1"},
+    {"ALTER TABLE cycles RENAME TO c; CREATE VIEW cycles AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 "
+     "FROM "
+     "n) SELECT 1 AS channel, 1 AS day, 1 AS steps, i AS low, 1 AS count FROM n",
+     "view cycles: must hold tables alone"},
+    {"CREATE TRIGGER t AFTER UPDATE ON runs BEGIN DELETE FROM days; END", "trigger t: must hold tables alone"}};
+
+TEST(Life, WhatNoRunCanHaveWrittenIsOneLineHereAndWhereARunIsAdded) {
+  for (const auto& [sql, words] : kDamage) {
+    SCOPED_TRACE(sql);
+    const Ledger ledger;
+    ASSERT_EQ(runLife(ledger.path() + " --csv").exit_code, 0);
+    life::Database database(ledger.path(), life::Database::Use::kRead, 0);
+    database.run(sql);
+    ASSERT_TRUE(database.good()) << database.problem();
+    const Outcome outcome = runLife(ledger.path() + " --csv");
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
+    EXPECT_NE(outcome.err.find(ledger.path() + ": "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    life::LedgerRun run(ledger.path(), {}, "b");
+    const std::optional<std::string> problem = run.add({});
+    EXPECT_TRUE(problem) << "a writer refuses it";
   }
 }
 

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "commands/bag_files.h"
+#include "hammer_loads/commands/output_file.h"
 
 namespace hammer_loads {
 namespace {
@@ -153,6 +154,22 @@ TEST_F(OutputSafety, AFailureWithForceKeepsTheOldOutput) {
   expectRefused(outcome, {"File too large"});
   EXPECT_TRUE(contentOf(path("out.bag")) == bytes);
   EXPECT_EQ(names().size(), 1U);
+}
+
+/// Between the look and the end of the work.
+TEST_F(OutputSafety, AFileThatAppearsMeanwhileIsNotReplaced) {
+  const auto publish = [&](bool appears) {
+    Checked<OutputFile> file = OutputFile::make({path("out"), {}, true, [](const std::string&) { return ""; }});
+    std::ofstream(file.value->path()) << "new";
+    if (appears) std::ofstream(path("out")) << "other";
+    return file.value->publish();
+  };
+  EXPECT_NE(publish(true).find(path("out") + ": has appeared meanwhile"), std::string::npos);
+  EXPECT_EQ(contentOf(path("out")), "other");
+  EXPECT_EQ(names(), (std::vector<std::string>{"out"}));
+  EXPECT_EQ(publish(false), "");  // by force
+  EXPECT_EQ(contentOf(path("out")), "new");
+  EXPECT_EQ(names(), (std::vector<std::string>{"out"}));
 }
 
 /// Interrupted while it writes.

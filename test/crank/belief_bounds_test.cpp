@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "hammer_loads/crank/contact_rival.h"
-#include "hammer_loads/crank/flexible_belief.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 
@@ -75,43 +74,6 @@ TEST(BeliefBounds, OfWhatOneSampleTeachesOfTheInertia) {
   EXPECT_NEAR(std::log(little.state.drive_inertia / 0.6), 0.15, 1e-9);  // 1e-4 of 3e-3 / 2e-6
   belief.correct(CrankBelief::kAngle, 0.01, 1e-6, ConstantErrors::Row::Zero());
   expectNear(std::log(belief.state.drive_inertia / 0.6), 0.3);
-}
-
-class FlexibleBounds : public testing::Test {
- protected:
-  /// The motor's angle and the coupling's stiffness are as good as one.
-  CrankBelief coupled() const {
-    CrankBelief belief = turning();
-    beginMotor(coupling_, 1.0, belief);
-    belief.motor->covariance(kStiffness, MotorSide::kStiffness) = 1.0;
-    belief.motor->covariance(kMotorAngle, MotorSide::kStiffness) = 1e-3;
-    belief.motor->covariance(kStiffness, MotorSide::kAngle) = 1e-3;
-    return belief;
-  }
-  Coupling coupling_{50.0, 0.3, 0.03, 0.2, 0.0};
-};
-
-TEST_F(FlexibleBounds, OfTheCouplingsStiffness) {
-  CrankBelief belief = coupled();
-  belief.correct(CrankBelief::kAngle, 0.05, 1e-6, ConstantErrors::Row::Zero());
-  expectNear(belief.state.log_stiffness, 0.1);
-  for (int i = 0; i < 100; ++i) {
-    const double before = belief.state.log_stiffness;
-    belief = coupled();
-    belief.state.log_stiffness = before;
-    belief.correct(CrankBelief::kAngle, 0.05, 1e-6, ConstantErrors::Row::Zero());
-  }
-  expectNear(belief.state.log_stiffness, 1.4);
-}
-
-TEST_F(FlexibleBounds, OfTheTwist) {
-  for (const double twist : {1.0 / kAround, kAround}) {
-    CrankBelief belief = coupled();
-    belief.motor->covariance(kMotorAngle, MotorSide::kStiffness) = 0.0;
-    belief.motor->covariance(kStiffness, MotorSide::kAngle) = 0.0;
-    belief.state.twist = twist;
-    EXPECT_EQ(belief.isSound(300.0), twist < 1.0) << twist;
-  }
 }
 
 /// A rocker that may have found no tool: logarithms of odds.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/util/square.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"
@@ -54,7 +55,7 @@ TEST(ConstantErrors, ReadingsDerivativeIsThatOfTheSensor) {
   }
 }
 
-TEST(ConstantErrors, NothingIsConcludedBeforeSomeTurns) {
+TEST(ConstantErrors, ConcludesNothingBeforeSomeTurns) {
   ConstantErrors errors;
   for (int i = 0; i < 3; ++i) {
     errors.learn(0.1, 1e-4, ConstantErrors::ofAngle({0.5, 30.0, 0.0}));
@@ -81,7 +82,7 @@ TEST(ConstantErrors, WhatIsCertainCountsWithItsDeviation) {
     EXPECT_NEAR(errors.estimate()[0], b, 0.05 * b);
     return std::sqrt(errors.moment()(0, 0)) / b;
   };
-  EXPECT_NEAR(momentOf(0.02), 1.0, 0.05);
+  EXPECT_NEAR(momentOf(0.004), 1.0, 0.05);
   EXPECT_LT(momentOf(0.0005), 0.8);
 }
 

@@ -44,7 +44,8 @@ struct LinearMachine {
     return belief;
   }
   void predict(Belief& belief, Vector& mean) const {
-    belief.predict(F, -B);  // the mean misses what p does
+    belief.covariance = (F * belief.covariance * F.transpose()).eval();
+    belief.by_constant = (F * belief.by_constant - B).eval();  // the mean misses what p does
     for (Eigen::Index i = 0; i < N; ++i)
       for (Eigen::Index k = i; k < N; ++k) belief.addNoise(i, k, step_noise(i, k));
     mean = (F * mean).eval();

@@ -119,7 +119,6 @@ inline std::optional<Settings> drawnSettings(Bytes& bytes) {
   words["level"] = std::vector<const char*>{"pulse", "rocker", "linkage", "auto"}[choice % 4];
   words["output"] = choice / 4 % 2 == 0 ? "instantaneous" : "mean";
   words["crank_stamps"] = std::vector<const char*>{"auto", "header", "steady", "auto"}[choice / 8 % 4];
-  words["shaft"] = choice / 32 % 2 == 0 ? "rigid" : "flexible";
   Numbers numbers;
   for (int i = 0; i < changes && !bytes.empty(); ++i) {
     const NumberKey& key = numberKeys()[bytes.take<std::uint8_t>() % numberKeys().size()];

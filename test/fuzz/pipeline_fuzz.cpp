@@ -10,7 +10,7 @@
 
 #include "fuzz/bytes.h"
 #include "fuzz/drawn_settings.h"
-#include "hammer_loads/life/count_state.h"
+#include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/pipeline/unit_check.h"

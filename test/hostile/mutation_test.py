@@ -73,11 +73,6 @@ class Mutations(unittest.TestCase):
         cls.yaml = "".join((SOURCE / "config" / f"{name}.yaml").read_text() for name in ("hammer_mo100", "pipeline", "life"))
         cls.good["yaml"] = "".join(line for line in cls.yaml.splitlines(keepends=True) if line[0] not in "#\n").encode()
         cls.good["states"], cls.good["series"] = STATES.encode(), SERIES.encode()
-        state = cls.home / "state"
-        with open(cls.write(cls, "series", cls.good["series"])) as series:
-            done = run([PROGRAMS / "count_cycles", "--exact", "--state", state], series, cls.home)
-        assert done.returncode == 0, done.stderr
-        cls.good["state"] = state.read_bytes()
 
     def write(self, name, data):
         path = self.home / name
@@ -88,7 +83,7 @@ class Mutations(unittest.TestCase):
         data = self.good[kind]
         if kind == "yaml":
             return mutated_text(draw, data.decode(), ":")
-        if kind in ("states", "series", "state"):
+        if kind in ("states", "series"):
             return mutated_text(draw, data.decode(), ",")
         return mutated_bytes(draw, data)
 
@@ -104,9 +99,7 @@ class Mutations(unittest.TestCase):
             return [PROGRAMS / "report", file, "--csv", folder / "csv"], None, {"csv"}
         if kind == "states":
             return [PROGRAMS / "evaluate"], file, set()
-        if kind == "series":
-            return [PROGRAMS / "count_cycles", "--exact"], file, set()
-        return [PROGRAMS / "count_cycles", "--exact", "--state", file], self.home / "series", set()
+        return [PROGRAMS / "count_cycles", "--exact"], file, set()
 
     def outcome(self, kind, data):
         """Exit code of the command on these bytes."""
@@ -125,13 +118,13 @@ class Mutations(unittest.TestCase):
             self.assertTrue(said.strip(), kind)
         left = set(os.listdir(folder)) - {file.name}
         self.assertLessEqual(left, outputs if done.returncode == 0 else set(), f"{kind}: {said}")
-        if kind not in ("state", "ledger"):
+        if kind != "ledger":
             self.assertEqual(file.read_bytes(), data, "an input was changed")
         shutil.rmtree(str(folder))
         return done.returncode
 
     def test_each_kind(self):
-        kinds = ["bag", "yaml", "ledger", "db", "states", "series", "state"]
+        kinds = ["bag", "yaml", "ledger", "db", "states", "series"]
         draw, before, problems = random.Random(SEED), None, []
         for kind in kinds:
             self.assertEqual(self.outcome(kind, self.good[kind]), 0, f"{kind}: the good one")

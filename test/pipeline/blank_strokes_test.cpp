@@ -6,6 +6,7 @@
 
 #include "hammer_loads/bench/session_player.h"
 #include "pipeline/shipped_machine.h"
+#include "support/held_hull.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -17,7 +18,7 @@ struct FarFromBlow {
 
 /// From 60 deg behind the blow to 60 deg before the next, after 3 s. Wrong: by more than 2 kN and four deviations.
 FarFromBlow farFromBlow(std::uint64_t seed) {
-  const Settings shipped = *load(configDirectory(), {}).value;
+  const Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   simulation::MachineSettings machine = test::shippedMachine(shipped, 8.0, seed);
   machine.level = Level::kLinkage;
   machine.drive.stop_time = 20.0;

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 
+#include "hammer_loads/pipeline/boom_warnings.h"
 #include "pipeline/standing_boom.h"
 #include "support/counting_new.h"
 #include "support/wall_clock.h"
@@ -108,6 +110,24 @@ TEST(BoomFollower, RestsAfterAGap) {
   EXPECT_TRUE(compliant.follower.state().loads.vibration.isZero(0.0));
   compliant.sample(kLoad);
   EXPECT_GT(compliant.follower.state().tip.velocity.norm(), 1e-4);
+}
+
+/// As on a computer that is behind: the state is there when the reason is asked for, and was not at the sample.
+TEST(BoomFollower, NamesJointStatesThatComeLaterThanTheSample) {
+  Follower compliant(BoomModel::kCompliant);
+  compliant.sample(kLoad);
+  compliant.now += 300 * kMs;
+  ASSERT_TRUE(compliant.follower.sample({compliant.now, kLoad}, {}).fault);
+  compliant.follower.jointStates(compliant.now, kFour, {0.2, -0.35, 1.2, -0.85}, {});
+  ASSERT_TRUE(compliant.follower.joints().complaints(compliant.now).empty());
+  std::vector<Warning> warnings;
+  warnOfBoom(compliant.follower, &compliant.follower.state(), false, warnings);
+  const auto joints = std::find_if(warnings.begin(), warnings.end(),
+                                   [](const Warning& w) { return std::string(w.key) == "boom joints"; });
+  ASSERT_NE(joints, warnings.end());
+  EXPECT_EQ(
+      joints->text,
+      "boom joints: no loads for 1 samples: swing_joint: its states come later than the crank samples of their time");
 }
 
 TEST(BoomFollower, SaysWhichJointIsNotKnownAndGoesOnWhenItIs) {

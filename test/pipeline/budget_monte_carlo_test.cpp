@@ -14,6 +14,7 @@
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/pipeline/budget.h"
 #include "pipeline/shipped_machine.h"
+#include "support/held_hull.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -55,7 +56,7 @@ Work work(const Settings& settings, const Mechanism& mechanism, const simulation
   Work work;
   player.playTo(kEver, [&](double, const SampleResult& loads) {
     budget.follow();
-    const bool known = !loads.refusal && !loads.beside_blow;
+    const bool known = loads.isPublished();
     work.force_z.push_back(known ? loads.wrench.force_z : std::numeric_limits<double>::quiet_NaN());
   });
   work.figures = budget.figures();
@@ -110,7 +111,7 @@ std::map<std::string, Eigen::VectorXd> slopesOfDraws(const Settings& settings, c
 }
 
 TEST(BudgetMonteCarlo, SharesAreThoseOfDrawnHammers) {
-  Settings settings = *load(configDirectory(), {}).value;
+  Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   settings.pipeline.level = Level::kLinkage;
   HammerParameters parameters = settings.mechanism.parameters();
   parameters.rod_deviation = {};  // the recorded rod is rigid, and draws say nothing of another

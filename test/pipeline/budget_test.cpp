@@ -13,6 +13,7 @@
 #include "hammer_loads/util/square.h"
 #include "pipeline/shipped_machine.h"
 #include "support/exact_hammer.h"
+#include "support/held_hull.h"
 
 namespace hammer_loads {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The shipped hammer with deviations of these constants alone, as parts of them.
 Settings drawing(const std::map<std::string, double>& known) {
-  Settings settings = *load(configDirectory(), {}).value;
+  Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   HammerParameters p = settings.mechanism.parameters();
   p.deviations = {};
   p.rod_deviation = {};
@@ -99,7 +100,7 @@ TEST(Budget, RangesOfTheHullsLoadsHaveThePartOfTheMass) {
 
 /// The shipped file says nothing of the rod: what a ring may do to blow and pulse is its share, whatever the readings.
 TEST(Budget, ARodThatNoFileGivesIsNoReading) {
-  Settings shipped = *load(configDirectory(), {}).value;
+  Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   shipped.pipeline.level = Level::kLinkage;
   const auto figures = figuresOf(shipped);
   for (const char* name : {"blow/restitution", "blow/energy_J", "pulse/turn_impulse_z_Ns"}) {
@@ -118,7 +119,7 @@ TEST(Budget, ARodThatNoFileGivesIsNoReading) {
 /// Readings of 1024 counts that jitter do not show whether the rod rings: that is most of the range's own deviation, in
 /// the budget as in the ledger.
 TEST(Budget, RangesReachAsFarAsInTheLedger) {
-  Settings shipped = *load(configDirectory(), {}).value;
+  Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   simulation::MachineSettings machine = test::shippedMachine(shipped, 12.0, 78);
   machine.level = Level::kLinkage;
   accuracy::makeTypical(machine);

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "hammer_loads/bench/drawing_table.h"
+#include "support/held_hull.h"
 
 namespace hammer_loads {
 namespace {
 
 TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
-  Settings settings = *load(configDirectory(), {}).value;
+  Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   settings.pipeline.level = Level::kLinkage;
   double covered[3]{}, energy = 0.0, impulse = 0.0, amplitude = 0.0;
   int ranges = 0;

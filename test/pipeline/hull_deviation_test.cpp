@@ -8,6 +8,7 @@
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
+#include "support/held_hull.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -21,7 +22,7 @@ using Coverage = std::array<double, 6>;
 
 Coverage coverage(const MachineSettings& machine) {
   const Session session = simulation::recordSession(machine);
-  const Settings settings = *loadFiles(configDirectory(), {}).value;
+  const Settings settings = test::heldHull(*loadFiles(configDirectory(), {}).value);
   Pipeline pipeline(test::mechanismOf(machine.hammer), settings.pipeline);
   const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
   Coverage inside{};

@@ -61,7 +61,7 @@ class Victim {
         continue;
       }
       const SampleResult& loads = crank(reading.stamp, kCrank, {reading.angle}, {*reading.speed});
-      if (loads.refusal || loads.beside_blow) continue;
+      if (!loads.isPublished()) continue;
       if (first_accepted_ < from) first_accepted_ = time;
       worst_ = std::max(worst_, std::abs(loads.wrench.force_z - attacked().truth[i].load.force_z) / peak_);
     }

@@ -5,11 +5,12 @@
 
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
+#include "support/held_hull.h"
 
 namespace hammer_loads::test {
 
 inline const Settings& shippedDrawing() {
-  static const Settings settings = *load(configDirectory(), {}).value;
+  static const Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   return settings;
 }
 

@@ -14,6 +14,7 @@
 #include "hammer_loads/util/format.h"
 #include "pipeline/shipped_machine.h"
 #include "support/exact_hammer.h"
+#include "support/held_hull.h"
 
 namespace hammer_loads {
 namespace {
@@ -29,7 +30,7 @@ struct Blows {
 };
 
 Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, double rate, std::uint64_t seed) {
-  const Settings shipped = test::withExactHammer(*load(configDirectory(), {}).value);
+  const Settings shipped = test::withExactHammer(test::heldHull(*load(configDirectory(), {}).value));
   simulation::MachineSettings machine = test::shippedMachine(shipped, 13.0, seed);
   machine.crank.rate = rate;
   flaw(machine);
@@ -62,7 +63,7 @@ std::array<double, 2> coveredBeforeCalibrate(double rate, double zero) {
   std::array<double, 2> covered{};
   double count = 0.0;
   for (std::uint64_t seed = 600; seed < 603; ++seed) {
-    const Settings shipped = test::withExactHammer(*load(configDirectory(), {}).value);
+    const Settings shipped = test::withExactHammer(test::heldHull(*load(configDirectory(), {}).value));
     simulation::MachineSettings machine = test::shippedMachine(shipped, 20.0, seed);
     accuracy::makeTypical(machine);
     machine.crank.rate = rate;

@@ -150,7 +150,7 @@ TEST_F(ObservedBoom, OneTorqueIsBelievedAsFarAsItsOffsetIsKnown) {
 /// A zero that is off makes a right IMU look late; one that is late as well is late by the rest alone [s].
 TEST(CrankLead, IsThatOfTheZeroAndNoMore) {
   simulation::MachineSettings machine = test::machineOnBoom(1.0, 50.0);
-  machine.crank.zero = 1.5 * kDegree;
+  machine.crank.zero = 1.0 * kDegree;
   machine.drive.start_time = 0.1;
   machine.duration = 6.0;
   const simulation::Session right = simulation::recordSession(machine);

@@ -129,51 +129,5 @@ TEST(PoseAndTrust, ACrankHasRunUpAfterARadian) {
   }
 }
 
-/// A crank that is slowest 0.83 rad after the blow, by so much [rad/s] of 30; over so many turns.
-std::optional<double> slowBehind(double turns, double swing = 8.0) {
-  CrankTrust trust{CrankSensor{}};
-  double angle = 0.0;
-  while (angle < turns * kTwoPi) {
-    angle += kPoseStep * (30.0 - swing * std::cos(angle - 0.83));
-    trust.follow(angle, 1.0, kPoseStep);
-  }
-  return trust.slowBehind();
-}
-
-TEST(PoseAndTrust, ACrankIsSlowWhereSuchAreWithinFiveTurns) {
-  EXPECT_FALSE(slowBehind(0.8 * 5.0));
-  ASSERT_TRUE(slowBehind(1.25 * 5.0));
-  EXPECT_NEAR(*slowBehind(20.0), 0.0, 0.15) << "steps of 0.2 to 0.4 rad";
-}
-
-/// The mean speed has no part in it, whatever part of a turn has come last.
-TEST(PoseAndTrust, ACrankIsSlowAtOnePlaceAllAroundTheTurn) {
-  double least = kTwoPi, most = -kTwoPi;
-  for (int i = 0; i < 12; ++i) {
-    const double behind = slowBehind(20.0 + i / 12.0).value_or(kTwoPi);
-    least = std::min(least, behind);
-    most = std::max(most, behind);
-  }
-  EXPECT_LT(most - least, 0.1);
-}
-
-/// Such a crank has its slowest place elsewhere, and the zero is right.
-TEST(PoseAndTrust, ATurnWithoutAToolDoesNotSayWhereItIsSlow) {
-  CrankTrust trust{CrankSensor{}};
-  double angle = 0.0;
-  while (angle < 20.0 * kTwoPi) {
-    const bool struck = std::fmod(angle, 3.0 * kTwoPi) < 2.0 * kTwoPi;
-    angle += kPoseStep * (30.0 - 8.0 * std::cos(angle - (struck ? 0.83 : -1.5)));
-    trust.follow(angle, 1.0, kPoseStep, struck);
-  }
-  EXPECT_NEAR(trust.slowBehind().value_or(kTwoPi), 0.0, 0.15);
-}
-
-TEST(PoseAndTrust, ACrankThatTurnsEvenlyIsSlowNowhere) {
-  EXPECT_FALSE(slowBehind(10.0, 0.0));
-  EXPECT_FALSE(slowBehind(10.0, 0.6 * 0.03 * 30.0));
-  EXPECT_TRUE(slowBehind(10.0, 1.6 * 0.03 * 30.0));
-}
-
 }  // namespace
 }  // namespace hammer_loads

@@ -69,6 +69,7 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
       for (const simulation::BlowTruth& b : session.blows) {
         if (std::abs(b.time - 1e-9 * static_cast<double>(end.stamp - machine.start_stamp)) > 0.05) continue;
         if (end.blow.impossible || !end.pulse || !b.whole_turn) continue;
+        if (!std::isfinite(end.blow.restitution) || !std::isfinite(end.blow.energy)) continue;
         const double restitution = -b.strike.rocker_speed_after / b.strike.rocker_speed_before;
         const double off = end.blow.restitution - restitution;
         found.restitution_bias += off;
@@ -83,7 +84,7 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
         found.impulse_covered += std::abs(error) <= 2.0 * end.pulse_errors.turn_impulse_z.deviation();
       }
     }
-    if (result.refusal || result.beside_blow) continue;
+    if (!result.isPublished()) continue;
     const double since = truth.time - session.blows[blow - 1].time;
     if (since > 0.01 && since < 0.04) {
       ++n;
@@ -253,7 +254,7 @@ TEST(RodRing, BeginsBeforeTheBlow) {
     const SampleResult& r =
         pipeline.crankSample(session.crank[i].stamp, {session.crank[i].angle, session.crank[i].speed});
     const double offset = CrankAngle::wrapToPi(truth.angle);
-    if (truth.time < 4.0 || r.refusal || r.beside_blow || !(offset > -0.15 && offset < 0.0)) continue;
+    if (truth.time < 4.0 || !r.isPublished() || !(offset > -0.15 && offset < 0.0)) continue;
     const double off = r.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y;
     ++samples, error += square(off), said += square(r.deviation.wrench.torque_y);
     covered += std::abs(off) < 2.0 * r.deviation.wrench.torque_y;

@@ -10,13 +10,14 @@
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/constants.h"
 #include "support/exact_hammer.h"
+#include "support/held_hull.h"
 
 namespace hammer_loads {
 namespace {
 
 simulation::MachineSettings machineOfColumns(double rate, std::uint64_t seed) {
   simulation::MachineSettings s = simulation::workingMo100();
-  s.hammer = test::withExactHammer(*load(configDirectory(), {}).value).mechanism.parameters();
+  s.hammer = test::withExactHammer(test::heldHull(*load(configDirectory(), {}).value)).mechanism.parameters();
   s.duration = 14.0;
   s.drive.stop_time = 20.0;
   s.crank.rate = rate;
@@ -40,7 +41,7 @@ struct SensorJudged {
 /// From `from` [s] on, by the truth at the published stamps.
 SensorJudged judgeSensor(const simulation::MachineSettings& machine, CrankStamps stamps = CrankStamps::kAuto,
                          double from = 4.0) {
-  Settings settings = test::withExactHammer(*load(configDirectory(), {}).value);
+  Settings settings = test::withExactHammer(test::heldHull(*load(configDirectory(), {}).value));
   settings.pipeline.crank_stamps = stamps;
   const simulation::Session session = simulation::recordSession(machine);
   Pipeline pipeline(settings.mechanism, settings.pipeline);
@@ -49,7 +50,7 @@ SensorJudged judgeSensor(const simulation::MachineSettings& machine, CrankStamps
   for (const simulation::CrankReading& reading : session.crank) {
     const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     const double time = 1e-9 * static_cast<double>(result.stamp - machine.start_stamp);
-    if (result.refusal || result.beside_blow || time < from) continue;
+    if (!result.isPublished() || time < from) continue;
     times.push_back(time);
     found.push_back(result.outputs.front().wrench);
     deviations.push_back(result.outputs.front().deviation.wrench);

@@ -38,7 +38,7 @@ FoundOil findOil(const simulation::MachineSettings& machine, const std::string& 
   std::size_t i = 0;
   player.playTo(test::kJudgedTo, [&](double time, const SampleResult& result) {
     const simulation::OnBoomTruth& truth = session.on_boom[i++];
-    if (time < test::kJudgedFrom || result.beside_blow) return;
+    if (time < test::kJudgedFrom || !result.isPublished()) return;
     ASSERT_TRUE(result.boom != nullptr && !result.boom->fault) << time;
     found.errors.addSample(truth, result);
   });

@@ -18,7 +18,7 @@ TEST(TurnLoads, OfTheHullHaveThePulsesPeakAtAnyRate) {
   for (const double rate : {100.0, 1000.0}) {
     std::size_t turns = 0, withheld = 0;
     run(test::settingsWith("{}"), sessionAt(rate), [&](const SampleResult& result, const LifeFollower& follower) {
-      withheld += result.beside_blow;
+      withheld += !result.refusal && !result.isPublished();
       for (std::size_t i = 0; i < result.turn_ends; ++i) {
         const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
         ASSERT_NE(turn, nullptr);
@@ -90,7 +90,7 @@ TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
           most = std::max(most, turn->minimum[0] / truth);
           EXPECT_NEAR(turn->minimum[0], truth, 2.0 * turn->of_minimum[0].deviation()) << end;
         }
-        withheld += result.beside_blow;
+        withheld += !result.refusal && !result.isPublished();
       });
   EXPECT_GT(judged, 5U);
   EXPECT_GT(sum, 0.9 * static_cast<double>(judged));

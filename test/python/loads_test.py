@@ -151,6 +151,33 @@ class Turn(unittest.TestCase):
 class Words(unittest.TestCase):
     """Problems are the commands' own."""
 
+    def test_what_is_no_number_is_a_value_error_that_names_the_argument(self):
+        hammer = hl.Hammer.from_yaml()
+        for call, name in ((lambda: hammer.wrenches("x", 1, 1), "angle"), (lambda: hammer.wrenches(1, ["x"], 1), "speed"),
+                           (lambda: hammer.wrenches(1, 1, object()), "acceleration"),
+                           (lambda: hammer.wrenches([1, 2], 1, pitch="x"), "pitch"),
+                           (lambda: hammer.turn(pitch="x"), "pitch"), (lambda: hammer.pulse(pitch="x"), "pitch"),
+                           (lambda: hammer.changed(rod_mass_kg="x"), "rod_mass_kg"),
+                           (lambda: hl.count_cycles("x"), "series")):
+            self.assertRegex(support.message(call), "^%s: .*, must be a number" % name)
+
+    def test_every_call_has_a_text_with_its_units(self):
+        calls = [getattr(hl.Hammer, name) for name in dir(hl.Hammer) if not name.startswith("_")]
+        calls += [getattr(hl, name) for name in hl.__all__]
+        units = r"\[(rad|rad/s|m/s2|kg|unit of the series)\]|unit"
+        for call in calls:
+            text = call.__doc__ or ""
+            text = text[text.find("\n\n") + 1:] if " -> " in text.splitlines()[0] else text  # behind the signature
+            self.assertGreater(len(text.strip()), 30, call)
+        for call in (hl.Hammer.changed, hl.Hammer.parameters, hl.Hammer.gravity, hl.Hammer.wrenches, hl.Hammer.turn,
+                     hl.Hammer.pulse, hl.Hammer.blow, hl.count_cycles, hl.read_database, hl.support_impulse):
+            self.assertRegex(call.__doc__, units)
+
+    def test_a_hammer_shows_what_it_is(self):
+        self.assertEqual(repr(hl.Hammer.from_yaml().changed(rocker_mass_kg=40.5)),
+                         "<Hammer: crank_length_m 0.048, rod_length_m 0.15, rocker_length_m 0.12, pivot_distance_m 0.078, "
+                         "rocker_mass_kg 40.5, rocker_inertia_about_pivot_kg_m2 0.737, level linkage>")
+
     def test_files(self):
         self.assertEqual(support.message(hl.Hammer.from_yaml, "/no/such.yaml"),
                          "/no/such.yaml: cannot be read: No such file or directory")

@@ -70,7 +70,7 @@ class Machine {
     return eventually([this] { return hull.last() >= samples.back(); });
   }
   bool workUntil(const std::function<bool()>& condition) {
-    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20.0);
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(120.0);
     while (!condition()) {
       if (ros::WallTime::now() > deadline || !work()) return false;
     }

@@ -187,7 +187,7 @@ TEST_F(BoomTest, ABadDescriptionEndsTheNodeWithOneLine) {
       if (!is_number) ros::param::set(space + bad.key, bad.value);
     }
     ros::param::set(space + "robot_description", bad.urdf);
-    const test::Outcome outcome = test::runCommand("timeout 20 " HAMMER_LOADS_NODE, "__ns:=/bad");
+    const test::Outcome outcome = test::runCommand("timeout 120 " HAMMER_LOADS_NODE, "__ns:=/bad");
     if (!bad.key.empty()) ros::param::set(space + bad.key, shipped);
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_EQ(test::linesOf(outcome.err).size(), 1U) << outcome.err;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""/clock at the end of ROS time, 2^32 s, and back: no node aborts, all go on."""
+"""/clock at the end of ROS time, 2^32 s, and back: no node aborts, all report and go on."""
 import shutil
 import signal
 import sys
@@ -9,7 +9,7 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from rosgraph_msgs.msg import Clock, Log
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
 from grapple_process_rostest import claims
@@ -22,16 +22,15 @@ LAST = (END - 1, 999999999)
 class ClockEnd(unittest.TestCase):
     def setUp(self):
         self.directory = tempfile.mkdtemp()
-        self.clock = rospy.Publisher('/clock', Clock, queue_size=100)
-        self.told, self.slid, self.warned = [], set(), set()
-        rospy.Subscriber('/diagnostics', DiagnosticArray, self.told.append)
+        self.clock = rospy.Publisher('/clock', Clock, queue_size=100, latch=True)
+        self.told, self.slid = set(), set()
+        rospy.Subscriber('/diagnostics', DiagnosticArray, self.on_diagnostics)
         rospy.Subscriber('/simulate_grapple/joints', JointState,
                          lambda m: self.slid.add((m.header.stamp.secs, m.header.stamp.nsecs)))
-        rospy.Subscriber('/rosout', Log, self.on_log)
 
-    def on_log(self, message):
-        if 'no diagnostics' in message.msg:
-            self.warned.add(message.name)
+    def on_diagnostics(self, message):
+        stamp = (message.header.stamp.secs, message.header.stamp.nsecs)
+        self.told.update((status.name.split(':')[0], stamp) for status in message.status)
 
     def tearDown(self):
         shutil.rmtree(self.directory, ignore_errors=True)
@@ -49,26 +48,35 @@ class ClockEnd(unittest.TestCase):
             self.slid.clear()
             self.assertTrue(self.stands(instant, lambda at=instant: at in self.slid), instant)
 
-    def heard(self, seconds):
-        """The clock stands there until diagnostics say so."""
-        return self.stands((seconds, 0), lambda: any(message.header.stamp.secs == seconds for message in self.told))
+    def report_at(self, instant, nodes=('hammer_loads_node', 'grapple_node')):
+        """The clock stands there until each of the nodes has reported at it."""
+        return self.stands(instant, lambda: self.told >= {(node, instant) for node in nodes})
+
+    def parameters(self):
+        log = {'log_directory': self.directory, 'log_min_free_mb': 0}
+        return {'hammer_loads_node': log, 'grapple_node': dict(claims(), **log)}
 
     def test_no_node_aborts(self):
-        log = {'log_directory': self.directory, 'log_min_free_mb': 0}
-        parameters = {'hammer_loads_node': log, 'show_loads': {}, 'simulate_hammer': {},
-                      'grapple_node': dict(claims(), **log),
-                      'simulate_grapple': dict(claims(), slider_joint='slider', period_s=1.0, rate_Hz=50.0)}
+        parameters = dict(self.parameters(), show_loads={}, simulate_hammer={},
+                          simulate_grapple=dict(claims(), slider_joint='slider', period_s=1.0, rate_Hz=50.0))
         nodes = {program: NodeProcess(program, given, program) for program, given in parameters.items()}
-        self.assertTrue(self.heard(END - 20), 'the nodes follow the clock')
+        self.assertTrue(self.report_at((END - 20, 0)), 'the nodes follow the clock')
         self.run_over([(END - 10 + i // 4, 250000000 * (i % 4)) for i in range(40)])
-        self.assertTrue(self.stands(LAST, lambda: {'/hammer_loads_node', '/grapple_node'} <= self.warned),
-                        'each reports there as well')
+        self.assertTrue(self.report_at(LAST), 'each reports there as well')
         self.run_over([(0, 1), LAST, (5, 0)])
-        self.assertTrue(self.heard(100), 'and go on')
+        self.assertTrue(self.report_at((100, 0)), 'and go on')
         for program, node in nodes.items():
             self.assertIsNone(node.process.poll(), program)
             code, _, err = node.end(signal.SIGINT)
             self.assertEqual(code, 0, program + ': ' + err)
+
+    def test_a_node_starts_there(self):
+        self.clock.publish(Clock(rospy.Time(*LAST)))
+        nodes = {program + '_late': NodeProcess(program + '_late', given, program)
+                 for program, given in self.parameters().items()}
+        self.assertTrue(self.report_at(LAST, nodes), [node.process.poll() for node in nodes.values()])
+        for name, node in nodes.items():
+            self.assertEqual(node.end(signal.SIGINT)[0], 0, name)
 
 
 if __name__ == '__main__':

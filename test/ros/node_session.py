@@ -50,6 +50,10 @@ class NodeSession:
         return eventually(lambda: self.crank.get_num_connections() > 0 and self.joints.get_num_connections() > 0 and
                           self.subscriber.get_num_connections() > 0)
 
+    def connections(self):
+        """Of each topic; a node that starts again has others."""
+        return [set(topic.impl.connections) for topic in (self.crank, self.joints, self.subscriber)]
+
     def stamps(self):
         return [wrench.header.stamp for wrench in self.wrenches]
 

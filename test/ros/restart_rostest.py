@@ -44,8 +44,11 @@ class RestartTest(unittest.TestCase):
             self.assertEqual([name for name in names if not name.startswith(ns + '/hammer_loads/')], [])
 
     def kill(self):
+        """What tells when the next life is there, however long roslaunch takes for it."""
+        before = self.a.connections()
         uri = rosgraph.Master('/test').lookupNode('/a/hammer_loads')
         os.kill(ServerProxy(uri).getPid('/test')[2], signal.SIGKILL)
+        return lambda: all(now - old for now, old in zip(self.a.connections(), before))
 
     def work(self, inputs, enough):
         """Both machines at work at about their pace until it is enough. What was sent."""
@@ -65,10 +68,12 @@ class RestartTest(unittest.TestCase):
         first_life = self.work(inputs, lambda sent: len(sent) > 1500)
         active, = active_bags(self.directory)
         answered = self.a.wrenches[-1].header.stamp
-        self.kill()
+        lives_again = self.kill()
         self.a.wrenches.clear()
-        rest = self.work(inputs[len(first_life):], lambda _: len(self.a.wrenches) > 300)
-        stamps = crank_stamps(first_life + rest)
+        sent = first_life + self.work(inputs[len(first_life):], lambda sent: len(sent) > 200)
+        self.assertTrue(eventually(lives_again))
+        sent += self.work(inputs[len(sent):], lambda _: len(self.a.wrenches) > 300)
+        stamps = crank_stamps(sent)
         self.assertTrue(eventually(lambda: self.b.wrenches[-1].header.stamp == stamps[-1]))
         self.assertEqual(self.b.stamps()[before_b:], stamps, 'the other lost nothing')
         self.assertTrue(rospy.ServiceProxy('/a/hammer_loads/log/stop', Trigger)().success)

@@ -106,6 +106,8 @@ class RunsTest(unittest.TestCase):
 
     @classmethod
     def without_directory(cls):
+        """The log closes its bag behind the answer to `stop`, and needs the directory until then."""
+        assert eventually(lambda: not active_bags(cls.directory))
         aside = cls.directory + '_aside'
         os.rename(cls.directory, aside)
         cls.call('start')

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "settings/hammer_yaml.h"
 #include "settings/temporary_file.h"
@@ -56,6 +57,25 @@ TEST_P(EveryHammerKey, MustHaveItsSign) {
   }
 }
 
+/// A deviation of each constant, small enough for any hammer.
+std::string allDeviations() {
+  std::string text;
+  for (const HammerConstant& constant : kHammerConstants) text += deviationKey(constant) + ": 1e-5\n";
+  return text;
+}
+
+TEST_P(EveryHammerKey, IsAloneAccusedBesideRightDeviations) {
+  EXPECT_EQ(problemsWith({}, allDeviations()), Lines{});
+  for (const char* wrong : {"", "word", ".nan"}) {
+    const Lines problems = problemsWith({{GetParam(), wrong}}, allDeviations());
+    ASSERT_EQ(problems.size(), 1U) << wrong << ": " << problems[1];
+    EXPECT_TRUE(beginsWith(problems[0], GetParam() + ": ")) << problems[0];
+  }
+  // A value that is none of a hammer may break a rule of two keys.
+  for (const std::string& problem : problemsWith({{GetParam(), "1e9"}}, allDeviations()))
+    EXPECT_EQ(problem.find("_deviation"), std::string::npos) << problem;
+}
+
 INSTANTIATE_TEST_SUITE_P(Hammer, EveryHammerKey, testing::ValuesIn(hammerKeys()),
                          [](const testing::TestParamInfo<std::string>& key) { return key.param; });
 
@@ -107,7 +127,9 @@ TEST(HammerParameters, DeviationsNotGivenAreTheUsualOnesWithANote) {
   EXPECT_NE(usual.notes[0].find("rocker_mass_deviation_kg"), std::string::npos);
   EXPECT_EQ(given.value->mechanism.parameters().deviations[kMass], 0.0);
   EXPECT_EQ(given.notes[0].find("rocker_mass_deviation_kg"), std::string::npos);
-  EXPECT_FALSE(loadFiles(configDirectory(), {impossible.path()}).value);
+  const Lines problems = loadFiles(configDirectory(), {impossible.path()}).problems;
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_TRUE(beginsWith(problems[0], "rocker_mass_deviation_kg: 50 kg, no hammer")) << problems[0];
 }
 
 TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {

@@ -29,7 +29,6 @@ TEST(Load, ShippedFilesAreValid) {
   EXPECT_TRUE(log.enabled);
   EXPECT_FALSE(log.directory.empty());
   EXPECT_EQ(log.split_size, 512000000U);
-  EXPECT_FALSE(log.prune_earlier_runs);
   EXPECT_EQ(filePrefix(forNode(log, "/left/hammer_loads")), "left_hammer_loads");
 }
 

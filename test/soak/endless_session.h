@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/stamp.h"
 

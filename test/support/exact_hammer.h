@@ -1,7 +1,10 @@
 /// A hammer that is known exactly, for tests of what else there is to know.
 #pragma once
 
+#include <utility>
+
 #include "hammer_loads/settings/load.h"
+#include "support/held_hull.h"
 #include "support/mo100.h"
 
 namespace hammer_loads::test {
@@ -13,7 +16,7 @@ inline Settings withExactHammer(Settings settings) {
   p.rod_deviation = {};
   p.crank_mass = p.crank_inertia_about_com = p.rod_mass = p.rod_inertia_about_com = 0.0;
   settings.mechanism = mechanismOf(p);
-  return settings;
+  return heldHull(std::move(settings));
 }
 
 }  // namespace hammer_loads::test

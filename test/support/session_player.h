@@ -21,11 +21,11 @@ namespace hammer_loads::test {
 constexpr double kSessionWorks = 2.0;  ///< [s]: from then on the machine strikes
 constexpr double kSessionEnd = 5.0;    ///< [s]
 
-/// The shipped settings with the shipped boom, and with the keys in `text` over them. Level rocker unless `text` has
-/// one: the machine of the sessions has a massless crank and rod.
+/// The shipped settings with the shipped boom, and with the keys in `text` over them. Unless `text` has others, the
+/// level is rocker, since the machine of the sessions has a massless crank and rod, and the hull is held.
 inline Settings settingsWith(const std::string& text, bool boom_file = true) {
   const TemporaryFile given(text);
-  const TemporaryFile level("level: rocker\n");
+  const TemporaryFile level("level: rocker\nhull_motion: fixed\n");
   std::vector<std::string> files{level.path(), given.path()};
   if (boom_file) files.insert(files.begin(), configDirectory() + "/boom_eo2621.yaml");
   const Checked<Settings> settings = loadFiles(configDirectory(), files, shippedUrdf());

@@ -120,7 +120,7 @@ BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mecha
     if (time < from) return;
     errors.addBlows(session, result);
     const bool known = !result.refusal && result.boom != nullptr && !result.boom->fault;
-    if (known && !result.beside_blow) errors.addSample(truth, result);  // as it is published
+    if (known && result.isPublished()) errors.addSample(truth, result);  // as it is published
     errors.refused += !known;
   });
   for (const Warning& warning : warningsOf(player.pipeline)) {

@@ -69,7 +69,7 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
       impulse.addRelative(end.pulse->turn_impulse_z, near->turn_impulse_z, end.pulse_errors.turn_impulse_z.deviation());
       amplitude.addRelative(end.pulse->amplitude, near->turn_peak_force_z, end.pulse_errors.amplitude.deviation());
     }
-    if (loads.refusal || loads.beside_blow || time(loads.stamp) < 3.0 || time(loads.stamp) > 13.5) return;
+    if (!loads.isPublished() || time(loads.stamp) < 3.0 || time(loads.stamp) > 13.5) return;
     const auto truth = std::lower_bound(session.truth.begin(), session.truth.end(), time(loads.stamp) - 1e-6,
                                         [](const simulation::CrankTruth& t, double at) { return t.time < at; });
     if (truth == session.truth.end() || std::abs(truth->time - time(loads.stamp)) > 1e-6) return;

@@ -129,7 +129,7 @@ OuterLoadErrors pipelineErrors(const simulation::Session& session, const Setting
   std::size_t i = 0;
   player.playTo(to, [&](double time, const SampleResult& result) {
     const simulation::OnBoomTruth& truth = session.on_boom[i++];
-    if (time < from || result.refusal || result.beside_blow || result.boom == nullptr || result.boom->fault) return;
+    if (time < from || !result.isPublished() || result.boom == nullptr || result.boom->fault) return;
     const Wrench& rock = result.boom->contact;
     signals.estimate.push_back({result.wrench.force_x + rock.force.x(), result.wrench.force_z + rock.force.z(),
                                 result.wrench.torque_y + rock.torque.y()});

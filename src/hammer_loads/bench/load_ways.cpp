@@ -86,13 +86,13 @@ struct BatchCase {
         accelerations(c.angles.size(), c.acceleration) {
     for (std::vector<double>& column : out) column.resize(angles.size());
   }
-  void compute(bool with_pins, BatchWidth width) {
+  void compute(bool with_pins) {
     const CrankStates states{angles.data(), speeds.data(), accelerations.data(), angles.size()};
     const auto at = [this](std::size_t column) { return out[column].data(); };
     const WrenchArrays wrenches{at(0), at(1), at(2)};
-    if (!with_pins) return hullWrenches(prepared.model, states, prepared.gravity, wrenches, width);
+    if (!with_pins) return hullWrenches(prepared.model, states, prepared.gravity, wrenches);
     const PinArrays pins{at(3), at(4), at(5), at(6), at(7), at(8), at(9), at(10), at(11)};
-    linkLoads(prepared.model, states, prepared.gravity, wrenches, pins, width);
+    linkLoads(prepared.model, states, prepared.gravity, wrenches, pins);
   }
   LinkLoads result(std::size_t i) const {
     const auto& o = out;
@@ -104,43 +104,35 @@ struct BatchCase {
   std::array<std::vector<double>, 12> out;
 };
 
-LoadWay batch(const std::string& name, Level level, bool with_pins, BatchWidth width) {
+LoadWay batch(const char* name, Level level, bool with_pins) {
   LoadWay way{"batch", name, level, with_pins ? Parts::kPins : Parts::kWrench, {}, {}};
   way.loads = [=](const HardCase& c) {
     BatchCase arrays(c, level);
-    arrays.compute(with_pins, width);
+    arrays.compute(with_pins);
     std::vector<LinkLoads> loads;
     for (std::size_t i = 0; i < c.angles.size(); ++i) loads.push_back(arrays.result(i));
     return loads;
   };
   way.pass = [=](const HardCase& c) {
-    return [=, arrays = std::make_shared<BatchCase>(c, level)] { arrays->compute(with_pins, width); };
+    return [=, arrays = std::make_shared<BatchCase>(c, level)] { arrays->compute(with_pins); };
   };
   return way;
-}
-
-void addBatches(BatchWidth width, std::vector<LoadWay>& ways) {
-  const char* names[] = {"baseline", "AVX2", "AVX-512"};
-  const std::string suffix = std::string(", ") + names[static_cast<int>(width)];
-  ways.push_back(batch("rocker" + suffix, Level::kRocker, false, width));
-  ways.push_back(batch("linkage" + suffix, Level::kLinkage, false, width));
-  ways.push_back(batch("rocker with pins" + suffix, Level::kRocker, true, width));
-  ways.push_back(batch("linkage with pins" + suffix, Level::kLinkage, true, width));
 }
 
 }  // namespace
 
 std::vector<LoadWay> loadWays() {
-  std::vector<LoadWay> ways{printed("P0 with inverse trigonometry", Positions::kInverseTrigonometry),
-                            printed("P0 with sines and cosines", Positions::kTrigonometry),
-                            scalarWrench("pulse", Level::kPulse),
-                            scalarWrench("rocker", Level::kRocker),
-                            scalarWrench("linkage", Level::kLinkage),
-                            scalarPins("rocker with pins", Level::kRocker),
-                            scalarPins("linkage with pins", Level::kLinkage)};
-  if (batchWidth() == BatchWidth::kAvx512) addBatches(BatchWidth::kAvx2, ways);
-  addBatches(batchWidth(), ways);
-  return ways;
+  return {printed("P0 with inverse trigonometry", Positions::kInverseTrigonometry),
+          printed("P0 with sines and cosines", Positions::kTrigonometry),
+          scalarWrench("pulse", Level::kPulse),
+          scalarWrench("rocker", Level::kRocker),
+          scalarWrench("linkage", Level::kLinkage),
+          scalarPins("rocker with pins", Level::kRocker),
+          scalarPins("linkage with pins", Level::kLinkage),
+          batch("rocker", Level::kRocker, false),
+          batch("linkage", Level::kLinkage, false),
+          batch("rocker with pins", Level::kRocker, true),
+          batch("linkage with pins", Level::kLinkage, true)};
 }
 
 }  // namespace hammer_loads::accuracy

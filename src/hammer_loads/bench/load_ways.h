@@ -21,7 +21,7 @@ struct LoadWay {
   std::function<std::function<void()>(const HardCase&)> pass;
 };
 
-/// Batches: as wide as the CPU allows, and AVX2 where that is not the widest.
+/// Batches: as wide as the CPU allows.
 std::vector<LoadWay> loadWays();
 
 }  // namespace hammer_loads::accuracy

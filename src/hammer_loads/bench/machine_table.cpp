@@ -1,7 +1,6 @@
 #include "hammer_loads/bench/machine_table.h"
 
 #include <functional>
-#include <optional>
 
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/calibration/calibration.h"
@@ -19,8 +18,7 @@ struct Kind {
   std::function<void(MachineSettings&)> flaw;
   double inertia_guess{1.0};  ///< over the true one
   bool calibrated{};
-  double shift{};                      ///< mean of all stamps less the instants [s]
-  std::optional<Coupling> coupling{};  ///< as given
+  double shift{};  ///< mean of all stamps less the instants [s]
   CrankStamps stamps{CrankStamps::kAuto};
 };
 
@@ -30,16 +28,8 @@ std::vector<Kind> kinds() {
   };
   const auto loss = [](double part) { return [part](MachineSettings& s) { s.blow.crank_loss = part; }; };
   const auto counts = [](int number) { return [number](MachineSettings& s) { s.crank.counts = number; }; };
-  const auto coupled = [](double frequency) {
-    return [frequency](MachineSettings& s) {
-      s.drive.coupling_frequency = frequency, s.drive.motor_share = 0.2, s.drive.coupling_damping = 0.02;
-    };
-  };
-  const auto given = [](double frequency, double share) { return Coupling{frequency, share, 0.02, 0.3, 0.03, 0.7}; };
-  const auto typical_coupled = [coupled](MachineSettings& s) {
-    makeTypical(s);
-    coupled(50.0)(s);
-    s.drive.coupling_damping = 0.04;
+  const auto coupled = [](MachineSettings& s) {
+    s.drive.coupling_frequency = 50.0, s.drive.motor_share = 0.2, s.drive.coupling_damping = 0.02;
   };
   return {
       {"clean", {1000.0, 200.0, 100.0}, [](MachineSettings&) {}},
@@ -68,19 +58,7 @@ std::vector<Kind> kinds() {
        }},
       {"360 counts", {1000.0, 100.0}, counts(360)},
       {"1024 counts", {1000.0, 100.0}, counts(1024)},
-      {"coupling of 50 Hz, taken for rigid", {1000.0, 100.0}, coupled(50.0)},
-      {"coupling of 30 Hz, given as 36", {1000.0, 100.0}, coupled(30.0), 1.0, false, 0.0, given(36.0, 0.2)},
-      {"coupling of 50 Hz, given as 60", {1000.0, 100.0}, coupled(50.0), 1.0, false, 0.0, given(60.0, 0.2)},
-      {"coupling of 80 Hz, given as 64", {1000.0, 100.0}, coupled(80.0), 1.0, false, 0.0, given(64.0, 0.2)},
-      {"motor's share 0.2, given as 0.24", {1000.0, 100.0}, coupled(50.0), 1.0, false, 0.0, given(50.0, 0.24)},
-      {"typical, coupling of 50 Hz given as 45, damping 0.04 as 0.02",
-       {1000.0, 200.0},
-       typical_coupled,
-       1.3,
-       false,
-       0.0,
-       given(45.0, 0.2)},
-      {"the same after calibrate", {1000.0, 200.0}, typical_coupled, 1.3, true, 0.0, given(45.0, 0.2)},
+      {"coupling of 50 Hz, taken for rigid", {1000.0, 100.0}, coupled},
       {"no speeds", {1000.0, 100.0}, [](MachineSettings& s) { s.crank.speed = false; }},
   };
 }
@@ -147,7 +125,6 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
   calibration::CalibrationBasis basis{mechanism, pipeline.level};
   basis.torque_walk = pipeline.torque_walk * hammer.rocker_inertia_about_pivot;
   basis.torque_deviation = pipeline.initial_torque_deviation * hammer.rocker_inertia_about_pivot;
-  basis.coupling = pipeline.coupling;
   CrankSensorPlace place;
   for (const calibration::Estimate& e : calibration::calibrate(samples, basis).estimates) {
     if (!e.determined()) continue;
@@ -159,12 +136,6 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
     if (e.key == "crank_eccentricity_2_phase_rad") place.eccentricity_phase[1] = e.value;
     if (e.key == "crank_timing_noise_s") pipeline.crank_timing_noise = e.value;
     if (e.key == "drive_inertia_kg_m2") hammer.drive_inertia = e.value;
-    if (e.key == "coupling_frequency_Hz") pipeline.coupling->frequency = e.value;
-    if (e.key == "coupling_stiffness_deviation") pipeline.coupling->stiffness_deviation = e.value;
-    if (e.key == "coupling_damping_ratio") pipeline.coupling->damping = e.value;
-    if (e.key == "coupling_damping_deviation") pipeline.coupling->damping_deviation = e.value;
-    if (e.key == "coupling_motor_share") pipeline.coupling->motor_share = e.value;
-    if (e.key == "coupling_share_deviation") pipeline.coupling->share_deviation = e.value;
   }
   pipeline.crank_sensor = *CrankSensor::make(place).value;
 }
@@ -175,7 +146,6 @@ MachineRow rowOf(const Settings& settings, const Kind& kind, double rate) {
   HammerParameters hammer = settings.mechanism.parameters();
   hammer.drive_inertia = kind.inertia_guess * machine.drive.inertia;
   PipelineSettings pipeline = settings.pipeline;
-  pipeline.coupling = kind.coupling;
   pipeline.crank_stamps = kind.stamps;
   if (kind.calibrated) applyCalibration(session, machine, hammer, pipeline);
   const SessionRun run = runSession(session, machine.start_stamp, *Mechanism::make(hammer).value, pipeline);

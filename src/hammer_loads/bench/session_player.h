@@ -15,8 +15,8 @@ namespace hammer_loads::accuracy {
 class SessionPlayer {
  public:
   SessionPlayer(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom,
-                const simulation::Session& session, const TrackerMaker& make = makeTracker)
-      : pipeline(mechanism, settings, boom, {}, make), session_(session) {}
+                const simulation::Session& session)
+      : pipeline(mechanism, settings, boom), session_(session) {}
 
   /// Crank samples of times before `time` [s]; each(time, loads) for all of them.
   template <typename Each>

@@ -7,8 +7,8 @@
 namespace hammer_loads::accuracy {
 
 SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
-                      const PipelineSettings& settings, const TrackerMaker& make) {
-  SessionPlayer player(mechanism, settings, {}, session, make);
+                      const PipelineSettings& settings) {
+  SessionPlayer player(mechanism, settings, {}, session);
   const auto seconds = [start](std::int64_t stamp) { return 1e-9 * static_cast<double>(stamp - start); };
   SessionRun run;
   player.playTo(kInfinity, [&](double, const SampleResult& loads) {
@@ -25,7 +25,7 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
     }
     if (loads.refusal) return;
     run.accepted.push_back(seconds(loads.stamp));
-    if (loads.beside_blow) return;
+    if (!loads.isPublished()) return;
     const HullDeviation said = loads.outputs.empty() ? HullDeviation{} : loads.outputs.front().deviation;
     run.wrenches.push_back({seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y,
                             said.wrench.force_x, said.wrench.force_z, said.wrench.torque_y, said.common.force_z});

@@ -14,10 +14,9 @@ struct SessionRun {
   SampleCounts counts;
 };
 
-/// Reads a session into a pipeline, joint states in their place between the crank samples. start: stamp of t = 0 [ns];
-/// make: of the crank's tracker.
+/// Reads a session into a pipeline, joint states in their place between the crank samples. start: stamp of t = 0 [ns].
 SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
-                      const PipelineSettings& settings, const TrackerMaker& make = makeTracker);
+                      const PipelineSettings& settings);
 
 /// The blows' energy as a table's cell, and in JSON: null where none is known.
 std::string energyCell(const SessionErrors& errors, int digits);

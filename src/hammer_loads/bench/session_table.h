@@ -1,4 +1,4 @@
-/// Cost table, second part: error of a whole session by crank estimator, sample rate and encoder.
+/// Cost table, second part: error of a whole session by sample rate and encoder.
 #pragma once
 
 #include <string>
@@ -10,7 +10,6 @@
 namespace hammer_loads::accuracy {
 
 struct SessionRow {
-  std::string estimator;
   double rate{};  ///< of crank samples [Hz]
   int counts{};   ///< of the encoder per turn
   bool speed{};   ///< speeds are measured too

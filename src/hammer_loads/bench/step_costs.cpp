@@ -1,10 +1,9 @@
 #include "hammer_loads/bench/step_costs.h"
 
 #include "hammer_loads/bench/boom_errors.h"
+#include "hammer_loads/pipeline/filter_settings.h"
 #include "hammer_loads/pipeline/life_follower.h"
-#include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/pipeline.h"
-#include "hammer_loads/pipeline/smoothed_runs.h"
 #include "hammer_loads/simulation/session.h"
 
 namespace hammer_loads::accuracy {
@@ -12,19 +11,15 @@ namespace {
 
 constexpr double kWorkBegins = 3.0, kWorkEnds = 8.0;  // [s]
 constexpr double kOnBoomEnds = 4.0;                   // [s], from rest
-constexpr double kDamping = 0.02;                     // of a coupling, of critical
 constexpr simulation::RodSettings kRod{1e9, 0.2, 0.0};
 
 /// Crank readings of a hammer at work at 1 kHz, what the level knows being there: links with masses,
-/// a rod that gives. coupling_frequency [Hz]: of its shaft, 0: rigid.
-std::vector<simulation::CrankReading> workingReadings(const Settings& settings, Level level,
-                                                      double coupling_frequency = 0.0) {
+/// a rod that gives.
+std::vector<simulation::CrankReading> workingReadings(const Settings& settings, Level level) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = settings.mechanism.parameters();
   machine.level = level;
   if (level == Level::kElastic) machine.level = Level::kLinkage, machine.rod = kRod;
-  machine.drive.coupling_frequency = coupling_frequency;
-  machine.drive.coupling_damping = kDamping;
   machine.drive.stop_time = kWorkEnds + 1.0;
   machine.duration = kWorkEnds;
   const std::vector<simulation::CrankReading> all = simulation::recordSession(machine).crank;
@@ -42,42 +37,16 @@ PipelineSettings settingsOf(const Settings& settings, Level level) {
   return s;
 }
 
-CostRow trackerCost(const char* name, CrankTracker& tracker, const std::vector<simulation::CrankReading>& readings) {
-  const auto pass = [&] {
-    tracker.start({readings.front().angle, readings.front().speed});
-    for (std::size_t i = 1; i < readings.size(); ++i) {
-      const double step = 1e-9 * static_cast<double>(readings[i].stamp - readings[i - 1].stamp);
-      keep(tracker.update(step, {readings[i].angle, readings[i].speed}));
-      keep(tracker.estimate());
-    }
-  };
-  return {"crank", name, costOf(readings.size(), pass), {}, {}};
-}
-
-CostRow trackerCost(const Settings& settings, const char* name, Level level) {
-  const auto tracker = makeTracker(settings.mechanism, settingsOf(settings, level));
-  return trackerCost(name, *tracker, workingReadings(settings, level));
-}
-
-/// coupling_frequency [Hz]: of the machine, and as given.
-CostRow flexibleCost(const Settings& settings, const char* name, Level level, double coupling_frequency) {
-  PipelineSettings pipeline = settingsOf(settings, level);
-  pipeline.coupling = Coupling{coupling_frequency, 0.5, kDamping, 0.3, 0.03};
-  const auto tracker = makeTracker(settings.mechanism, pipeline);
-  return trackerCost(name, *tracker, workingReadings(settings, level, coupling_frequency));
-}
-
-/// The filter, its track and the way back: what a recording's sample costs beside the second pass.
-CostRow smoothedCost(const Settings& settings, const char* name, Level level) {
+CostRow filterCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
-  const PipelineSettings pipeline = settingsOf(settings, level);
+  CrankFilter filter(ShaftModel(settings.mechanism, level), settings.mechanism.parameters().drive_inertia,
+                     filterSettings(settings.mechanism, settingsOf(settings, level)));
   const auto pass = [&] {
-    SmoothedRuns runs;
-    const auto ahead = runs.ahead()(settings.mechanism, pipeline);
-    ahead->start({readings.front().angle, readings.front().speed});
+    filter.start({readings.front().angle, readings.front().speed});
     for (std::size_t i = 1; i < readings.size(); ++i) {
       const double step = 1e-9 * static_cast<double>(readings[i].stamp - readings[i - 1].stamp);
-      keep(ahead->update(step, {readings[i].angle, readings[i].speed}));
+      keep(filter.update(step, {readings[i].angle, readings[i].speed}));
+      keep(filter.estimate());
     }
   };
   return {"crank", name, costOf(readings.size(), pass), {}, {}};
@@ -123,10 +92,8 @@ CostRow countedCost(const Settings& settings, const char* name, Level level) {
 
 std::vector<CostRow> stepCosts(const Settings& settings) {
   const simulation::Session on_boom = simulation::recordSession(machineOnBoom(kOnBoomEnds));
-  return {trackerCost(settings, "mechanism, rocker", Level::kRocker),
-          trackerCost(settings, "mechanism, linkage", Level::kLinkage),
-          flexibleCost(settings, "mechanism, linkage, flexible shaft of 50 Hz", Level::kLinkage, 50.0),
-          smoothedCost(settings, "mechanism, linkage, smoothed", Level::kLinkage),
+  return {filterCost(settings, "mechanism, rocker", Level::kRocker),
+          filterCost(settings, "mechanism, linkage", Level::kLinkage),
           pipelineCost(settings, "rocker", Level::kRocker),
           pipelineCost(settings, "linkage", Level::kLinkage),
           pipelineCost(settings, "elastic, a rod that gives", Level::kElastic),

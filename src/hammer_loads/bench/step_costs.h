@@ -1,4 +1,4 @@
-/// Cost of one crank sample of a working session: the tracker's step by kind, and the whole pipeline.
+/// Cost of one crank sample of a working session: the step of the filter, and the whole pipeline.
 #pragma once
 
 #include <vector>

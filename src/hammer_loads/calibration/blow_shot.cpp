@@ -11,18 +11,18 @@ namespace {
 constexpr double kMaxStep = 0.06;  // [rad]
 constexpr int kMostSteps = 64;     // from one time to the next
 
-template <class Way>
+using Path = ShotWay::Path;
+using There = ShotWay::There;
+
 struct Run {
   double time;
-  typename Way::Path path;
-  typename Way::Slopes slopes;
-  typename Way::There there;
+  Path path;
+  ShotSlopes slopes;
+  There there;
 };
 
-template <bool with_slopes, class Way>
-void step(const Way& way, double dt, Run<Way>& run) {
-  using Path = typename Way::Path;
-  using There = typename Way::There;
+template <bool with_slopes>
+void step(const ShotWay& way, double dt, Run& run) {
   const double middle = run.time + 0.5 * dt, end = run.time + dt;
   const Path k1 = way.rate(run.there, run.path), p2 = run.path + 0.5 * dt * k1;
   const There t2 = way.at(middle, p2);
@@ -32,7 +32,7 @@ void step(const Way& way, double dt, Run<Way>& run) {
   const There t4 = way.at(end, p4);
   const Path k4 = way.rate(t4, p4);
   if constexpr (with_slopes) {
-    using S = typename Way::Slopes;
+    using S = ShotSlopes;
     const S s1 = way.rate(run.there, run.time, run.path, run.slopes);
     const S s2 = way.rate(t2, middle, p2, S(run.slopes + 0.5 * dt * s1));
     const S s3 = way.rate(t3, middle, p3, S(run.slopes + 0.5 * dt * s2));
@@ -45,8 +45,8 @@ void step(const Way& way, double dt, Run<Way>& run) {
 }
 
 /// visit(i, run) at each of the times.
-template <bool with_slopes, class Way, class Visit>
-void follow(const Way& way, const std::vector<double>& times, Run<Way> run, const Visit& visit) {
+template <bool with_slopes, class Visit>
+void follow(const ShotWay& way, const std::vector<double>& times, Run run, const Visit& visit) {
   run.there = way.at(0.0, run.path);
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double left = times[i] - run.time;
@@ -57,33 +57,23 @@ void follow(const Way& way, const std::vector<double>& times, Run<Way> run, cons
   }
 }
 
-template <class Way>
-void shootOn(const Way& way, const std::vector<double>& times, std::vector<ShotPoint>& points,
-             std::vector<ShotSlopes>* slopes) {
-  using At = Run<Way>;
-  points.resize(times.size());
-  At run{0.0, way.pathAtBlow(), Way::Slopes::Zero(), {}};
-  if (!slopes) {
-    follow<false>(way, times, run, [&](std::size_t i, const At& at) { points[i] = way.pointAt(at.there, at.path); });
-    return;
-  }
-  slopes->resize(times.size());
-  run.slopes = way.slopesAtBlow();
-  follow<true>(way, times, run, [&](std::size_t i, const At& at) {
-    points[i] = way.pointAt(at.there, at.path);
-    (*slopes)[i] = way.ofPoint(at.there, at.slopes);
-  });
-}
-
 }  // namespace
 
 void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
            std::vector<ShotPoint>& points, std::vector<ShotSlopes>* slopes) {
-  if (model.coupling()) {
-    shootOn(FlexibleWay(model, half), times, points, slopes);
-  } else {
-    shootOn(RigidWay(model, half), times, points, slopes);
+  const ShotWay way(model, half);
+  points.resize(times.size());
+  Run run{0.0, way.pathAtBlow(), ShotSlopes::Zero(), {}};
+  if (!slopes) {
+    follow<false>(way, times, run, [&](std::size_t i, const Run& at) { points[i] = way.pointAt(at.there, at.path); });
+    return;
   }
+  slopes->resize(times.size());
+  run.slopes = way.slopesAtBlow();
+  follow<true>(way, times, run, [&](std::size_t i, const Run& at) {
+    points[i] = way.pointAt(at.there, at.path);
+    (*slopes)[i] = way.ofPoint(at.there, at.slopes);
+  });
 }
 
 }  // namespace hammer_loads::calibration

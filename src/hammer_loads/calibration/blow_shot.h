@@ -11,17 +11,14 @@ namespace hammer_loads::calibration {
 constexpr int kNodesBeside = 4;  ///< of the torque, on either side of the blow
 
 /// Parameters of one blow alone: instant [s], the crank's speeds before and after [rad/s], net torque [N m] in nodes at
-/// the blow and at equal steps before (odd ones) and after it (even ones), linear in between; at the blow a flexible
-/// coupling's twist [rad] and the motor's speed [rad/s].
+/// the blow and at equal steps before (odd ones) and after it (even ones), linear in between.
 enum LocalIndex : Eigen::Index {
   kInstant,
   kSpeedBefore,
   kSpeedAfter,
   kTorqueAtBlow,
   kTorques,
-  kTwist = kTorques + 2 * kNodesBeside,
-  kMotorSpeed,
-  kLocals
+  kLocals = kTorques + 2 * kNodesBeside
 };
 using Locals = Eigen::Matrix<double, kLocals, 1>;
 
@@ -31,7 +28,7 @@ constexpr Eigen::Index torqueIndex(bool before, int node) {
                    : static_cast<Eigen::Index>(kTorques) + (before ? 0 : kNodesBeside) + node - 1;
 }
 
-/// How the drive's torque follows the crank, or a motor of its own, alike at every blow.
+/// How the drive's torque follows the crank, alike at every blow.
 struct DriveLaw {
   double mean_speed{};  ///< [rad/s]
   double stiffness{};   ///< torque lost per angle that the crank is ahead of the mean speed: oil in the line [N m/rad]
@@ -46,42 +43,30 @@ struct HalfShot {
   double node_step{};                 ///< [s], > 0
   double drive_inertia{};             ///< [kg m2]
   DriveLaw law;
-  double twist{};         ///< of the coupling at the blow [rad]
-  double motor_speed{};   ///< there [rad/s]
-  double log_coupling{};  ///< logarithm of the coupling's stiffness, as in CouplingLaw
-  double log_odds{};      ///< as above
-  double log_damping{};   ///< logarithm of the coupling's damping over that of the given ratio
 };
 
-/// Where the encoder sits: of the crank, or of a motor beyond a coupling.
+/// Motion of the crank.
 struct ShotPoint {
   double offset{}, speed{}, acceleration{};
 };
 
 /// Parameters of one side: speed at the blow, torques in the nodes, logarithm of the drive inertia, the law's two
-/// numbers; of a coupling alone: logarithms of its stiffness, of its motor's odds and of its damping, then what the
-/// motor does at the blow.
+/// numbers.
 enum HalfIndex : Eigen::Index {
   kOwnSpeed,
   kOwnTorques,
   kOwnLogInertia = kOwnTorques + kNodesBeside + 1,
   kOwnStiffness,
   kOwnDrag,
-  kRigidMoving,
-  kOwnCoupling = kRigidMoving,
-  kOwnOdds,
-  kOwnDamping,
-  kOwnTwist,
-  kOwnMotorSpeed,
   kHalfMoving
 };
 
 /// d(offset, speed)/d(each of HalfIndex).
 using ShotSlopes = Eigen::Matrix<double, 2, kHalfMoving>;
 
-/// The encoder at times away from the blow, ascending, >= 0 [s] (before it: how long before). Runge-Kutta of order 4 in
-/// angle and sqrt(inertia) speed, steps of at most 0.06 rad, of a model with a coupling 0.4 rad of its oscillation.
-/// slopes: null, or their derivatives, integrated along with them.
+/// The crank at times away from the blow, ascending, >= 0 [s] (before it: how long before). Runge-Kutta of order 4 in
+/// angle and sqrt(inertia) speed, steps of at most 0.06 rad. slopes: null, or their derivatives, integrated along with
+/// them.
 void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
            std::vector<ShotPoint>& points, std::vector<ShotSlopes>* slopes = nullptr);
 

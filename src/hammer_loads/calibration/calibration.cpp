@@ -9,8 +9,6 @@
 #include "hammer_loads/calibration/first_guess.h"
 #include "hammer_loads/calibration/hammer_keys.h"
 #include "hammer_loads/calibration/rod_check.h"
-#include "hammer_loads/calibration/rough_fit.h"
-#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/square.h"
@@ -23,12 +21,9 @@ constexpr double kUsuallyNeeded = 60.0;  // blows
 constexpr int kCurveParts = 72;
 constexpr double kUnknownAngleNoise = 5e-4;  // [rad] of a sensor without counts, first guess
 
-Free toFind(const CalibrationBasis& basis, bool centred) {
+Free toFind(bool centred) {
   Free free = Free::Constant(true);
   if (centred) free.segment<4>(kSine1).setConstant(false);
-  free[kLogCoupling] = basis.coupling && basis.coupling->stiffness_deviation > 0.0;
-  free[kLogOdds] = basis.coupling && basis.coupling->share_deviation > 0.0;
-  free[kLogDamping] = basis.coupling && basis.coupling->damping > 0.0 && basis.coupling->damping_deviation > 0.0;
   return free;
 }
 
@@ -63,21 +58,12 @@ double systematic(const ResidualCurve& curve) {
   return n > 0.0 ? sum / n : 1.0;
 }
 
-/// Where the readings want another coupling than a given one can be; empty: they do not.
-std::string whyNotOf(const Coupling& given, const JointFit& fit) {
-  const Globals beyond = (fit.globals - fit.centre).cwiseQuotient(priorDeviations(given));
-  if (!(beyond.tail<kOfCoupling>().norm() > gate::kVeryRare)) return {};
-  const Coupling found = couplingOf(given, fit.globals);
-  return format(
-      "it fits a coupling of %.3g Hz, motor share %.2g, damping ratio %.2g best: beyond what was given (%.3g Hz, %.2g, "
-      "%.2g) and its deviations; a shaft that does not give has shaft: rigid",
-      found.frequency, found.motor_share, found.damping, given.frequency, given.motor_share, given.damping);
-}
-
 /// Why, as far as the readings show it with the sensor as it was given.
 void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double log_inertia, JointFit fit,
                   Calibration& result) {
-  result.problem = "its blows are not those of this mechanism: the fit does not settle";
+  result.problem =
+      "its blows are not those of this mechanism, as with a coupling between encoder and crank that twists: the fit "
+      "does not settle";
   if (2.0 * static_cast<double>(result.blows) >= kUsuallyNeeded)
     result.more_blows = std::numeric_limits<double>::infinity();
   fit.globals = basis.in_force;
@@ -125,7 +111,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   result.direction = track.direction;
   result.more_blows = kUsuallyNeeded;
   result.seconds = secondsOf(track);
-  const SegmentModel model{basis.mechanism, basis.level, basis.coupling};
+  const SegmentModel model{basis.mechanism, basis.level};
   const std::optional<FirstGuess> guess = firstGuess(track, model, basis.mechanism.parameters().drive_inertia);
   if (!guess) {
     result.problem = "the crank hardly turns in it";
@@ -149,9 +135,9 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   noise.torque_walk = basis.torque_walk;
   noise.torque = basis.torque_deviation;
   const bool centred = basis.ratio != 1.0;
-  const Free free = toFind(basis, centred);
-  const RoughFit rough = fitRoughly(segments, model, start, noise, toFind(basis, true), piece(progress, 0.05, 0.22));
-  segments = cutAtBlows(track, rough.fit.globals[kZero]);
+  const Free free = toFind(centred);
+  const JointFit rough = fitJointly(segments, model, start, noise, toFind(true), piece(progress, 0.05, 0.22));
+  segments = cutAtBlows(track, rough.globals[kZero]);
   result.blows = segments.size();
 
   // The last quarter judges what the first three found.
@@ -159,27 +145,25 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   const std::vector<BlowSegment> first(segments.begin(),
                                        segments.begin() + static_cast<std::ptrdiff_t>(three_quarters));
   const std::vector<BlowSegment> last(segments.begin() + static_cast<std::ptrdiff_t>(three_quarters), segments.end());
-  const JointFit part = fitJointly(first, model, rough.fit.globals, rough.fit.noise, free, piece(progress, 0.22, 0.35));
+  const JointFit part = fitJointly(first, model, rough.globals, rough.noise, free, piece(progress, 0.22, 0.35));
   result.fitted = meanSquareOf(first, model, part.globals, part.noise, piece(progress, 0.35, 0.45));
   result.held_out = meanSquareOf(last, model, part.globals, part.noise, piece(progress, 0.45, 0.48));
 
   JointFit fit = fitJointly(segments, model, part.globals, part.noise, free, piece(progress, 0.48, 0.65));
-  if (basis.coupling) result.problem = whyNotOf(*basis.coupling, fit);
-  if (!result.problem.empty()) result.more_blows = std::numeric_limits<double>::infinity();
-  if (result.problem.empty() && (!fit.converged || fit.fits.size() < kLeastBlows))
-    sayUnsettled(track, basis, start[kLogInertia], rough.fit, result);
-  if (!result.problem.empty()) return result;
+  if (!fit.converged || fit.fits.size() < kLeastBlows) {
+    sayUnsettled(track, basis, start[kLogInertia], rough, result);
+    return result;
+  }
   result.left_out = fit.left_out;
   result.noise = fit.noise;
   result.after = curveOf(fit.fits, model, fit.globals, fit.noise);
   const double curve_square = systematic(result.after);
   fit.covariance *= std::max(1.0, curve_square);
-  fit.covariance += rough.other * rough.other.transpose();
   HammerPart hammer = findWithHammer(fit, model, free);
   hammer.widen(fit);
   removeBias(fit, hammer, model, free, gain * track.facts.count, piece(progress, 0.65, 0.88));
   if (!(hammer.covariance.diagonal().minCoeff() >= 0.0)) {
-    sayUnsettled(track, basis, start[kLogInertia], rough.fit, result);
+    sayUnsettled(track, basis, start[kLogInertia], rough, result);
     return result;
   }
   Globals in_force = basis.in_force;
@@ -195,7 +179,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   refuseForRod(rod, basis.ratio, result);
   for (std::string& remark : remarksOf(hammer, by_blows, basis.mechanism.parameters()))
     result.remarks.push_back(std::move(remark));
-  addRemarks(basis, curve_square, result);
+  addRemarks(curve_square, result);
   countNeeds(result);
   return result;
 }

@@ -1,7 +1,6 @@
 /// Where the crank's sensor sits and what the drive weighs, from a recording at work.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +17,6 @@ struct CalibrationBasis {
   double torque_walk{};                   ///< random walk of the net torque [N m/sqrt(s)]
   double torque_deviation{};              ///< of the net torque [N m]
   Globals in_force{Globals::Zero()};      ///< to compare with: zero and eccentricities of the parameters in force
-  std::optional<Coupling> coupling = {};  ///< the encoder sits on the motor beyond it
 };
 
 /// One key of the file that the other commands read.
@@ -28,6 +26,8 @@ struct Estimate {
   double limit{};  ///< a larger deviation costs more than some 0.8 % of the wrench's peak, or of what the key is for
   std::string meaning;
   double by_blows{};  ///< what of the deviation more blows would lessen; the rest comes from what is given
+  std::string
+      hidden_by{};  ///< constant of the hammer file, or level, that makes most of the deviation; empty: blows do
   bool determined() const { return deviation <= limit; }
 };
 
@@ -51,6 +51,7 @@ struct Calibration {
   std::vector<Estimate> estimates;
   std::vector<Correlation> correlations;  ///< beyond 0.9
   std::vector<std::string> remarks;
+  bool rod_gives{};  ///< the connecting rod or its pins are elastic
   Noise noise;
   double fitted{},
       held_out{};  ///< mean square over variance: of the first three quarters, of the last with their values

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "hammer_loads/calibration/hammer_keys.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/util/constants.h"
@@ -18,11 +20,8 @@ constexpr double kStrong = 0.9;
 constexpr double kZeroLimit = 0.3 * kDegree;  // an encoder is usually mounted half a degree off
 constexpr double kEccentricity1Limit = 0.4 * kDegree;
 constexpr double kEccentricity2Limit = 0.2 * kDegree;
-constexpr double kInertiaLimit = 0.08;                                           // relative
-constexpr double kTimingLimit = 0.2;                                             // relative
-constexpr double kFrequencyLimit = 0.1, kShareLimit = 0.1, kDampingLimit = 0.5;  // relative
-// Of the logarithms of stiffness and damping: a coupling of rubber is another one when it is warm. Estimates.
-constexpr double kStiffnessWarmth = 0.03, kDampingWarmth = 0.2;
+constexpr double kInertiaLimit = 0.08;  // relative
+constexpr double kTimingLimit = 0.2;    // relative
 
 /// An eccentricity's amount and phase from its two parts.
 void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatrix& of_blows, int n, double limit) {
@@ -53,34 +52,16 @@ void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatri
   }
 }
 
-void addCoupling(Calibration& result, const JointFit& fit, const GlobalMatrix& of_blows, const Coupling& given) {
-  const Coupling found = couplingOf(given, fit.globals);
-  const double share = found.motor_share, frequency = found.frequency;
-  struct Key {
-    Eigen::Index row;  ///< a logarithm
-    const char *key, *unit;
-    double value, by_row, limit;
-    const char* meaning;
-    const char* deviation_key;
-    double deviation_by_row, least;  ///< least of the logarithm's
-  };
-  const double by_odds = share * (1.0 - share);
-  for (const Key& k :
-       {Key{kLogCoupling, "coupling_frequency_Hz", "Hz", frequency, 0.5 * frequency, kFrequencyLimit * frequency,
-            "of motor against crank, both free to turn", "coupling_stiffness_deviation", 1.0, kStiffnessWarmth},
-        Key{kLogDamping, "coupling_damping_ratio", "", found.damping, found.damping, kDampingLimit * found.damping,
-            "of critical, of the same oscillation", "coupling_damping_deviation", 1.0, kDampingWarmth},
-        Key{kLogOdds, "coupling_motor_share", "", share, by_odds, kShareLimit * share,
-            "of the drive inertia, on the motor's side", "coupling_share_deviation", by_odds, 0.0}}) {
-    const double deviation = std::sqrt(fit.covariance(k.row, k.row));
-    if (!(deviation > 0.0)) continue;
-    const Estimate value{
-        k.key, k.unit, k.value, k.by_row * deviation, k.limit, k.meaning, k.by_row * std::sqrt(of_blows(k.row, k.row))};
-    result.estimates.push_back(value);
-    if (value.determined())
-      result.estimates.push_back({k.deviation_key, "", k.deviation_by_row * std::max(deviation, k.least), 0.0, 1.0,
-                                  "with a first guess's the filter may settle on another coupling", 0.0});
-  }
+void addHiding(const Found& found, Calibration& result) {
+  constexpr std::pair<const char*, Eigen::Index> kRows[] = {{"crank_zero_rad", kZero},
+                                                            {"crank_eccentricity_1_rad", kSine1},
+                                                            {"crank_eccentricity_1_phase_rad", kSine1},
+                                                            {"crank_eccentricity_2_rad", kSine2},
+                                                            {"crank_eccentricity_2_phase_rad", kSine2},
+                                                            {"drive_inertia_kg_m2", kLogInertia}};
+  for (Estimate& e : result.estimates)
+    for (const auto& [key, row] : kRows)
+      if (e.key == key && e.hidden_by.empty()) e.hidden_by = hiddenBy(found.hammer, found.by_blows, row);
 }
 
 void addCorrelations(Calibration& result, const HammerPart& hammer) {
@@ -130,16 +111,18 @@ void addEstimates(const Found& found, Calibration& result) {
   const double rocker = basis.mechanism.parameters().rocker_inertia_about_pivot;
   // Only the ratio to the rocker's inertia shows; where the hammer file says how well that is known, it is in already.
   const bool rocker_in_it = found.hammer.has("rocker_inertia_about_pivot_kg_m2");
-  const double relative = std::hypot(deviation(kLogInertia), rocker_in_it ? 0.0 : basis.rocker_inertia_deviation);
+  const double by_rocker = rocker_in_it ? 0.0 : basis.rocker_inertia_deviation;
+  const double relative = std::hypot(deviation(kLogInertia), by_rocker);
   result.estimates.push_back({"drive_inertia_kg_m2", "kg m2", inertia, relative * inertia, kInertiaLimit * inertia,
                               format("%.4g of the rocker's; by the readings alone, all masses as given, to %.2g",
                                      inertia / rocker, by_blows(kLogInertia) * inertia / rocker),
-                              by_blows(kLogInertia) * inertia});
-  if (basis.coupling) addCoupling(result, fit, of_blows, *basis.coupling);
+                              by_blows(kLogInertia) * inertia,
+                              by_rocker > deviation(kLogInertia) ? "rocker_inertia_about_pivot_kg_m2" : ""});
+  addHiding(found, result);
   addCorrelations(result, found.hammer);
 }
 
-void addRemarks(const CalibrationBasis& basis, double curve_square, Calibration& result) {
+void addRemarks(double curve_square, Calibration& result) {
   auto& say = result.remarks;
   const bool eccentric = std::any_of(result.estimates.begin(), result.estimates.end(), [](const Estimate& e) {
     return e.key == "crank_eccentricity_1_rad" && e.value > 0.0 && e.determined();
@@ -165,9 +148,9 @@ void addRemarks(const CalibrationBasis& basis, double curve_square, Calibration&
   }
   if (curve_square > 2.0) {
     say.push_back(format(
-        "the residuals follow the crank angle (%.1f times what noise does): something that this model lacks%s; the "
-        "deviations are widened for it",
-        std::sqrt(curve_square), basis.coupling ? "" : ", as a flexible coupling between encoder and crank"));
+        "the residuals follow the crank angle (%.1f times what noise does): something that this model lacks, as a "
+        "coupling between encoder and crank that twists; the deviations are widened for it",
+        std::sqrt(curve_square)));
   }
   if (result.left_out * 10 > result.blows)
     say.push_back(format("%zu blows are not like the others (no tool, a stop) and are left out", result.left_out));

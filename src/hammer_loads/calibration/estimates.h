@@ -15,10 +15,10 @@ struct Found {
   bool centred{};  ///< no eccentricity was asked for
 };
 
-/// Sensor's place, drive and coupling, and which of them hang together.
+/// Sensor's place and drive, and which of them hang together.
 void addEstimates(const Found& found, Calibration& result);
 
 /// curve_square: mean over the turn of the residuals' curve over its deviation, squared; 1 for noise.
-void addRemarks(const CalibrationBasis& basis, double curve_square, Calibration& result);
+void addRemarks(double curve_square, Calibration& result);
 
 }  // namespace hammer_loads::calibration

@@ -78,20 +78,32 @@ std::vector<Estimate> estimatesOf(const HammerPart& hammer, const HammerParamete
   return estimates;
 }
 
+std::string hiddenBy(const HammerPart& hammer, const GlobalMatrix& by_blows, Eigen::Index parameter) {
+  const auto count = static_cast<Eigen::Index>(hammer.names.size());
+  const Eigen::MatrixXd& P = hammer.covariance;
+  if (count == 0 || !(P(parameter, parameter) > square(kHides) * by_blows(parameter, parameter))) return {};
+  Eigen::Index most = 0;
+  P.row(parameter)
+      .tail(count)
+      .transpose()
+      .cwiseQuotient(P.diagonal().tail(count).cwiseSqrt())
+      .cwiseAbs()
+      .maxCoeff(&most);
+  return hammer.nameOf(kGlobals + most);
+}
+
 std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,
                                    const HammerParameters& file) {
   std::vector<std::string> remarks;
   const auto count = static_cast<Eigen::Index>(hammer.names.size());
   const Eigen::MatrixXd& P = hammer.covariance;
   for (const Eigen::Index k : {kZero, kSine1, kCosine1, kLogInertia}) {
-    if (count == 0 || !(P(k, k) > square(kHides) * by_blows(k, k))) continue;
-    Eigen::Index most = 0;
-    P.row(k).tail(count).transpose().cwiseQuotient(P.diagonal().tail(count).cwiseSqrt()).cwiseAbs().maxCoeff(&most);
+    const std::string by = hiddenBy(hammer, by_blows, k);
+    if (by.empty()) continue;
     remarks.push_back(
         format("%s: known to %.2g if the hammer file were exact, to %.2g by the deviations of its constants, most by "
                "that of %s",
-               hammer.nameOf(k).c_str(), std::sqrt(by_blows(k, k)), std::sqrt(P(k, k)),
-               hammer.nameOf(kGlobals + most).c_str()));
+               hammer.nameOf(k).c_str(), std::sqrt(by_blows(k, k)), std::sqrt(P(k, k)), by.c_str()));
   }
   const std::vector<Improved> written = improved(hammer);
   for (std::size_t i = 0; i < hammer.names.size(); ++i) {

@@ -13,6 +13,10 @@ namespace hammer_loads::calibration {
 /// linkage with them.
 std::vector<Estimate> estimatesOf(const HammerPart& hammer, const HammerParameters& file);
 
+/// Constant, or level, whose uncertainty makes most of that of a shared parameter; empty: the noise does. by_blows:
+/// covariance of the shared parameters with the constants as given.
+std::string hiddenBy(const HammerPart& hammer, const GlobalMatrix& by_blows, Eigen::Index parameter);
+
 /// What a user should know of it: shared parameters that the constants hide, constants that show with others only.
 /// by_blows: covariance of the shared parameters with the constants as given.
 std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,

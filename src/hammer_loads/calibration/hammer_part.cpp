@@ -22,10 +22,7 @@ constexpr const char* kNames[kGlobals] = {"zero",
                                           "cosine of the eccentricity twice a turn",
                                           "drive inertia",
                                           "stiffness of the oil",
-                                          "drag of the drive",
-                                          "stiffness of the coupling",
-                                          "the motor's share of the drive inertia",
-                                          "damping of the coupling"};
+                                          "drag of the drive"};
 
 /// A blow's information on shared parameters and constants, its own parameters eliminated.
 struct Information {
@@ -38,7 +35,7 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
   const auto count = static_cast<Eigen::Index>(columns.columns().size()), size = kGlobals + count;
   std::vector<std::vector<ShotPoint>> beside;
   for (const MachineColumn& column : columns.columns())
-    beside.push_back(fit.motion({column.mechanism, column.level, model.coupling}, joint.globals));
+    beside.push_back(fit.motion({column.mechanism, column.level}, joint.globals));
   const std::vector<ResidualRow> rows = fit.rows(model, joint.globals, joint.noise);
   const NormalEquations own = fit.equationsOf(rows, joint.noise);
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(kLocals, size);
@@ -65,11 +62,10 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
   return all;
 }
 
-/// Of an eccentricity 0, of a coupling the fit's; of the others where the fit is: their priors are wide.
+/// Of an eccentricity 0; of the others where the fit is: their priors are wide.
 Globals centreOf(const JointFit& fit) {
   Globals centre = fit.globals;
   centre.segment<4>(kSine1).setZero();
-  centre.tail<kOfCoupling>() = fit.centre.tail<kOfCoupling>();
   return centre;
 }
 
@@ -87,7 +83,7 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
   constexpr int kSteps = 2;
   HammerPart part;
   part.globals = joint.globals, part.covariance = joint.plain_covariance;
-  part.prior = priorDeviations(model.coupling).cwiseAbs2().cwiseInverse();
+  part.prior = priorDeviations().cwiseAbs2().cwiseInverse();
   const auto columns = machineColumns(model.mechanism, model.level);
   if (!columns) return part;
   for (const MachineColumn& column : columns->columns()) part.names.push_back(column.name);
@@ -98,7 +94,7 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
   part.prior.tail(count).setOnes();
   std::optional<Mechanism> hammer = model.mechanism;
   for (int i = 0; i < kSteps && hammer; ++i) {
-    const SegmentModel here{*hammer, model.level, model.coupling};
+    const SegmentModel here{*hammer, model.level};
     const MachineColumns beside(*hammer, model.level);
     if (beside.columns().size() != part.names.size()) break;  // at the edge of what a hammer can be
     Information all{part.prior.asDiagonal(), Eigen::VectorXd(size)};

@@ -20,7 +20,7 @@ constexpr double kMostAngleNoise = 0.1;   // [rad]
 constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
 
 Globals limitedGlobals(const Globals& step) {
-  static const Globals most = (Globals() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.3, 1e9, 1e9, 0.1, 0.3, 0.3).finished();
+  static const Globals most = (Globals() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.3, 1e9, 1e9).finished();
   double part = 1.0;
   for (Eigen::Index k = 0; k < kGlobals; ++k) {
     if (std::abs(step[k]) > most[k]) part = std::min(part, most[k] / std::abs(step[k]));
@@ -94,7 +94,7 @@ struct System {
 
 System linearised(const JointFit& joint, const SegmentModel& model) {
   System s;
-  const Globals weight = priorDeviations(model.coupling).cwiseAbs2().cwiseInverse();
+  const Globals weight = priorDeviations().cwiseAbs2().cwiseInverse();
   s.matrix = weight.asDiagonal();
   s.score = weight.cwiseProduct(joint.centre - joint.globals);
   s.cost = 0.5 * (joint.centre - joint.globals).cwiseAbs2().dot(weight);
@@ -109,7 +109,7 @@ System linearised(const JointFit& joint, const SegmentModel& model) {
 }
 
 double costOf(const JointFit& joint, const SegmentModel& model) {
-  double cost = 0.5 * (joint.centre - joint.globals).cwiseQuotient(priorDeviations(model.coupling)).squaredNorm();
+  double cost = 0.5 * (joint.centre - joint.globals).cwiseQuotient(priorDeviations()).squaredNorm();
   for (const SegmentFit& fit : joint.fits) cost += fit.cost(model, joint.globals, joint.noise);
   return cost;
 }
@@ -189,25 +189,17 @@ void judge(JointFit& joint, const SegmentModel& model, const Free& free) {
 
 }  // namespace
 
-Globals priorDeviations(const std::optional<Coupling>& coupling) {
-  Globals deviations;
-  deviations << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3, 1.0, 1.0, 1.0;
-  if (coupling && coupling->stiffness_deviation > 0.0) deviations[kLogCoupling] = coupling->stiffness_deviation;
-  if (coupling && coupling->share_deviation > 0.0) deviations[kLogOdds] = oddsDeviationOf(*coupling);
-  if (coupling && coupling->damping_deviation > 0.0) deviations[kLogDamping] = coupling->damping_deviation;
-  return deviations;
-}
+Globals priorDeviations() { return (Globals() << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3).finished(); }
 
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, const Free& free, const Progress& progress) {
   constexpr double kOwn = 0.3;  // of the time, for what each blow has of its own
   JointFit joint;
   joint.globals = joint.centre = start;
-  joint.centre.tail<kOfCoupling>().setZero();
   joint.noise = noise;
   for (const BlowSegment& segment : segments) {
     joint.fits.emplace_back(segment, start);
-    fitLocals(joint.fits.back(), model, start, noise, (model.coupling ? 3 : 1) * kLocalIterations);
+    fitLocals(joint.fits.back(), model, start, noise);
     report(progress, kOwn * static_cast<double>(joint.fits.size()) / static_cast<double>(segments.size()));
   }
   leaveOut(joint, model);

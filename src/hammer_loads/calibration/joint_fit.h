@@ -39,16 +39,15 @@ struct JointFit {
 };
 
 /// Before anything is known of them: deviations of zero [rad], both eccentricities' parts [rad], logarithm of inertia,
-/// ...; those of a coupling are as given.
-Globals priorDeviations(const std::optional<Coupling>& coupling);
+/// ...
+Globals priorDeviations();
 
 /// From where it is, which is near, and is the prior's centre: some steps of the same.
 void settleNear(JointFit& joint, const SegmentModel& model, const Free& free, const Progress& progress);
 
 /// Gauss-Newton over the shared parameters, those of each blow eliminated (Schur); timing and speed noise from the
-/// residuals meanwhile. A coupling's prior is about what is given of it, that of the others, which is wide, about
-/// `start`. Parameters with `free` false stay. The covariance is the sandwich over blows with what
-/// neighbours have in common (Newey-West), at least the plain one.
+/// residuals meanwhile. The prior is wide, about `start`. Parameters with `free` false stay. The covariance is the
+/// sandwich over blows with what neighbours have in common (Newey-West), at least the plain one.
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, const Free& free, const Progress& progress = {});
 

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -19,9 +24,95 @@ std::string shown(double value, const std::string& unit) {
 }
 
 std::string needOf(const Calibration& c) {
-  if (!std::isfinite(c.more_blows)) return "more such work does not help, the notes say why";
   const double seconds = c.blows > 0 ? c.seconds / static_cast<double>(c.blows) * c.more_blows : 0.25 * c.more_blows;
   return format("some %.0f blows, %.0f s of such work", std::ceil(c.more_blows), std::ceil(seconds));
+}
+
+/// Key and value to the second digit of the deviation.
+std::string briefly(const Estimate& e) {
+  const bool sure = !(e.deviation > 0.0);
+  const int decimals = sure ? 0 : std::clamp(1 - static_cast<int>(std::floor(std::log10(e.deviation))), 0, 9);
+  const bool tiny = decimals > 6;
+  std::string text = e.key + (sure || tiny ? format(" %.4g", e.value) : format(" %.*f", decimals, e.value));
+  if (!e.unit.empty()) text += " " + e.unit;
+  if (e.unit == "rad" && !sure) text += format(" (%.2f deg)", e.value / kDegree);
+  return sure ? text : text + format(" +- %.2g", e.deviation);
+}
+
+/// Nothing that is zero or belongs to another key: a standard deviation, a phase.
+std::string foundOf(const Calibration& c) {
+  std::string text;
+  for (const Estimate& e : c.estimates) {
+    const bool of_another = e.key.find("_deviation") != std::string::npos || e.key.find("_phase") != std::string::npos;
+    if (e.determined() && e.value != 0.0 && !of_another) text += (text.empty() ? "" : ", ") + briefly(e);
+  }
+  return text;
+}
+
+std::string whyNotFound(const Calibration& c, const Estimate& e) {
+  if (c.rod_gives && e.key.rfind("coupling", 0) != 0) return "the connecting rod or its pins are elastic";
+  if (!e.hidden_by.empty()) return "hidden by the uncertainty of " + e.hidden_by;
+  return std::isfinite(c.more_blows) ? "too few blows" : "this work does not show it";
+}
+
+/// Keys by the reason, in their order.
+std::vector<std::pair<std::string, std::string>> notFoundOf(const Calibration& c) {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const Estimate& e : c.estimates) {
+    if (e.determined() || e.key.find("_phase") != std::string::npos) continue;
+    const std::string reason = whyNotFound(c, e),
+                      key = e.key + format(" (+- %.2g, must be %.2g)", e.deviation, e.limit);
+    const auto same = [&](const auto& one) { return one.first == reason; };
+    const auto place = std::find_if(found.begin(), found.end(), same);
+    if (place != found.end()) {
+      place->second += ", " + key;
+    } else {
+      found.emplace_back(reason, key);
+    }
+  }
+  return found;
+}
+
+/// What helps with the keys that were not found, else what the file is for.
+std::string nextStepOf(const Calibration& c) {
+  constexpr double kLargeResidual = 1.3;  // as in doc/your_machine.md
+  if (c.rod_gives)
+    return "more such work does not help: turn the crank by hand, without blows, until the rocker rests on its tool "
+           "with crank and rod in line; "
+           "write that reading as crank_zero_rad, and set level: elastic";
+  std::vector<std::string> steps, measured;
+  bool few = false;
+  for (const Estimate& e : c.estimates) {
+    if (e.determined()) continue;
+    few = few || e.hidden_by.empty();
+    if (e.hidden_by.empty() || std::find(measured.begin(), measured.end(), e.hidden_by) != measured.end()) continue;
+    measured.push_back(e.hidden_by);
+    const std::optional<std::size_t> constant = indexOfConstant(e.hidden_by);
+    steps.push_back(constant
+                        ? "weigh or measure " + e.hidden_by + " and give " + deviationKey(kHammerConstants[*constant])
+                        : "set level: linkage");
+  }
+  if (std::max(c.fitted, c.held_out) > square(kLargeResidual))
+    steps.emplace_back("check the lengths of the hammer file and the stamps, for the residuals are above 1.3");
+  if (few && std::isfinite(c.more_blows)) steps.push_back("record " + needOf(c));
+  if (steps.empty()) return "start the node with this file as calibration:=FILE, or give it to --params";
+  std::string text;
+  for (const std::string& step : steps) text += (text.empty() ? "" : "; ") + step;
+  return text + "; then calibrate again (--verbose shows every figure)";
+}
+
+/// In lines of some 110 characters, the second and later ones indented. A line ends behind a comma, colon or semicolon,
+/// so that a key stays beside its value.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kMost = 110;
+  std::string lines, line;
+  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end) {
+    end = text.find_first_of(",:;", begin);
+    end = end == std::string::npos ? text.size() : end + 1;
+    if (!line.empty() && line.size() + end - begin > kMost) lines += line + "\n", line = "   ";
+    line += text.substr(begin, end - begin);
+  }
+  return lines + line + "\n";
 }
 
 /// Direction, counts and jitter any turning crank shows: they alone are no calibration.
@@ -31,28 +122,94 @@ bool anyDetermined(const Calibration& c) {
   });
 }
 
+/// The least of 1, 2 and 5 times a power of ten that is not below.
+double tickStep(double least) {
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= least) return factor * power;
+  return 10.0 * power;
+}
+
+/// A curve on a scale of its own, in degrees.
+struct ResidualPanel {
+  static constexpr double kLeft = 80.0, kRight = 740.0, kHeight = 180.0;
+  double top;
+  const ResidualCurve& curve;
+  const char *title, *colour;
+
+  static double x(double part) { return kLeft + (kRight - kLeft) * part; }
+  /// Of the curve with its bars, 0.01 deg or more.
+  double largest() const {
+    double value = 0.01;
+    for (std::size_t i = 0; i < curve.mean.size(); ++i)
+      if (std::isfinite(curve.mean[i]))
+        value = std::max(value, (std::abs(curve.mean[i]) + 2.0 * curve.deviation[i]) / kDegree);
+    return value;
+  }
+};
+
+std::string svgOf(const ResidualPanel& panel) {
+  const double step = tickStep(panel.largest() / 3.0), most = step * std::ceil(panel.largest() / step);
+  const double middle = panel.top + 0.5 * ResidualPanel::kHeight, bottom = panel.top + ResidualPanel::kHeight;
+  const auto y = [&](double degrees) { return middle - 0.5 * ResidualPanel::kHeight * degrees / most; };
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step))));
+  std::string svg = format("<text x=\"%.0f\" y=\"%.1f\" fill=\"%s\">%s (bars: two standard deviations)</text>\n",
+                           ResidualPanel::kLeft, panel.top - 10.0, panel.colour, panel.title);
+  for (int degree = -180; degree <= 180; degree += 60) {
+    const double at = ResidualPanel::x(degree / 360.0 + 0.5);
+    svg += format(
+        "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>\n"
+        "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%d</text>\n",
+        at, panel.top, at, bottom, at, bottom + 18.0, degree);
+  }
+  const int ticks = static_cast<int>(std::lround(most / step));
+  for (int tick = -ticks; tick <= ticks; ++tick) {
+    const double at = y(tick * step);
+    svg += format(
+        "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\"/>\n"
+        "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.*f</text>\n",
+        ResidualPanel::kLeft, at, ResidualPanel::kRight, at, tick == 0 ? "#888" : "#ddd", ResidualPanel::kLeft - 6.0,
+        at + 4.0, decimals, tick * step);
+  }
+  svg += format("<text transform=\"translate(20 %.1f) rotate(-90)\" text-anchor=\"middle\">residual [deg]</text>\n",
+                middle);
+  std::string points;
+  const auto n = static_cast<double>(panel.curve.mean.size());
+  for (std::size_t i = 0; i < panel.curve.mean.size(); ++i) {
+    const double mean = panel.curve.mean[i] / kDegree, bar = 2.0 * panel.curve.deviation[i] / kDegree;
+    if (!std::isfinite(mean)) continue;
+    const double at = ResidualPanel::x((static_cast<double>(i) + 0.5) / n);
+    points += format("%.1f,%.1f ", at, y(mean));
+    svg += format("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" stroke-opacity=\"0.35\"/>\n", at,
+                  y(mean - bar), at, y(mean + bar), panel.colour);
+  }
+  return svg + format("<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"%s\" points=\"%s\"/>\n", panel.colour,
+                      points.c_str());
+}
+
 }  // namespace
 
-std::string textOf(const Calibration& c) {
+std::string textOf(const Calibration& c, bool verbose) {
   if (!c.problem.empty())
     return c.problem + (std::isfinite(c.more_blows) ? "; needed are " + needOf(c) : "; more such work does not help") +
            "\n";
-  std::string text = format("%.1f s, %zu blows, %zu left out; %.3g samples a second%s\n", c.seconds, c.blows,
-                            c.left_out, 1.0 / c.facts.period, c.facts.retimed ? ", re-timed" : "");
+  std::string text = format(
+      "%.1f s, %zu blows, %zu left out; residuals over their deviation (1: nothing but noise): %.3f, %.3f in the "
+      "last quarter\n",
+      c.seconds, c.blows, c.left_out, std::sqrt(c.fitted), std::sqrt(c.held_out));
+  const std::string found = foundOf(c);
+  if (!found.empty()) text += wrapped("found: " + found);
+  for (const auto& [reason, keys] : notFoundOf(c)) text += wrapped("not found: " + keys + ": " + reason);
+  text += wrapped("next: " + nextStepOf(c));
+  if (!verbose) return text;
+  text += format("\n%.3g samples a second%s\n", 1.0 / c.facts.period, c.facts.retimed ? ", re-timed" : "");
   for (const Estimate& e : c.estimates) {
     text += format("%-34s %s +- %.2g, limit %.2g%s; %s\n", e.key.c_str(), shown(e.value, e.unit).c_str(), e.deviation,
                    e.limit, e.determined() ? "" : ": NOT DETERMINED, not written", e.meaning.c_str());
   }
   for (const Correlation& r : c.correlations)
     text += format("strong correlation %+.3f: %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
-  text += format(
-      "residuals over their deviation (1: nothing but noise): first three quarters %.3f, last quarter with "
-      "their values %.3f\n",
-      std::sqrt(c.fitted), std::sqrt(c.held_out));
   for (const std::string& remark : c.remarks) text += "note: " + remark + "\n";
-  const bool all =
-      std::all_of(c.estimates.begin(), c.estimates.end(), [](const Estimate& e) { return e.determined(); });
-  if (!all) text += "for every key: " + needOf(c) + "\n";
   return text;
 }
 
@@ -64,8 +221,6 @@ std::string yamlOf(const Calibration& c, const std::string& source) {
       "first three.\n",
       c.seconds, c.blows, std::sqrt(c.fitted), std::sqrt(c.held_out));
   for (const std::string& remark : c.remarks) text += "# " + remark + "\n";
-  for (const Correlation& r : c.correlations)
-    text += format("# strong correlation %+.3f: %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
   for (const Estimate& e : c.estimates) {
     const bool whole = e.unit.empty() && e.value == std::round(e.value);
     const std::string value = whole ? format("%.0f", e.value) : numberText(e.value);
@@ -82,64 +237,19 @@ std::string yamlOf(const Calibration& c, const std::string& source) {
 }
 
 std::string svgOf(const Calibration& c) {
-  constexpr double kWidth = 760.0, kHeight = 420.0, kLeft = 70.0, kRight = 20.0, kTop = 50.0, kBottom = 50.0;
-  double largest = 0.01 * kDegree;
-  for (const ResidualCurve* curve : {&c.before, &c.after}) {
-    for (std::size_t i = 0; i < curve->mean.size(); ++i) {
-      if (std::isfinite(curve->mean[i]))
-        largest = std::max(largest, std::abs(curve->mean[i]) + 2.0 * curve->deviation[i]);
-    }
-  }
-  largest *= 1.05;
-  const auto x = [&](double part) { return kLeft + (kWidth - kLeft - kRight) * part; };
-  const auto y = [&](double value) { return kTop + (kHeight - kTop - kBottom) * 0.5 * (1.0 - value / largest); };
+  constexpr double kBetween = 50.0, kTop = 70.0, kBottom = 50.0;
+  const ResidualPanel before{kTop, c.before, "with the parameters in force", "#c0392b"};
+  const ResidualPanel after{kTop + ResidualPanel::kHeight + kBetween, c.after, "with the values found", "#1f5fa8"};
   std::string svg = format(
       "%s xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" font-family=\"sans-serif\" "
-      "font-size=\"13\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
-      kSvgBegins, kWidth, kHeight);
-  svg += format(
-      "<text x=\"%.0f\" y=\"24\" font-size=\"16\">Mean residual of the crank angle over a turn, %zu blows</text>\n",
-      kLeft, c.blows);
-  for (int degree = -180; degree <= 180; degree += 60) {
-    const double at = x(degree / 360.0 + 0.5);
-    svg += format("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>\n", at, kTop, at,
-                  kHeight - kBottom);
-    svg +=
-        format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%d</text>\n", at, kHeight - kBottom + 18.0, degree);
-  }
-  for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-    const double at = y(part * largest);
-    svg += format("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>\n", kLeft, at,
-                  kWidth - kRight, at);
-    svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.3f</text>\n", kLeft - 6.0, at + 4.0,
-                  part * largest / kDegree);
-  }
-  svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">crank angle from the blow [deg]</text>\n", x(0.5),
-                kHeight - 12.0);
-  svg += format("<text transform=\"translate(18 %.1f) rotate(-90)\" text-anchor=\"middle\">residual [deg]</text>\n",
-                y(0.0));
-  struct Curve {
-    const ResidualCurve* curve;
-    const char *colour, *name;
-    double legend;
-  };
-  for (const Curve& one : {Curve{&c.before, "#c0392b", "with the parameters in force", kLeft},
-                           Curve{&c.after, "#1f5fa8", "with those found", kLeft + 240.0}}) {
-    std::string points;
-    const auto n = static_cast<double>(one.curve->mean.size());
-    for (std::size_t i = 0; i < one.curve->mean.size(); ++i) {
-      const double mean = one.curve->mean[i], deviation = one.curve->deviation[i];
-      if (!std::isfinite(mean)) continue;
-      const double at = x((static_cast<double>(i) + 0.5) / n);
-      points += format("%.1f,%.1f ", at, y(mean));
-      svg += format("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" stroke-opacity=\"0.35\"/>\n",
-                    at, y(mean - 2.0 * deviation), at, y(mean + 2.0 * deviation), one.colour);
-    }
-    svg += "<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"" + std::string(one.colour) + "\" points=\"" +
-           points + "\"/>\n";
-    svg += format("<text x=\"%.0f\" y=\"42\" fill=\"%s\">%s (bars: two deviations)</text>\n", one.legend, one.colour,
-                  one.name);
-  }
+      "font-size=\"13\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n"
+      "<text x=\"%.0f\" y=\"24\" font-size=\"16\">Mean residual of the crank angle over a revolution, %zu "
+      "blows</text>\n",
+      kSvgBegins, ResidualPanel::kRight + 20.0, after.top + ResidualPanel::kHeight + kBottom, ResidualPanel::kLeft,
+      c.blows);
+  svg += svgOf(before) + svgOf(after);
+  svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">crank angle from the blow [deg]</text>\n",
+                ResidualPanel::x(0.5), after.top + ResidualPanel::kHeight + 40.0);
   return svg + "</svg>\n";
 }
 

@@ -11,11 +11,12 @@ namespace hammer_loads::calibration {
 constexpr const char* kYamlBegins = "# Crank sensor and drive of one machine, found by calibrate from";
 constexpr const char* kSvgBegins = "<svg id=\"hammer_loads_calibration\"";
 
-/// Some ten lines for a terminal.
-std::string textOf(const Calibration& calibration);
+/// What was found, what was not and why, what to do next: some six lines for a terminal. verbose: then every estimate,
+/// correlation and remark.
+std::string textOf(const Calibration& calibration, bool verbose = false);
 /// Keys that are determined, each with its deviation; for `--params`.
 std::string yamlOf(const Calibration& calibration, const std::string& source);
-/// Mean residual over the crank angle, before and after.
+/// Mean residual over the crank angle, before and after, each on a scale of its own.
 std::string svgOf(const Calibration& calibration);
 
 }  // namespace hammer_loads::calibration

@@ -43,18 +43,10 @@ CrankFilterSettings settingsOf(const CrankTrack& track, const CalibrationBasis& 
   return s;
 }
 
-/// As the fit has it, known as well as the fit knows it.
-std::optional<Coupling> couplingOf(const CalibrationBasis& basis, const JointFit& fit) {
-  if (!basis.coupling) return std::nullopt;
-  Coupling coupling = calibration::couplingOf(*basis.coupling, fit.globals);
-  coupling.stiffness_deviation = std::sqrt(fit.covariance(kLogCoupling, kLogCoupling));
-  return coupling;
-}
-
 }  // namespace
 
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit) {
-  const ShaftModel model(basis.mechanism, basis.level, couplingOf(basis, fit));
+  const ShaftModel model(basis.mechanism, basis.level);
   CrankFilter filter(model, std::exp(fit.globals[kLogInertia]), settingsOf(track, basis, fit));
   std::size_t piece = 0;
   for (std::size_t i = 0; i < track.points.size(); ++i) {
@@ -73,6 +65,7 @@ RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, 
 }
 
 void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
+  result.rod_gives = rod.gives();
   if (!rod.gives()) return;
   const auto doubt = [&](const char* key, double by) {
     for (Estimate& e : result.estimates)

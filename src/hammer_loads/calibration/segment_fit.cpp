@@ -49,13 +49,6 @@ Line lineThrough(const std::vector<CrankPoint>& p, std::size_t begin, std::size_
 
 }  // namespace
 
-Coupling couplingOf(Coupling coupling, const Globals& globals) {
-  coupling.frequency *= std::exp(0.5 * globals[kLogCoupling]);
-  coupling.motor_share = CouplingLaw(coupling, 1.0, 0.0, globals[kLogOdds]).motor_inertia;
-  coupling.damping *= std::exp(globals[kLogDamping]);
-  return coupling;
-}
-
 SegmentFit::SegmentFit(const BlowSegment& segment, const Globals& globals) : segment_(&segment) {
   const auto& p = segment.points;
   std::size_t after = 0;
@@ -71,7 +64,6 @@ SegmentFit::SegmentFit(const BlowSegment& segment, const Globals& globals) : seg
   locals_.setZero();
   locals_[kSpeedBefore] = std::max(before_line.slope, slowest);
   locals_[kSpeedAfter] = std::max(after_line.slope, slowest);
-  locals_[kMotorSpeed] = 0.5 * (locals_[kSpeedBefore] + locals_[kSpeedAfter]);
   locals_[kInstant] = middle + (globals[kZero] - after_line.value) / locals_[kSpeedAfter];
   locals_[kInstant] = std::clamp(locals_[kInstant], p[after - 1].time, p[after].time);
   mean_speed_ = (p.back().seen - p.front().seen) / (p.back().time - p.front().time);
@@ -93,9 +85,6 @@ HalfShot SegmentFit::halfOf(const Globals& globals, bool before) const {
   half.node_step = node_step_;
   half.drive_inertia = std::exp(globals[kLogInertia]);
   half.law = {mean_speed_, globals[kStiffness], globals[kDrag]};
-  half.twist = locals_[kTwist], half.motor_speed = locals_[kMotorSpeed];
-  half.log_coupling = globals[kLogCoupling], half.log_odds = globals[kLogOdds];
-  half.log_damping = globals[kLogDamping];
   return half;
 }
 
@@ -104,7 +93,7 @@ void SegmentFit::run(const SegmentModel& model, const Globals& globals, std::vec
                      std::vector<MotionSlopes>* slopes) const {
   const auto& p = segment_->points;
   const std::size_t before = beforeCount();
-  ShaftModel shaft(model.mechanism, model.level, model.coupling);
+  ShaftModel shaft(model.mechanism, model.level);
   shaft.setHullMotion(segment_->gravity);
   std::vector<double> times;
   std::vector<ShotPoint> side;
@@ -126,20 +115,18 @@ void SegmentFit::run(const SegmentModel& model, const Globals& globals, std::vec
       all.col(is_before ? kSpeedBefore : kSpeedAfter) = side_slopes[i].col(kOwnSpeed);
       for (int node = 0; node <= kNodesBeside; ++node)
         all.col(torqueIndex(is_before, node)) = side_slopes[i].col(kOwnTorques + node);
-      all.col(kTwist) = side_slopes[i].col(kOwnTwist);
-      all.col(kMotorSpeed) = side_slopes[i].col(kOwnMotorSpeed);
       all.rightCols<kShaping>() = side_slopes[i].middleCols<kShaping>(kOwnLogInertia);
     }
   }
 }
 
 /// A stamp off by d shows an angle off by w d and a speed off by w' d; next to the blow it may lie on the other side of
-/// it, where the crank's speed is another one, a motor's the same.
-Weighing SegmentFit::weighing(const SegmentModel& model, const Noise& noise, double time, const ShotPoint& at) const {
+/// it, where the crank's speed is another one.
+Weighing SegmentFit::weighing(const Noise& noise, double time, const ShotPoint& at) const {
   const double variance = square(noise.timing), angle = square(noise.angle) + square(at.speed) * variance;
   const double both = at.speed * at.acceleration * variance, share = both / angle;
   double speed = square(noise.speed) + square(at.acceleration) * variance - share * both;
-  if (noise.timing > 0.0 && !model.coupling) {
+  if (noise.timing > 0.0) {
     const double other = 0.5 * std::erfc(std::abs(time - locals_[kInstant]) / (noise.timing * std::sqrt(2.0)));
     speed += other * (1.0 - other) * square(locals_[kSpeedAfter] - locals_[kSpeedBefore]);
   }
@@ -178,7 +165,7 @@ std::vector<ResidualRow> SegmentFit::rows(const SegmentModel& model, const Globa
     const double offset = base[i].offset, speed = base[i].speed;
     const Seen seen = seenAt(globals, offset);
     const double s1 = std::sin(offset), c1 = std::cos(offset), s2 = 2.0 * s1 * c1, c2 = 1.0 - 2.0 * s1 * s1;
-    const Weighing deviation = weighing(model, noise, point.time, base[i]);
+    const Weighing deviation = weighing(noise, point.time, base[i]);
     ResidualRow angle{i, base[i], false, point.seen - seen.value, deviation.angle, {}, {}, seen.slope, 0.0};
     angle.by_local = seen.slope * slopes[i].row(0).head<kLocals>().transpose();
     angle.by_global << 1.0, s1, c1 - 1.0, s2, c2 - 1.0, seen.slope * slopes[i].row(0).tail<kShaping>().transpose();
@@ -222,8 +209,6 @@ NormalEquations SegmentFit::equationsOf(const std::vector<ResidualRow>& rows, co
         costOf(row.residual / row.deviation) + std::log(row.deviation / (row.of_speed ? noise.speed : noise.angle));
   }
   e.ll = e.ll_angles + e.ll_speeds;
-  for (const Eigen::Index k : {kTwist, kMotorSpeed})
-    if (e.ll(k, k) == 0.0) e.ll(k, k) = 1.0;  // of a rigid shaft
   const double walk = 1.0 / (square(noise.torque_walk) * node_step_);
   for (const bool before : {true, false}) {
     for (int i = 1; i <= kNodesBeside; ++i) {
@@ -275,7 +260,7 @@ std::vector<ResidualAt> SegmentFit::residuals(const SegmentModel& model, const G
   for (std::size_t i = 0; i < points.size(); ++i) {
     const CrankPoint& point = segment_->points[i];
     const Seen seen = seenAt(globals, points[i].offset);
-    const Weighing deviation = weighing(model, noise, point.time, points[i]);
+    const Weighing deviation = weighing(noise, point.time, points[i]);
     const double angle = point.seen - seen.value;
     all.push_back({points[i].offset, points[i].speed, angle,
                    point.speed ? *point.speed - seen.slope * points[i].speed - deviation.share * angle

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <random>
 #include <vector>
 
@@ -13,28 +12,11 @@
 namespace hammer_loads::calibration {
 
 /// Parameters that all blows share. seen = zero + offset + sum over n of c_n sin(n offset) + s_n (cos(n offset) - 1):
-/// c_n + i s_n is the eccentricity a_n e^(i phase_n). The last three are a coupling's: logarithms of its stiffness, of
-/// its motor's odds and of its damping, 0 as given.
-enum GlobalIndex : Eigen::Index {
-  kZero,
-  kSine1,
-  kCosine1,
-  kSine2,
-  kCosine2,
-  kLogInertia,
-  kStiffness,
-  kDrag,
-  kLogCoupling,
-  kLogOdds,
-  kLogDamping,
-  kGlobals
-};
+/// c_n + i s_n is the eccentricity a_n e^(i phase_n).
+enum GlobalIndex : Eigen::Index { kZero, kSine1, kCosine1, kSine2, kCosine2, kLogInertia, kStiffness, kDrag, kGlobals };
 using Globals = Eigen::Matrix<double, kGlobals, 1>;
-/// Those from kLogInertia on change the motion itself; the last ones only where there is a coupling.
-constexpr int kShaping = kGlobals - kLogInertia, kOfCoupling = kGlobals - kLogCoupling;
-
-/// What is given of a coupling, as the parameters have it.
-Coupling couplingOf(Coupling given, const Globals& globals);
+/// Those from kLogInertia on change the motion itself.
+constexpr int kShaping = kGlobals - kLogInertia;
 
 /// Deviations of what is measured, and of what the drive does.
 struct Noise {
@@ -49,7 +31,6 @@ struct Noise {
 struct SegmentModel {
   const Mechanism& mechanism;
   Level level;
-  std::optional<Coupling> coupling = {};  ///< the encoder sits on the motor beyond it
 };
 
 using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
@@ -131,7 +112,7 @@ class SegmentFit {
   using MotionSlope = Eigen::Matrix<double, 1, kLocals + kShaping>;  ///< of one of them
   void run(const SegmentModel& model, const Globals& globals, std::vector<ShotPoint>& points,
            std::vector<MotionSlopes>* slopes = nullptr) const;
-  Weighing weighing(const SegmentModel& model, const Noise& noise, double time, const ShotPoint& at) const;
+  Weighing weighing(const Noise& noise, double time, const ShotPoint& at) const;
   HalfShot halfOf(const Globals& globals, bool before) const;
   std::size_t beforeCount() const;
 

@@ -123,8 +123,11 @@ int run(int argc, const char* const* argv) {
       .oneOf({"costs", "sessions", "drawings", "elastic", "observer", "life"});
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
-  const std::optional<Settings> settings = loadOrReport(files);
+  std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;
+  // The hulls of the tables without a boom are held.
+  if (settings->pipeline.hull_motion == HullMotionSource::kUnmeasured)
+    settings->pipeline.hull_motion = HullMotionSource::kFixed;
   JsonFile file(json_file, force);
   const auto complain = [&] {
     std::cerr << file.problem() << '\n';

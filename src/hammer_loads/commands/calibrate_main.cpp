@@ -63,7 +63,7 @@ struct Arguments {
   std::vector<std::string> bags, params;
   std::string output, urdf;
   double rocker_deviation{0.02};
-  bool force{}, boom{};
+  bool force{}, boom{}, verbose{};
   BoomCalibrationJob boom_job;
 };
 
@@ -82,10 +82,12 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
       .within(1e-6, 1.0, "")
       .showDefault();
   line.flag("--force", given.force, "replaces files that exist");
+  line.flag("--verbose", given.verbose, "prints every estimate with its limit, strong correlations and notes");
   line.flag(
-      "--boom", given.boom,
-      "weighs the boom instead: from a recording of its free movement without hammering, with cylinder pressures; "
-      "writes a boom file");
+          "--boom", given.boom,
+          "weighs the boom instead: from a recording of its free movement without hammering, with cylinder pressures; "
+          "writes a boom file")
+      .excludes({"--verbose"});
   addTopicOption(line, job.topics, &InputTopics::cylinder_pressures).needs("--boom");
   line.option("--weight", given.boom_job.weight, "a known weight on the tool [kg]")
       .within(0.0, 1e5, "kg")
@@ -134,8 +136,7 @@ calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_de
           rocker_deviation,
           pipeline.torque_walk * inertia,
           pipeline.initial_torque_deviation * inertia,
-          inForce(pipeline.crank_sensor),
-          pipeline.coupling};
+          inForce(pipeline.crank_sensor)};
 }
 
 /// Pieces of the recording, and more of them until no more are needed.
@@ -173,7 +174,7 @@ CalibrationTexts calibrateCrank(const BagInputs& inputs, const Settings& setting
   if (!bag.pitch_known && !settings.pipeline.pitch_joints.empty())
     std::cerr << "note: not every pitch joint is on " << settings.input_topics.joint_states
               << ": the hull's pitch is taken as hull_pitch_rad\n";
-  result.words = (found.problem.empty() ? "" : given.bags.front() + ": ") + textOf(found);
+  result.words = (found.problem.empty() ? "" : given.bags.front() + ": ") + textOf(found, given.verbose);
   if (found.problem.empty()) result.yaml = yamlOf(found, source);
   if (!result.yaml.empty()) result.picture = svgOf(found);
   return result;

@@ -1,27 +1,33 @@
 #include "hammer_loads/commands/output_file.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
-#include <utility>
+#include <filesystem>
 
 #include "hammer_loads/util/rename_to_new.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr int kExitInterrupted = 130;
-constexpr std::size_t kMostFiles = 8;
+namespace fs = std::filesystem;
 
-/// Names of unfinished files, for the signal handler.
-std::array<std::atomic<const char*>, kMostFiles> unfinished{};
+constexpr int kExitInterrupted = 130;
+
+/// Names of unfinished files, for the signal handler; a command has at most two.
+std::array<std::atomic<const char*>, 4> unfinished{};
+
+void replaceUnfinished(const char* before, const char* after) {
+  for (auto& name : unfinished) {
+    const char* expected = before;
+    if (name.compare_exchange_strong(expected, after)) return;
+  }
+}
 
 void removeUnfinished(int) {
   for (const auto& name : unfinished) {
@@ -33,22 +39,22 @@ void removeUnfinished(int) {
   _exit(kExitInterrupted);
 }
 
-const char* kindOf(mode_t mode) {
-  if (S_ISDIR(mode)) return "a directory";
-  if (S_ISLNK(mode)) return "a symbolic link";
-  if (S_ISFIFO(mode)) return "a FIFO";
-  if (S_ISSOCK(mode)) return "a socket";
+const char* kindOf(fs::file_type type) {
+  if (type == fs::file_type::directory) return "a directory";
+  if (type == fs::file_type::symlink) return "a symbolic link";
+  if (type == fs::file_type::fifo) return "a FIFO";
+  if (type == fs::file_type::socket) return "a socket";
   return "a device";
 }
 
-bool isSameFile(const std::string& one, const std::string& other) {
-  struct stat a {
-  }, b{};
-  return stat(one.c_str(), &a) == 0 && stat(other.c_str(), &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
-}
-
-std::string problemOf(const OutputRequest& request, const struct stat& found) {
-  if (!S_ISREG(found.st_mode)) return std::string("is ") + kindOf(found.st_mode) + ", must be a new file";
+/// Why the name cannot be that of the output; empty: it can.
+std::string problemOf(const OutputRequest& request, bool exists, fs::file_type type) {
+  std::error_code error;
+  if (request.name.empty()) return "an empty name, must be that of a new file";
+  for (const std::string& input : request.inputs)
+    if (fs::equivalent(input, request.name, error)) return "is the input " + input + ", must be another file";
+  if (!exists) return {};
+  if (type != fs::file_type::regular) return std::string("is ") + kindOf(type) + ", must be a new file";
   if (!request.force) return "exists already, must be a new file; --force replaces one that this command wrote";
   const std::string reason = request.keep(request.name);
   return reason.empty() ? reason : "--force does not replace it: " + reason;
@@ -56,106 +62,63 @@ std::string problemOf(const OutputRequest& request, const struct stat& found) {
 
 }  // namespace
 
+OutputFile::OutputFile(std::string name, bool replaces)
+    : name_(std::move(name)),
+      replaces_(replaces),
+      part_(std::make_unique<const std::string>(name_ + ".part." + std::to_string(getpid()))) {
+  replaceUnfinished(nullptr, part_->c_str());
+}
+
+OutputFile::~OutputFile() {
+  if (part_) unlink(part_->c_str());
+  release();
+}
+
+void OutputFile::release() {
+  if (part_) replaceUnfinished(part_->c_str(), nullptr);
+  part_.reset();
+}
+
 Checked<OutputFile> OutputFile::make(const OutputRequest& request) {
   Checked<OutputFile> result;
   const auto refuse = [&](const std::string& reason) {
     result.problems.push_back((request.name.empty() ? "output" : request.name) + ": " + reason);
     return std::move(result);
   };
-  if (request.name.empty()) return refuse("an empty name, must be that of a new file");
-  for (const std::string& input : request.inputs) {
-    if (isSameFile(input, request.name)) return refuse("is the input " + input + ", must be another file");
+  std::error_code error;
+  const fs::file_type type = fs::symlink_status(request.name, error).type();
+  const bool exists = type != fs::file_type::not_found && type != fs::file_type::none;
+  if (const std::string problem = problemOf(request, exists, type); !problem.empty()) return refuse(problem);
+  OutputFile file(request.name, exists);
+  const int descriptor = open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    const int why = errno;
+    const std::string reason = (why == EEXIST ? file.path() + ": " : "") + std::strerror(why);
+    file.release();  // what stands there is not this command's
+    return refuse("cannot be written: " + reason);
   }
-  OutputFile file;
-  file.name_ = request.name;
-  struct stat found {};
-  if (lstat(request.name.c_str(), &found) == 0) {
-    const std::string problem = problemOf(request, found);
-    if (!problem.empty()) return refuse(problem);
-    file.replaces_ = true;
-    file.device_ = found.st_dev;
-    file.inode_ = found.st_ino;
-  }
-  const std::string problem = file.take();
-  if (!problem.empty()) return refuse(problem);
+  close(descriptor);
   result.value.emplace(std::move(file));
   return result;
 }
 
-/// A file of our own: what stood there under its name, of an earlier process, is left alone.
-std::string OutputFile::take() {
-  constexpr int kMostTries = 100;
-  const std::string stem = name_ + ".part." + std::to_string(getpid());
-  for (int i = 0; i < kMostTries; ++i) {
-    part_ = std::make_unique<const std::string>(i == 0 ? stem : stem + "-" + std::to_string(i));
-    setRemoval(part_->c_str());
-    descriptor_ = open(part_->c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (descriptor_ >= 0) return {};
-    const int error = errno;
-    setRemoval(nullptr);
-    if (error != EEXIST) return std::string("cannot be written: ") + std::strerror(error);
-  }
-  return "cannot be written: " + stem + " and the like exist";
-}
-
-/// Null: there is nothing to remove any more.
-void OutputFile::setRemoval(const char* part) const noexcept {
-  for (auto& name : unfinished) {
-    const char* expected = part != nullptr ? nullptr : part_->c_str();
-    if (name.compare_exchange_strong(expected, part)) return;
-  }
-}
-
-OutputFile::OutputFile(OutputFile&& other) noexcept
-    : name_(std::move(other.name_)),
-      part_(std::move(other.part_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      replaces_(other.replaces_),
-      published_(other.published_),
-      exchanged_(other.exchanged_),
-      device_(other.device_),
-      inode_(other.inode_) {}
-
-OutputFile::~OutputFile() {
-  if (descriptor_ < 0) return;
-  ::close(descriptor_);
-  if (!part_ || (published_ && !exchanged_)) return;
-  unlink(part_->c_str());
-  setRemoval(nullptr);
-}
-
-std::string OutputFile::path() const {
-  const std::string by_descriptor = "/proc/self/fd/" + std::to_string(descriptor_);
-  return access(by_descriptor.c_str(), W_OK) == 0 ? by_descriptor : *part_;
+std::string OutputFile::sync() const {
+  const int file = open(part_->c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = file >= 0 && fsync(file) == 0;
+  const int error = errno;
+  if (file >= 0) close(file);
+  return synced ? "" : name_ + ": cannot be written: " + std::strerror(error);
 }
 
 std::string OutputFile::publish() {
-  struct stat found {};
-  const bool is_there = lstat(name_.c_str(), &found) == 0;
-  if (is_there && !(replaces_ && found.st_dev == device_ && found.st_ino == inode_))
-    return name_ + ": has appeared meanwhile, is not replaced";
-  int error = is_there
-                  ? (renameat2(AT_FDCWD, part_->c_str(), AT_FDCWD, name_.c_str(), RENAME_EXCHANGE) == 0 ? 0 : errno)
-                  : renameToNew(AT_FDCWD, *part_, name_);
-  exchanged_ = is_there && error == 0;  // the old file is there until the end, under the other name
-  if (is_there && (error == EINVAL || error == ENOSYS))
-    error = std::rename(part_->c_str(), name_.c_str()) == 0 ? 0 : errno;
+  if (std::string problem = sync(); !problem.empty()) return problem;
+  const int error = !replaces_                                        ? renameToNew(AT_FDCWD, *part_, name_)
+                    : std::rename(part_->c_str(), name_.c_str()) == 0 ? 0
+                                                                      : errno;
+  if (error == EEXIST) return name_ + ": has appeared meanwhile, is not replaced";
   if (error != 0) return name_ + ": the file cannot be given this name: " + std::strerror(error);
-  setRemoval(nullptr);
-  published_ = true;
+  release();
   return {};
-}
-
-void OutputFile::withdraw() {
-  if (!published_) return;
-  published_ = false;
-  struct stat here {
-  }, there{};
-  const bool ours = fstat(descriptor_, &here) == 0 && lstat(name_.c_str(), &there) == 0 &&
-                    here.st_dev == there.st_dev && here.st_ino == there.st_ino;
-  if (!ours) return;
-  if (exchanged_) renameat2(AT_FDCWD, part_->c_str(), AT_FDCWD, name_.c_str(), RENAME_EXCHANGE);
-  if (!exchanged_) unlink(name_.c_str());
 }
 
 void endCleanlyOnSignals() {

@@ -44,8 +44,6 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   for (const InputName& input : kInputs) addTopicOption(line, job.topics, input.topic);
   line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
-  line.flag("--smooth", job.smooth, "the crank by later samples as well: more exact than the live node can be")
-      .excludes({"--ledger"});
   line.flag("--pins", job.pins, "pin forces as well").excludes({"--no-bag"});
   line.option("--grapple", given.grapple, "the grapple as well, from --joint-states-topic; may be repeated")
       .oneEachTime()
@@ -138,8 +136,7 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
   }
   std::optional<life::LedgerBatch> ledger;
   if (!given.ledger.empty()) {
-    ledger.emplace(
-        given.ledger, [](const std::string& busy) { std::cerr << busy << '\n'; }, given.replace_run);
+    ledger.emplace(given.ledger, given.replace_run);
     const std::string problem = ledger->check();
     if (!problem.empty()) return {problem};
     job.pieces = &*ledger;
@@ -151,21 +148,19 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
       if (problem.rfind(output.path + ":", 0) == 0) problem.replace(0, output.path.size(), output.name);
   }
   if (ledger && problems.empty()) problems = writeLedger(*ledger, report);
-  // Together or not at all: no signal may part them.
+  for (const OutputFile& file : files) {
+    const std::string problem = problems.empty() ? file.sync() : "";
+    if (!problem.empty()) problems.push_back(problem);
+  }
+  // Together: no signal may part them. The ledger comes first: a commit can fail, and then no file has its name yet.
   sigset_t all, before;
   sigfillset(&all);
   sigprocmask(SIG_BLOCK, &all, &before);
-  for (OutputFile& file : files) {
-    if (!problems.empty()) break;
-    const std::string problem = file.publish();
-    if (!problem.empty()) problems.push_back(problem);
-  }
-  if (ledger && problems.empty()) {
-    const std::string problem = ledger->commit();
-    if (!problem.empty()) problems.push_back(problem);
-  }
-  if (!problems.empty())
-    for (OutputFile& file : files) file.withdraw();
+  std::string problem;
+  if (ledger && problems.empty()) problem = ledger->commit();
+  for (OutputFile& file : files)
+    if (problems.empty() && problem.empty()) problem = file.publish();
+  if (!problem.empty()) problems.push_back(problem);
   files.clear();
   sigprocmask(SIG_SETMASK, &before, nullptr);
   return problems;

@@ -12,6 +12,9 @@ for home in (HERE.parent, HERE.parents[1] / SHARE, HERE.parent / SHARE):  # in t
         break
 sys.dont_write_bytecode = True  # the source tree stays as it is
 
-MODULES = {"report": "command", "budget": "budget_command", "certificate": "certificate_command"}
-module = MODULES.get(pathlib.Path(sys.argv[0]).stem, "command")
-sys.exit(importlib.import_module("report." + module).main(sys.argv[1:]))
+MODULES = {"report": "command", "budget": "budget", "certificate": "certificate"}
+name = pathlib.Path(sys.argv[0]).stem
+try:
+    sys.exit(importlib.import_module("report." + MODULES.get(name, "command")).main(sys.argv[1:]))
+except ImportError as error:
+    sys.exit(f"{name}: {error}; needs the Python packages pandas, jinja2 and matplotlib")

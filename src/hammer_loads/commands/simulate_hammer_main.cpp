@@ -2,6 +2,7 @@
 #include <ros/init.h>
 
 #include <iostream>
+#include <stdexcept>
 
 #include "hammer_loads/commands/node_usage.h"
 #include "hammer_loads/ros/machine_player.h"
@@ -42,7 +43,12 @@ int run() {
   if (!problems.empty()) return 1;
   for (const std::string& note : settings.notes) ROS_INFO("%s", note.c_str());
 
-  MachinePlayer(ros::NodeHandle(), *settings.value).run();
+  try {
+    MachinePlayer(ros::NodeHandle(), *settings.value).run();
+  } catch (const std::runtime_error& error) {
+    std::cerr << "truth_prefix: " << error.what() << '\n';
+    return 1;
+  }
   return 0;
 }
 

@@ -46,7 +46,7 @@ class ColumnStep {
  public:
   using Columns = Eigen::Matrix<double, 1, kMachineColumns>;
 
-  /// Before the step. near: moves with it; inertia: Jc, or that of the crank's side of a coupling [kg m2].
+  /// Before the step. near: moves with it; inertia: Jc [kg m2].
   ColumnStep(const ShaftModel& model, const ShaftState& from, double inertia, const ShaftLoad& load,
              NearColumns& near) noexcept
       : near_(near),

@@ -23,7 +23,12 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // the torque's walk holds more of what is not seen
 // Guard: ConstantErrors.ADeviationCoversWhatTheModelLacks of kUnmodelledCounts, kUnmodelledDeviations, kSamplesToFollow
 
+constexpr double kNotSeen = 0.6;  // of the zero's prior
+constexpr double kGiven = 0.01;   // standard deviation of a zero as it is given [rad]
+
 }  // namespace
+
+bool ConstantErrors::knows() const noexcept { return turns_ >= kTurnsToKnow; }
 
 void ConstantErrors::takeSupply(double change) noexcept {
   fit_.take(kSupply, change);
@@ -97,7 +102,9 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   moment_ = 1.0 / square(unmodelled) * growth * covariance + certain * certain.transpose();
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
-  moment_(kZero, kZero) += stepped_;
+  // A crank that turns at constant speed shows nothing of its zero: it counts as given.
+  if (growth * covariance(kZero, kZero) > square(kNotSeen * prior_[kZero])) moment_(kZero, kZero) = square(kGiven);
+  moment_(kZero, kZero) += stepped_ + square(zeroNotLinear());
   considerPriors();
   root_ = covarianceRoot(moment_);
   fit_.fade(1.0 - 1.0 / look_back::kManyTurns);

@@ -23,7 +23,6 @@ class ConstantErrors {
  public:
   static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();
   static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
-                       kShare = indexOfUnknown("share"), kDamping = indexOfUnknown("damping"),
                        kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
                        kSpeedScale = indexOfUnknown("speed scale");
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
@@ -73,6 +72,13 @@ class ConstantErrors {
   double zeroSeen() const noexcept { return zero_is_seen_ ? zeroLooks() : 0.0; }
   /// The same, whether or not a clean machine may show as much: a rod that gives shows it.
   double zeroLooks() const noexcept { return std::abs(zero_looks_); }
+  /// Enough turns have been seen for estimate() and deviation().
+  bool knows() const noexcept;
+  /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
+  /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().
+  double zeroNotLinear() const noexcept { return kNotLinear * estimate_[kZero] * estimate_[kZero]; }
+  /// Standard deviation of the zero as it is counted in moment() [rad]; 0 before it is known.
+  double zeroDeviation() const noexcept { return std::sqrt(moment_(kZero, kZero)); }
   /// How far the zero may be off all the same, where little shows it [rad].
   double zeroLeftOpen() const noexcept { return deviation_[kZero] > 0.0 ? deviation_[kZero] : prior_[kZero]; }
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
@@ -87,6 +93,7 @@ class ConstantErrors {
   }
 
  private:
+  static constexpr double kNotLinear = 17.0;  ///< [1/rad]: 0.3 deg of 1 deg
   static constexpr auto kIndices = std::make_integer_sequence<std::size_t, kUnknowns.size()>{};
   /// Unrolled, so that what does not enter costs nothing.
   template <typename Function, std::size_t... i>

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "hammer_loads/crank/column_step.h"
-#include "hammer_loads/crank/flexible_belief.h"
 #include "hammer_loads/util/growth.h"
 #include "hammer_loads/util/square.h"
 
@@ -18,14 +17,6 @@ constexpr double kMostDoubt = 1.0;  // deviation of a blow's factor: those of re
 // Guard: BeliefBounds.OfABlowThatIsUnlikeTheOthers of kMostDoubt
 constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
 // Guard: BeliefBounds.OfADeadCentreWhereNothingStrikes of kTightFactor
-
-/// drawn: the factor is another one than before.
-void extend(const ShaftTransition& f, bool drawn, FlexibleMatrix* transition) noexcept {
-  if (transition == nullptr) return;
-  auto total = transition->topLeftCorner<5, 5>();
-  if (drawn) total.row(CrankBelief::kFactor).setZero();
-  total.topRows<2>() = (f * total).eval();
-}
 
 /// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].
 void doubtSpeedChange(double variance, double w, double since, double dt, CrankBelief& b) noexcept {
@@ -44,8 +35,6 @@ void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
   factor = prior.mean;
   struck_early = false;
   draw(kFactor, square(prior.deviation), prior.by_error);
-  by_constant(kFactor, ConstantErrors::kShare) = by_constant(kFactor, ConstantErrors::kDamping) = 0.0;
-  if (motor) motor->covariance.row(kFactor).setZero();
 }
 
 BlowPrior CrankBelief::priorOf(const BlowPrior& drawn) const noexcept {
@@ -54,7 +43,6 @@ BlowPrior CrankBelief::priorOf(const BlowPrior& drawn) const noexcept {
 
 void CrankBelief::widen(double by) noexcept {
   if (!(by > 1.0)) return;
-  if (motor) return widenFlexible(by, *this);
   const double root = std::sqrt(by);
   Vector deviations;
   deviations << root, root, root, 1.0, 1.0;
@@ -62,8 +50,7 @@ void CrankBelief::widen(double by) noexcept {
 }
 
 int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
-                         double most_speed, double dt, FlexibleMatrix* transition) noexcept {
-  if (motor) return predictFlexible(model, walks, drawn, contact, most_speed, dt, *this, transition);
+                         double most_speed, double dt) noexcept {
   ShaftLoad load = model(state.position.angle);
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
@@ -81,10 +68,8 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
     const double lead = supply.lead(difference(state.position, from), h);
     state.torque = torque_before - supply.stiffness * lead;
-    const bool draws = step.blows > 0 && !tool_met;
-    extend(step.transition, draws, transition);
     if (step.blows > 0) {
-      if (draws) drawFactor(prior);
+      if (!tool_met) drawFactor(prior);
       blows += !tool_met;
       tool_met = false;
     }
@@ -117,41 +102,28 @@ void CrankBelief::move(const Vector& change) noexcept {
 
 void CrankBelief::boundFactor() noexcept {
   const double bounded = std::clamp(factor, kLeastFactor, kMostFactor), variance = covariance(kFactor, kFactor);
-  if (!motor && bounded != factor && variance > 0.0) move((bounded - factor) / variance * covariance.col(kFactor));
+  if (bounded != factor && variance > 0.0) move((bounded - factor) / variance * covariance.col(kFactor));
   factor = bounded;
 }
 
 void CrankBelief::correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
                           const std::optional<ConstantErrors::Row>& of_constants) noexcept {
-  if (motor) {
-    const FlexibleRow at_motor = row == kAngle ? kMotorAngle : kMotorSpeed;
-    return correctFlexible(at_motor, innovation, variance, by_error, of_constants, *this);
-  }
   Vector change = Base::correct(row, variance, by_error, of_constants) * innovation;
   change[kInertia] = std::clamp(change[kInertia], -kMostInertiaChange, kMostInertiaChange);
   move(change);
 }
 
-void CrankBelief::forgetInertiaCoupling() noexcept {
-  decouple(kInertia);
-  if (motor) forgetCouplingsOf(*this);
-}
+void CrankBelief::forgetInertiaCoupling() noexcept { decouple(kInertia); }
 
-void CrankBelief::forgetAngle(double variance) noexcept {
-  forget(kAngle, variance);
-  if (motor) forgetAngleFlexible(variance, *this);
-}
+void CrankBelief::forgetAngle(double variance) noexcept { forget(kAngle, variance); }
 
-void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, FlexibleMatrix* transition) noexcept {
+void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn) noexcept {
   const BlowPrior prior = priorOf(drawn);
-  const bool draws = !tool_met && state.speed > 0.0;
-  if (draws) drawFactor(prior);
+  if (!tool_met && state.speed > 0.0) drawFactor(prior);
   tool_met = false;
-  if (motor) return passLateFlexible(model, prior.mean, draws, *this, transition);
   ShaftTransition f = ShaftTransition::Identity();
   ShaftLoad load;
   passBlow(model, prior.mean, state, load, f);
-  extend(f, draws, transition);
   Base::predict<kAngle, kSpeed>(f);
 }
 
@@ -164,29 +136,25 @@ bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt)
   const double before = state.speed / factor, since = std::max(0.5 * dt, state.position.angle.offset / state.speed);
   const double squared = row == kSpeed ? square(before) : square(before) * (square(since) + square(dt) / 12.0);
   const double variance = (square(innovation) - total) / squared;
-  if (motor || !(variance > 0.0 && variance < square(kMostDoubt))) return false;
+  if (!(variance > 0.0 && variance < square(kMostDoubt))) return false;
   covariance(kFactor, kFactor) += variance;
   struck_early = struck_early && square(factor - 1.0) > variance;  // else what was taken for the tool was noise
   doubtSpeedChange(variance, before, since, dt, *this);
   return true;
 }
 
-BlowFactor CrankBelief::blowFactor(const ShaftModel& model, double growth,
-                                   const ConstantErrors::Matrix& root) const noexcept {
+BlowFactor CrankBelief::blowFactor(double growth, const ConstantErrors::Matrix& root) const noexcept {
   const double of_factor = std::sqrt(growth * covariance(kFactor, kFactor)),
                of_inertia = std::sqrt(growth * covariance(kInertia, kInertia));
   ByConstants<2, ConstantErrors::kSize> by;
   by << by_constant.row(kFactor), by_constant.row(kInertia);
   ConstantErrors::toColumns(root, by);
-  const double struck = struckInertia(model), of_motor = 1.0 - struck / state.drive_inertia;
-  if (motor) by(1, ConstantErrors::kShare) += of_motor * root(ConstantErrors::kShare, ConstantErrors::kShare);
-  return {factor, of_factor, struck, of_inertia, struck_early, by};
+  return {factor, of_factor, state.drive_inertia, of_inertia, struck_early, by};
 }
 
 bool CrankBelief::isSound(double most_speed) const noexcept {
   return std::abs(state.position.angle.offset) <= 0.5 * kTwoPi && std::abs(state.speed) < most_speed &&
-         std::isfinite(state.torque) && std::isfinite(state.drive_inertia) && std::isfinite(factor) &&
-         Base::isSound() && (!motor || isSoundFlexible(most_speed, *this));
+         std::isfinite(state.torque) && std::isfinite(state.drive_inertia) && std::isfinite(factor) && Base::isSound();
 }
 
 void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double acceleration, double inverse_inertia,

@@ -7,8 +7,7 @@
 #include "hammer_loads/crank/column_step.h"
 #include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_dynamics.h"
-#include "hammer_loads/crank/crank_tracker.h"
-#include "hammer_loads/crank/motor_side.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/crank/supply.h"
 #include "hammer_loads/estimation/gaussian_belief.h"
 
@@ -42,18 +41,16 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia, kFactor };
 
   ShaftState state;
-  double factor{1.0};              ///< of the last blow
-  double least_inertia{};          ///< bounds of the drive inertia [kg m2]
-  double most_inertia{};           ///< as above
-  bool tool_met{};                 ///< before the dead centre: nothing strikes there any more
-  bool struck_early{};             ///< the last blow's factor acted before the dead centre
-  NearColumns near;                ///< of the hammer, where the state was last predicted
-  std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
+  double factor{1.0};      ///< of the last blow
+  double least_inertia{};  ///< bounds of the drive inertia [kg m2]
+  double most_inertia{};   ///< as above
+  bool tool_met{};         ///< before the dead centre: nothing strikes there any more
+  bool struck_early{};     ///< the last blow's factor acted before the dead centre
+  NearColumns near;        ///< of the hammer, where the state was last predicted
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
-  /// transition: multiplied by d(this after)/d(this before), rows as above and those of a motor, where it is wanted.
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
-              double dt, FlexibleMatrix* transition = nullptr) noexcept;
+              double dt) noexcept;
   /// By a change of its variables. Slides the position; it may end beyond the blow.
   void move(const Vector& change) noexcept;
   /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
@@ -63,25 +60,21 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   /// of_constants: their variances where the measurement is to be weighed by them.
   void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
                const std::optional<ConstantErrors::Row>& of_constants = {}) noexcept;
-  /// The coming correction teaches nothing of the inertia, nor of a coupling's stiffness.
+  /// The coming correction teaches nothing of the inertia.
   void forgetInertiaCoupling() noexcept;
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.
   void forgetAngle(double variance) noexcept;
   /// The position stands beyond the blow that it should have passed: passes it now.
-  void passLate(const ShaftModel& model, const BlowPrior& prior, FlexibleMatrix* transition = nullptr) noexcept;
+  void passLate(const ShaftModel& model, const BlowPrior& prior) noexcept;
   /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
   void meetTool(double deviation, double dt) noexcept;
   /// Just after a blow, struck some time within the last dt [s]: its factor is in doubt by as much as explains an
-  /// innovation of variance `total` of angle or speed. False: no factor explains it, all stays; nor is a motor of its
-  /// own reached by the blow so soon.
+  /// innovation of variance `total` of angle or speed. False: no factor explains it, all stays.
   bool doubtBlow(Row row, double innovation, double total, double dt) noexcept;
-  /// Variances of angle, speed and torque, and of a motor's own, times `by` where that is above 1.
+  /// Variances of angle, speed and torque, times `by` where that is above 1.
   void widen(double by) noexcept;
-  /// Stands exactly at the blow; a motor of its own stays where it is.
-  void standAtBlow() noexcept {
-    if (motor) state.twist += state.position.angle.offset;
-    state.position.angle.offset = 0.0;
-  }
+  /// Stands exactly at the blow.
+  void standAtBlow() noexcept { state.position.angle.offset = 0.0; }
   /// A blow's factor and its variance are drawn.
   void drawFactor(const BlowPrior& prior) noexcept;
   /// What is expected where the next blow is passed.
@@ -90,23 +83,13 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
 
   /// Where the encoder sits: angle from the blow [rad], speed [rad/s], variance and derivative by the sensor's errors
   /// of one of these.
-  double encoderOffset() const noexcept {
-    return motor ? state.position.angle.offset + state.twist : state.position.angle.offset;
-  }
-  double encoderSpeed() const noexcept { return motor ? state.motor_speed : state.speed; }
-  double encoderVariance(Row row) const noexcept {
-    return motor ? motor->covariance(kMotorAngle + row, row) : covariance(row, row);
-  }
-  ConstantErrors::Row encoderByError(Row row) const noexcept {
-    return motor ? ConstantErrors::Row(motor->by_constant.row(row)) : ConstantErrors::Row(by_constant.row(row));
-  }
-  /// What the blow acts on: of a motor beyond a coupling nothing [kg m2].
-  double struckInertia(const ShaftModel& model) const noexcept {
-    return motor ? lawOf(*model.coupling(), state).crank_inertia : state.drive_inertia;
-  }
+  double encoderOffset() const noexcept { return state.position.angle.offset; }
+  double encoderSpeed() const noexcept { return state.speed; }
+  double encoderVariance(Row row) const noexcept { return covariance(row, row); }
+  ConstantErrors::Row encoderByError(Row row) const noexcept { return by_constant.row(row); }
   /// Factor of the last blow and the inertia that it acts on. growth: what noise is to be multiplied with; root:
   /// ConstantErrors::root().
-  BlowFactor blowFactor(const ShaftModel& model, double growth, const ConstantErrors::Matrix& root) const noexcept;
+  BlowFactor blowFactor(double growth, const ConstantErrors::Matrix& root) const noexcept;
 };
 
 /// load: the model's at the belief's angle; growth, root: as in CrankBelief::blowFactor(); torque_part of the torque's

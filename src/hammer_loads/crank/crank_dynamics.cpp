@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/crank/flexible_shaft.h"
-
 namespace hammer_loads {
 namespace {
 
@@ -163,10 +161,6 @@ double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept {
          (state.drive_inertia + load.inertia);
 }
 
-double acceleration(const ShaftModel& model, const ShaftLoad& load, const ShaftState& state) noexcept {
-  return model.coupling() ? flexibleAcceleration(*model.coupling(), load, state) : acceleration(load, state);
-}
-
 void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLoad& load,
               ShaftTransition& total) noexcept {
   const double beyond = state.position.angle.offset, speed = state.speed;
@@ -199,10 +193,6 @@ Advance advance(const ShaftModel& model, double dt, const Passing& passing, Shaf
 }
 
 void advanceState(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state) noexcept {
-  if (model.coupling()) {
-    advanceFlexible(model, dt, passing, state, nullptr);
-    return;
-  }
   ShaftLoad load = model(state.position.angle);
   advanceAll(model, dt, passing, state, load, nullptr);
 }

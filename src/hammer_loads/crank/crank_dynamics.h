@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
-#include "hammer_loads/crank/coupling.h"
 #include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/machine_columns.h"
@@ -16,7 +14,7 @@
 
 namespace hammer_loads {
 
-// A path is cut into smooth pieces that end at the blow, for a rigid and a flexible shaft alike.
+// A path is cut into smooth pieces that end at the blow.
 constexpr double kMaxStepAngle = 0.04;  ///< [rad] of the crank in one piece
 // Guard: CrankDynamics.PassesTheBlowInOneStepAsInMany of kMaxStepAngle
 constexpr int kMaxSteps = 4096;  ///< bounds the work for absurd speeds; steps get longer beyond it
@@ -29,7 +27,7 @@ constexpr double kCreeping = 1.0;
 // Guard: CrankDynamics.ACrankThatCreepsOverTheBlowHasNoInstantOfPassingIt of kCreeping
 /// So often in one way: then both sides push it back to the other, and it stays at the blow.
 constexpr int kMostCreepingPasses = 8;
-// Guard: FlexibleShaft.WhereBothSidesPushItBackItPassesAFewTimesOnly of kMostCreepingPasses
+// Guard: CrankDynamics.WhereBothSidesPushItBackItPassesAFewTimesOnly of kMostCreepingPasses
 
 /// Of the way.
 struct WayPiece {
@@ -62,57 +60,41 @@ double timeToBlow(const Function& offset_after, double start, double end, double
 /// Links, weight and motion of the hull as the shaft feels them; refers to the mechanism, which must outlive it.
 class ShaftModel {
  public:
-  ShaftModel(const Mechanism& mechanism, Level level, const std::optional<Coupling>& coupling = {})
+  ShaftModel(const Mechanism& mechanism, Level level)
       : mechanism_(&mechanism),
         level_(rigid(level)),
         own_(crankWithinDrive(mechanism, rigid(level))),
-        coupling_(coupling),
         columns_(machineColumns(mechanism, rigid(level))) {}
   void setHullMotion(const HullMotion& hull) noexcept { hull_ = hull; }
   const HullMotion& hullMotion() const noexcept { return hull_; }
-  /// Nothing: the motor turns with the crank.
-  const std::optional<Coupling>& coupling() const noexcept { return coupling_; }
-  ShaftLoad operator()(CrankAngle angle) const noexcept { return at(angle); }
-  /// Nothing of it is uncertain: no columns.
-  bool isExact() const noexcept { return columns_ == nullptr; }
-  MachineColumns::OnShaft columns(CrankAngle angle) const noexcept {
-    return isExact() ? MachineColumns::OnShaft(MachineColumns::OnShaft::Zero())
-                     : columns_->onShaft(angle, hull_.gravity);
-  }
-  /// The same with zero for the slopes, whose arithmetic the compiler then leaves out: a flexible path needs none.
-  ShaftLoad withoutSlopes(CrankAngle angle) const noexcept {
-    ShaftLoad load = at(angle);
-    load.half_inertia_slope = load.weight_torque_slope = 0.0;
-    return load;
-  }
-
- private:
-  HAMMER_LOADS_INLINE ShaftLoad at(CrankAngle angle) const noexcept {
+  ShaftLoad operator()(CrankAngle angle) const noexcept {
     ShaftLoad load = shaftLoad(*mechanism_, level_, angle, hull_);
     const double r = mechanism_->parameters().drive_reaction_ratio;
     load.weight_torque -= (1.0 - r) * own_ * load.hull_acceleration;
     load.hull_acceleration *= r;
     return load;
   }
+  /// Nothing of it is uncertain: no columns.
+  bool isExact() const noexcept { return columns_ == nullptr; }
+  MachineColumns::OnShaft columns(CrankAngle angle) const noexcept {
+    return isExact() ? MachineColumns::OnShaft(MachineColumns::OnShaft::Zero())
+                     : columns_->onShaft(angle, hull_.gravity);
+  }
 
+ private:
   const Mechanism* mechanism_;
   Level level_;
   double own_;  ///< crankWithinDrive()
-  std::optional<Coupling> coupling_;
   std::shared_ptr<const MachineColumns> columns_;
   HullMotion hull_;
 };
 
-/// Everything that decides the crank's motion. The last four count where there is a coupling.
+/// Everything that decides the crank's motion.
 struct ShaftState {
   CrankPosition position;
   double speed{};          ///< w [rad/s]
-  double torque{};         ///< net drive torque tau, on the crank or beyond the coupling on the motor [N m]
+  double torque{};         ///< net drive torque tau on the crank [N m]
   double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
-  double twist{};          ///< angle of the motor less that of the crank [rad]
-  double motor_speed{};    ///< [rad/s]
-  double log_stiffness{};  ///< as in CouplingLaw
-  double log_odds{};       ///< as above
 };
 
 constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: it would be higher than long
@@ -127,8 +109,6 @@ inline bool isNearTool(const ShaftState& state, double dt) noexcept {
 
 /// w' = (tau + weight - Jc r alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;
-/// The same, or with the coupling's moment where the model has a coupling.
-double acceleration(const ShaftModel& model, const ShaftLoad& load, const ShaftState& state) noexcept;
 
 /// Order of the shaft's variables in matrices: angle, speed, torque, logarithm of the drive inertia (which keeps it
 /// positive and makes its uncertainty relative), factor of the last blow.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "hammer_loads/crank/flexible_belief.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -43,7 +42,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       supply_(settings.initial_torque_deviation),
-      errors_(constantDeviations()),
+      errors_(settings.constant_deviations),
       blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;
@@ -101,7 +100,6 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   now_.by_constant.row(Belief::kAngle) = ConstantErrors::ofAngle({s.position.angle.offset, s.speed, 0.0});
   if (has_speed_)
     now_.by_constant.row(Belief::kSpeed) = ConstantErrors::ofSpeed({s.position.angle.offset, s.speed, 0.0});
-  if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 
 /// (1)
@@ -242,15 +240,13 @@ Innovation CrankFilter::withoutRod(double dt, Innovation innovation) const noexc
   return innovation;
 }
 
-BlowFactor CrankFilter::blowFactor() const noexcept {
-  return now_.blowFactor(model_, consistency_.doubt(), errors_.root());
-}
+BlowFactor CrankFilter::blowFactor() const noexcept { return now_.blowFactor(consistency_.doubt(), errors_.root()); }
 
 bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torque) <= mostTorque(); }
 
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
-  if (dt == 0.0) return estimateOf(model_, before_load_, before().state);
+  if (dt == 0.0) return estimateOf(before_load_, before().state);
   return estimateBetween(lastStep(), dt);
 }
 
@@ -272,9 +268,7 @@ CrankUncertainty CrankFilter::uncertaintyBetween(double dt, double torque_part) 
 CrankUncertainty CrankFilter::uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load,
                                             double torque_part) const noexcept {
   const double part = std::min(1.0, torque_part * roughness_.deviationFactor());
-  const double doubt = consistency_.doubt();
-  return belief.motor ? flexibleUncertainty(model_, belief, doubt, errors_.root(), part)
-                      : motionUncertainty(model_, load, belief, doubt, errors_.root(), part);
+  return motionUncertainty(model_, load, belief, consistency_.doubt(), errors_.root(), part);
 }
 
 }  // namespace hammer_loads

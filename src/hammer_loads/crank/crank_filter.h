@@ -10,7 +10,7 @@
 #include "hammer_loads/crank/contact_rival.h"
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_dynamics.h"
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/crank/estimate_between.h"
 #include "hammer_loads/crank/speed_trust.h"
@@ -52,40 +52,65 @@ struct CrankFilterSettings {
 /// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
 /// row that agrees with it is believed, and restarts the filter. Near the blow it is none: the tool may be met some
 /// degrees early or take most of the speed.
-class CrankFilter final : public CrankTracker {
+class CrankFilter {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
   CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings);
 
-  /// The step up to the coming sample is predicted with the mean of this and the last sample's.
-  void setHullMotion(const HullMotion& hull) noexcept override;
+  /// Weight and motion of the hull at the coming sample. The step up to it is predicted with the mean of this and the
+  /// last sample's.
+  void setHullMotion(const HullMotion& hull) noexcept;
+  /// Interval of samples that are taken at equal ones [s]: a reading that is whole intervals ahead has lost samples
+  /// before it; 0: not known.
+  void setInterval(double interval) noexcept { interval_ = interval; }
+  /// Standard deviation of a shift that all stamps have in common [s]: no reading shows it.
+  void considerLatency(double deviation) noexcept { stamps_off_ = deviation; }
+  /// An elastic connecting rod has the crank beside the estimate by that [rad], [rad/s]: as much of it is not known.
+  void considerRod(double angle, double speed) noexcept;
 
-  void start(const CrankSample& sample) noexcept override;
-  Tracking update(double dt, const CrankSample& sample) noexcept override;
-  CrankEstimate estimate() const noexcept override { return estimateOf(model_, load(), now_.state); }
-  CrankEstimate between(double dt) const noexcept override;
-  std::optional<CrankWays> waysBetween(double dt) const noexcept override;
-  CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept override;
-  CrankUncertainty uncertainty(double torque_part) const noexcept override {
-    return uncertaintyOf(now_, load(), torque_part);
+  /// Starts at a sample; what was learned about the machine is kept.
+  void start(const CrankSample& sample) noexcept;
+  /// Takes the next sample, dt > 0 [s] after the last accepted one. No allocation.
+  Tracking update(double dt, const CrankSample& sample) noexcept;
+  /// Estimate at the last accepted sample.
+  CrankEstimate estimate() const noexcept { return estimateOf(load(), now_.state); }
+  /// Estimate dt [s] after the last but one accepted sample, 0 <= dt <= step between the last two. Continuous in dt
+  /// but for the acceleration at a blow; equals estimate() at the end. Only after kContinued.
+  CrankEstimate between(double dt) const noexcept;
+  /// Estimates at between(dt) by either sample alone: the estimate is neither of them where they contradict each other.
+  /// Nothing where one of the ways runs away.
+  std::optional<CrankWays> waysBetween(double dt) const noexcept;
+  /// Uncertainty of between(dt). torque_part: part of the torque's deviation that counts, see
+  /// PipelineSettings::torque_deviation_part.
+  CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept;
+  /// Uncertainty at the last accepted sample.
+  CrankUncertainty uncertainty(double torque_part) const noexcept { return uncertaintyOf(now_, load(), torque_part); }
+  /// False while the speed is still unknown (first sample without one).
+  bool hasSpeed() const noexcept { return has_speed_; }
+  /// False where no drive gives the torque that the estimate needs: degrees instead of radians, for instance.
+  bool isPlausible() const noexcept;
+  /// Factor of the last blow on the crank's speed, by all samples since.
+  BlowFactor blowFactor() const noexcept;
+  /// Whether the last blow was one is not clear yet: the estimate may be of the wrong branch.
+  bool isDoubtful() const noexcept { return rival_.isDoubtful(); }
+  /// Probability of the other branch: no blow where the estimate has one, or a blow where it has none.
+  double otherBranch() const noexcept { return rival_.probability(); }
+  /// The last reading itself shows on which side of the blow it was taken: an encoder's edge, an exact stamp.
+  bool readingShowsSide() const noexcept { return read_side_.has_value(); }
+  /// One count of the angle sensor [rad], as far as known.
+  double angleResolution() const noexcept { return encoder_.resolution(); }
+  /// Jc: inertia that turns with the crank beside the links, as far as known [kg m2].
+  /// 0 of a crank that is held at constant speed: what holds it takes the drive's reaction, which is not known.
+  double driveInertia() const noexcept {
+    return now_.state.drive_inertia < kHeld * first_guess_ ? now_.state.drive_inertia : 0.0;
   }
-  bool hasSpeed() const noexcept override { return has_speed_; }
-  bool isPlausible() const noexcept override;
-  BlowFactor blowFactor() const noexcept override;
-  bool isDoubtful() const noexcept override { return rival_.isDoubtful(); }
-  double otherBranch() const noexcept override { return rival_.probability(); }
-  bool readingShowsSide() const noexcept override { return read_side_.has_value(); }
-  double angleResolution() const noexcept override { return encoder_.resolution(); }
-  double driveInertia() const noexcept override { return now_.state.drive_inertia; }
-  double struckInertia() const noexcept override { return now_.struckInertia(model_); }
-
-  void setInterval(double interval) noexcept override { interval_ = interval; }
-  double lostTime() const noexcept override { return lost_time_; }
-  int slips() const noexcept override { return slip_.count(); }
-  void considerRod(double angle, double speed) noexcept override;
-  void considerLatency(double deviation) noexcept override { stamps_off_ = deviation; }
-
-  const CrankFilter* filter() const noexcept override { return this; }
+  /// Time of the last step beyond its stamps, by lost samples [s]; < 0: one that was counted there was lost later.
+  double lostTime() const noexcept { return lost_time_; }
+  /// Steps of the encoder on its shaft that were found since the beginning.
+  int slips() const noexcept { return slip_.count(); }
+  /// From the next sample on the encoder's zero is larger by that angle of the crank [rad]: the estimate restarts
+  /// there.
+  void moveZero(double angle) noexcept { zero_moves_ += angle; }
 
   const ShaftState& state() const noexcept { return now_.state; }
   /// What is known at the last accepted sample, as the filter computes it.
@@ -115,11 +140,15 @@ class CrankFilter final : public CrankTracker {
   /// Whether measured speeds are taken up, and why not.
   const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
   double timingNoise() const noexcept { return timing_.deviation(); }  ///< of stamps, identified [s]
-  /// A crank in degrees, which is followed as well as may be, gives 8 to 40.
-  bool isProven() const noexcept override { return consistency() < mismatch::kContradicts; }
-  /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
-  double consistency() const noexcept override { return consistency_.mean(); }
-  double strikeConsistency() const noexcept override { return strike_consistency_.mean(); }
+  /// Enough samples have come, and they fit the model: until then a wrong unit may not show. A crank in degrees, which
+  /// is followed as well as may be, gives a consistency of 8 to 40.
+  bool isProven() const noexcept { return consistency() < mismatch::kContradicts; }
+  /// Mean of innovation^2 over its variance of the last some 500 samples: near 1 where readings and model agree; NaN
+  /// before 200.
+  double consistency() const noexcept { return consistency_.mean(); }
+  /// The same mean of the half turns before the blow alone, the lesser of the last two: an elastic rod or a blow that
+  /// lasts changes little there, so that a contradiction is another machine or another sensor.
+  double strikeConsistency() const noexcept { return strike_consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
   const ConstantErrors& constantErrors() const noexcept { return errors_; }
   /// Steps of the encoder on its shaft, which the filter has followed.
@@ -136,6 +165,7 @@ class CrankFilter final : public CrankTracker {
  private:
   static constexpr double kLearnSpeed = kSlowCrank;
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
+  static constexpr double kHeld = 10.0;                 ///< times the first guess: no drive is as heavy
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   // Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kLost
   // Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kOftenDoubted
@@ -164,7 +194,6 @@ class CrankFilter final : public CrankTracker {
   CrankUncertainty uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
   /// At now_ with the latest motion of the hull.
   ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }
-  ConstantErrors::Vector constantDeviations() const noexcept;
   WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
   bool isSpeedOfOtherSide(const WeighedSample& sample) const noexcept;
@@ -190,6 +219,7 @@ class CrankFilter final : public CrankTracker {
   void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
   void considerSensor() noexcept;
   bool findLag() noexcept;
+  bool applyZero() noexcept;
   double takeOffLag(const CrankBelief& last, double dt, bool struck, double read, WeighedSample& sample) const noexcept;
   bool takesSpeeds() noexcept;
   double speedJump(bool struck) const noexcept;
@@ -247,6 +277,7 @@ class CrankFilter final : public CrankTracker {
   double stamps_off_{};               ///< standard deviation of what all stamps are off alike [s]
   SpeedTrust speed_trust_;
   AngleLag angle_lag_;
+  double zero_moves_{};                         ///< moveZero() since the last sample [rad]
   std::optional<SpeedTrust::Witness> witness_;  ///< of the last sample
   std::optional<Side> read_side_;               ///< of the blow, as the last reading shows it
   double outlier_{};                            ///< innovation of the outlier just seen [rad], 0: none

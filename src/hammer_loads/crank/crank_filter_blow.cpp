@@ -22,11 +22,11 @@ constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamp
 }  // namespace
 
 /// Read after the blow and stamped before it; or the reverse, if it is the speed before the blow: the tool may be met
-/// before the count of the dead centre. A motor beyond a coupling keeps its speed at the blow. Nearer to the other dead
-/// centre an angle of the other sign is none of the other side.
+/// before the count of the dead centre. Nearer to the other dead centre an angle of the other sign is none of the other
+/// side.
 bool CrankFilter::isSpeedOfOtherSide(const WeighedSample& sample) const noexcept {
   const CrankAngle& angle = now_.state.position.angle;
-  const bool stays = mirrored_ || now_.motor || now_.tool_met || std::abs(angle.offset) > 0.25 * kTwoPi;
+  const bool stays = mirrored_ || now_.tool_met || std::abs(angle.offset) > 0.25 * kTwoPi;
   if (stays || !sample.speed || !(sample.timing_variance > 0.0)) return false;
   if (angle.side == Side::kBeforeBlow) return sample.angle > 0.0;
   const double off = *sample.speed - now_.state.speed / now_.factor;
@@ -99,8 +99,8 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
     return;
   }
   if (struck) return takeBack(last, dt, sample);
-  double doubt = kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
-  if (now_.motor) doubt += kCertain * std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
+  const double doubt =
+      kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
   if (angle.offset > -doubt && now_.state.speed > -1.0) {
     now_.standAtBlow();  // it stands or goes on, whatever a count or a stamp says
   } else {
@@ -111,7 +111,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
 /// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
 /// exact.
 std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
-  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || now_.motor || angle_lag_.isThere()) return std::nullopt;
+  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || angle_lag_.isThere()) return std::nullopt;
   constexpr double kEdge = 1e-6;  // of a count
   // Numerical: kEdge
   const double count = encoder_.resolution(), edge_tolerance = kEdge * count;

@@ -1,6 +1,7 @@
 // What the filter makes of a sensor that errs: lost samples, slips, speeds.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/look_back.h"
@@ -25,15 +26,6 @@ constexpr double kRodMoves = 0.017;    // [rad] of a reading at most, there: wor
 // Guard: RodWarnings.ARightSensorIsNotBlamedForARodThatGives of kStrikeBegins, kRodMoves
 
 }  // namespace
-
-/// Those of the settings; those of the motor's share and of the damping are the coupling's.
-ConstantErrors::Vector CrankFilter::constantDeviations() const noexcept {
-  ConstantErrors::Vector deviations = settings_.constant_deviations;
-  if (!model_.coupling()) return deviations;
-  deviations[ConstantErrors::kShare] = oddsDeviationOf(*model_.coupling());
-  deviations[ConstantErrors::kDamping] = model_.coupling()->damping_deviation;
-  return deviations;
-}
 
 /// (2) Angle and speed of the crank from those of its sensor, with their noise.
 WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
@@ -75,7 +67,17 @@ bool CrankFilter::findLag() noexcept {
   angle_lag_.take(more, speed_trust_.lagDeviation());
   angle_lag_.begin(now_.encoderSpeed());
   speed_trust_ = {};
-  errors_ = ConstantErrors(constantDeviations());
+  errors_ = ConstantErrors(settings_.constant_deviations);
+  considerSensor();
+  forgetInertia();
+  return true;
+}
+
+/// (2) The rest was learned of other angles.
+bool CrankFilter::applyZero() noexcept {
+  if (zero_moves_ == 0.0) return false;
+  encoder_.slip(std::exchange(zero_moves_, 0.0));
+  errors_ = ConstantErrors(settings_.constant_deviations);
   considerSensor();
   forgetInertia();
   return true;
@@ -97,17 +99,16 @@ bool CrankFilter::takesSpeeds() noexcept {
   return speed_trust_.isTrusted() && !speeds_wait_;
 }
 
-/// Of the speed by the blow that was struck within the step [rad/s]; a motor of its own is not reached so soon.
+/// Of the speed by the blow that was struck within the step [rad/s].
 double CrankFilter::speedJump(bool struck) const noexcept {
-  return struck && !now_.motor ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
+  return struck ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
 }
 
 /// (8) As it is without the speed, by the estimate at the angle; one that began anew of late is no judge.
 void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
   if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
     return speed_trust_.restart();
-  witness_->acceleration =
-      now_.motor ? motorAcceleration(*model_.coupling(), load_, now_.state) : acceleration(load_, now_.state);
+  witness_->acceleration = acceleration(load_, now_.state);
   witness_->jump = speedJump(struck);
   speed_trust_.follow(dt, *witness_);
 }

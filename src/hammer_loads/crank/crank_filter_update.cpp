@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/flexible_belief.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
@@ -31,10 +30,11 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   restart_load_ *= std::max(0.0, 1.0 - dt / look_back::kTenTurns);
   doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
   step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
-  const bool struck = predict(dt, true, now_) > 0;    // (1)
+  const bool struck = predict(dt, true, now_) > 0;  // (1)
+  const bool moved = applyZero();
   SampleStep to{last, weighed(reading), dt, struck};  // (2)
   to.read = to.sample.angle;
-  const bool begins = findLag();
+  const bool begins = findLag() || moved;
   to.behind = takeOffLag(last, dt, struck, to.read, to.sample);
   if (begins) return begin(to.sample);
   to.innovation = to.sample.ofAngle(now_);
@@ -179,7 +179,6 @@ void CrankFilter::forgetInertia() noexcept {
   now_.forgetInertiaCoupling();
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
   now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
-  if (now_.motor) doubtStiffness(*model_.coupling(), now_);
   consistency_.restart();
 }
 

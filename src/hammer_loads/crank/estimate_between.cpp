@@ -67,7 +67,7 @@ Ways waysAfter(const BetweenSamples& s, double dt) noexcept {
 CrankEstimate estimateThere(const BetweenSamples& s, double dt, const ShaftState& state) noexcept {
   ShaftModel there = s.model;
   there.setHullMotion(blend(s.before_hull, s.now_hull, dt / s.step));
-  return estimateOf(there, there(state.position.angle), state);
+  return estimateOf(there(state.position.angle), state);
 }
 
 }  // namespace
@@ -79,10 +79,6 @@ CrankEstimate estimateBetween(const BetweenSamples& s, double dt) noexcept {
   state.speed += part * (back.speed - state.speed);
   state.torque += part * (back.torque - state.torque);
   state.drive_inertia += part * (back.drive_inertia - state.drive_inertia);
-  state.twist += part * (back.twist - state.twist);
-  state.motor_speed += part * (back.motor_speed - state.motor_speed);
-  state.log_stiffness += part * (back.log_stiffness - state.log_stiffness);
-  state.log_odds += part * (back.log_odds - state.log_odds);
   return estimateThere(s, dt, state);
 }
 

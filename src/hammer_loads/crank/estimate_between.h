@@ -4,15 +4,13 @@
 #include <optional>
 
 #include "hammer_loads/crank/crank_belief.h"
-#include "hammer_loads/crank/crank_tracker.h"
-#include "hammer_loads/crank/flexible_shaft.h"
+#include "hammer_loads/crank/crank_estimate.h"
 
 namespace hammer_loads {
 
 /// Of a state where the model has the load.
-inline CrankEstimate estimateOf(const ShaftModel& model, const ShaftLoad& load, const ShaftState& state) noexcept {
-  return model.coupling() ? flexibleEstimate(*model.coupling(), load, state)
-                          : CrankEstimate{state.position, state.speed, acceleration(load, state)};
+inline CrankEstimate estimateOf(const ShaftLoad& load, const ShaftState& state) noexcept {
+  return {state.position, state.speed, acceleration(load, state)};
 }
 
 /// Two samples and the step between them; refers to its arguments.

@@ -71,12 +71,10 @@ inline std::string ofEccentricity(double amount, double deviation) {
 
 /// Those that are seen come first. Readings of the sensor's place: angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1)
 /// [rad], so that b0 alone says where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of these; from 0.3 and
-/// 0.5 deg on the wrench is some 0.9 % worse. The motor's share is the logarithm of its odds, the coupling's
-/// damping a logarithm as well; both enter by the coupling (flexible_belief.h), priors of 0 are those of a machine
-/// without one. Of speeds, what a
-/// drive is off that filters: with a quarter of it the first second of a lag of 10 ms costs twice what it may.
-/// Guard: SensorColumns.SpeedsThatLagCostNothingAndAreNamed of the speed lag's and the speed scale's prior
-inline constexpr std::array<Unknown, 9> kUnknowns{{
+/// 0.5 deg on the wrench is some 0.9 % worse. Of speeds, what a drive is off that filters: with a quarter of it the
+/// first second of a lag of 10 ms costs twice what it may. Guard: SensorColumns.SpeedsThatLagCostNothingAndAreNamed of
+/// the speed lag's and the speed scale's prior
+inline constexpr std::array<Unknown, 7> kUnknowns{{
     {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
      unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero, true},
     {"eccentricity", "crank_eccentricity_1_rad", Unknown::Use::kSeen, 0.05, 2e-3,
@@ -89,10 +87,6 @@ inline constexpr std::array<Unknown, 9> kUnknowns{{
      0.5 * unknown::kDegree, unknown::ofEccentricity},
     {"supply", nullptr, Unknown::Use::kTakenUp, 0.2, 0.0, unknown::notOfReading, unknown::notOfReading,
      [](const SupplyLaw& supply, double lead) { return -supply.unit * lead; }, 0.0, nullptr},
-    {"share", "coupling_motor_share", Unknown::Use::kConsidered, 0.0, 0.0, unknown::notOfReading, unknown::notOfReading,
-     unknown::notOfTorque, 0.0, nullptr},
-    {"damping", "coupling_damping_ratio", Unknown::Use::kConsidered, 0.0, 0.0, unknown::notOfReading,
-     unknown::notOfReading, unknown::notOfTorque, 0.0, nullptr},
     {"latency", "crank_latency_s", Unknown::Use::kConsidered, 0.0, 0.0,
      [](const ReadingPlace& at) { return -at.speed; }, [](const ReadingPlace& at) { return -at.acceleration; },
      unknown::notOfTorque, 0.0, nullptr},

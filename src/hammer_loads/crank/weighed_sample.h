@@ -55,7 +55,7 @@ inline Innovation WeighedSample::ofAngle(const CrankBelief& belief) const noexce
 inline Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept {
   const ShaftState& state = belief.state;
   const ShaftLoad load = model(state.position.angle);
-  const double change = belief.motor ? motorAcceleration(*model.coupling(), load, state) : acceleration(load, state);
+  const double change = acceleration(load, state);
   const double noise = speed_variance + square(change) * timing_variance;
   const auto by_error = ConstantErrors::ofSpeed({belief.encoderOffset(), belief.encoderSpeed(), change});
   const double of_constants =

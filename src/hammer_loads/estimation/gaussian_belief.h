@@ -52,13 +52,6 @@ struct GaussianBelief {
       for (int k = 0; k <= i; ++k) covariance(changed[i], changed[k]) = covariance(changed[k], changed[i]) = both(i, k);
     }
   }
-  /// By any transition; step: what the constants' errors make of the mean within the step, the mean before it given.
-  void predict(const Matrix& f, const Effect& step = Effect::Zero()) noexcept {
-    const Matrix moved = f * covariance;
-    covariance.noalias() = moved * f.transpose();
-    mirror();
-    by_constant = (f * by_constant + step).eval();
-  }
   /// Covariance of two variables, or variance of one, grows by a noise that is independent of everything.
   void addNoise(Eigen::Index i, Eigen::Index k, double value) noexcept {
     covariance(i, k) += value;
@@ -130,10 +123,6 @@ struct GaussianBelief {
       for (Eigen::Index i = j + 1; i < variables; ++i)
         covariance(i, j) = covariance(j, i) = covariance(i, j) - gain[i] * column[j];
     }
-  }
-  void mirror() noexcept {
-    for (Eigen::Index j = 1; j < variables; ++j)
-      for (Eigen::Index i = 0; i < j; ++i) covariance(i, j) = covariance(j, i);
   }
 };
 

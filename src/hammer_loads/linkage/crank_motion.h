@@ -9,7 +9,6 @@ struct CrankMotion {
   CrankAngle angle;
   double speed{};         ///< w [rad/s], positive counter-clockwise in (xi, eta)
   double acceleration{};  ///< e [rad/s2]
-  double drive_lead{};    ///< acceleration of all that the drive turns, by inertia, less the crank's; rigid: 0 [rad/s2]
 };
 
 }  // namespace hammer_loads

@@ -1,7 +1,7 @@
 /// How far a measured blow may be off, by readings and by constants of sensor and hammer.
 #pragma once
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/hammer/wrench_columns.h"
 #include "hammer_loads/pipeline/number_error.h"
 

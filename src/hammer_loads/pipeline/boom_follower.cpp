@@ -79,6 +79,15 @@ bool BoomFollower::takesCompliant() const noexcept {
   return model_ == BoomModel::kCompliant || !choice.judged || choice.rigid_error > choice.rigid_tolerance;
 }
 
+/// A state that came after the sample is known now, and was not then.
+std::vector<std::string> BoomFollower::complaints() const {
+  if (!state_.fault || state_.fault->kind == JointFault::Kind::kRunAway) return {};
+  std::vector<std::string> lines = joints_.complaints(state_.stamp);
+  if (lines.empty())
+    lines.push_back(joints_.name(state_.fault->joint) + ": its states come later than the crank samples of their time");
+  return lines;
+}
+
 const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHistory& step) noexcept {
   state_.stamp = sample.stamp;
   state_.at_blow.reset();

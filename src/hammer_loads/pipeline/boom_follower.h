@@ -139,6 +139,8 @@ class BoomFollower {
   }
   const PressureTrust& pressureTrust() const noexcept { return trust_; }
   std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
+  /// Why the joints were not known at the last sample, a text for each joint; none where they were.
+  std::vector<std::string> complaints() const;
   /// How often the vibration was more than anything makes it and began anew; its loads are withheld after that until
   /// what was wrong would have gone.
   std::uint64_t runaways() const noexcept { return runaways_; }

@@ -190,10 +190,10 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
              std::to_string(follower.runaways()) + " times; its loads are withheld after that",
          runs_away});
   if (!fault || runs_away) return;
-  warnings.push_back({"boom joints",
-                      "boom joints: no loads for " + std::to_string(follower.faults()) +
-                          " samples: " + joined(follower.joints().complaints(boom->stamp)),
-                      true});
+  warnings.push_back(
+      {"boom joints",
+       "boom joints: no loads for " + std::to_string(follower.faults()) + " samples: " + joined(follower.complaints()),
+       true});
 }
 
 }  // namespace hammer_loads

@@ -90,7 +90,7 @@ void BudgetRecorder::follow() noexcept {
     turn_impulse_x_.add(end.pulse->turn_impulse_x, end.pulse_errors.turn_impulse_x);
     turn_impulse_z_.add(end.pulse->turn_impulse_z, end.pulse_errors.turn_impulse_z);
   }
-  if (!result.refusal && !result.beside_blow) sample(result);
+  if (result.isPublished()) sample(result);
 }
 
 /// Rows of one name are parts of one source.

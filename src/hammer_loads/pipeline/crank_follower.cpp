@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/pipeline/filter_settings.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
 
 namespace hammer_loads {
@@ -26,13 +27,15 @@ CrankSampleGate::Limits limitsOf(const PipelineSettings& s, double resolution) n
 
 }  // namespace
 
-CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& settings, const TrackerMaker& make)
+CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& settings)
     : model_(&model),
       settings_(settings),
-      unit_check_(settings.max_crank_speed),
+      unit_check_(settings.max_crank_speed, settings.crank_sensor.gain()),
       latency_(static_cast<StampNs>(std::llround(settings.crank_latency / kSecondsPerNs))),
       sequence_(settings.crank_stamps, settings.stale_after),
-      tracker_(make(model.mechanism(), settings)),
+      tracker_(std::make_unique<CrankFilter>(ShaftModel(model.mechanism(), settings.level),
+                                             model.mechanism().parameters().drive_inertia,
+                                             filterSettings(model.mechanism(), settings))),
       gate_(limitsOf(settings, tracker_->angleResolution())),
       step_(*tracker_, model) {}
 
@@ -43,7 +46,7 @@ void CrankFollower::checkUnit(StampNs stamp, const CrankSample& measured) noexce
 
 std::optional<Refusal> CrankFollower::otherUnit() const noexcept {
   if (!unit_check_.looksWrong()) return std::nullopt;
-  if (unit_check_.unit() == CrankUnit::kAngleInTurns) return Refusal::kAngleUnit;
+  if (isOfAngle(unit_check_.unit())) return Refusal::kAngleUnit;
   return unit_check_.unit() == CrankUnit::kDegrees ? Refusal::kDegrees : Refusal::kSpeedUnit;
 }
 

@@ -1,15 +1,14 @@
-/// From crank samples to the crank's motion: gate, units, tracker, the step since the sample before.
+/// From crank samples to the crank's motion: gate, units, filter, the step since the sample before.
 #pragma once
 
 #include <memory>
 #include <optional>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/crank_sample_gate.h"
 #include "hammer_loads/pipeline/crank_step.h"
-#include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/unit_check.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
@@ -18,7 +17,7 @@ namespace hammer_loads {
 class CrankFollower {
  public:
   /// Refers to the model, which must outlive it.
-  CrankFollower(const HullModel& model, const PipelineSettings& settings, const TrackerMaker& make);
+  CrankFollower(const HullModel& model, const PipelineSettings& settings);
   CrankFollower(const CrankFollower&) = delete;
   CrankFollower& operator=(const CrankFollower&) = delete;
 
@@ -40,6 +39,8 @@ class CrankFollower {
   /// Ends a step: later steps begin at this sample.
   void accept() noexcept;
 
+  /// CrankFilter::moveZero().
+  void moveZero(double angle) noexcept { tracker_->moveZero(angle); }
   double reading() const noexcept { return measured_.angle; }  ///< of the judged sample [rad]
   /// Whether angle or speed may be in another unit: not recognised yet.
   bool suspectsUnit() const noexcept { return unit_check_.suspects(); }
@@ -52,7 +53,7 @@ class CrankFollower {
   /// The hull's motion at the sample taken, known better since: the acceleration is that within this motion.
   void hullMoved(const HullMotion& hull) noexcept;
   const CrankStep& step() const noexcept { return step_; }
-  const CrankTracker& tracker() const noexcept { return *tracker_; }
+  const CrankFilter& tracker() const noexcept { return *tracker_; }
   const StampSequence& stamps() const noexcept { return sequence_; }
   CrankUnit unit() const noexcept { return unit_check_.unit(); }
   /// When the encoder slipped last, by its stamp [ns]; nothing: it did not.
@@ -76,7 +77,7 @@ class CrankFollower {
   CrankSample last_raw_;                   ///< as above
   StampNs latency_;                        ///< of header stamps
   StampSequence sequence_;
-  std::unique_ptr<CrankTracker> tracker_;
+  std::unique_ptr<CrankFilter> tracker_;
   CrankSampleGate gate_;
   CrankStep step_;
   CrankEstimate estimate_;

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/pipeline/refusal.h"
 #include "hammer_loads/pipeline/stamp_order.h"
 

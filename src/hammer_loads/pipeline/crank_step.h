@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/util/stamp.h"
 
@@ -19,10 +19,10 @@ constexpr double kBesideBlow = 1e-7;  ///< [s] before and after the blow where i
 
 /// The part of an estimate that a load needs.
 inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {
-  return {crank.position.angle, crank.speed, crank.acceleration, crank.drive_lead_acceleration};
+  return {crank.position.angle, crank.speed, crank.acceleration};
 }
 
-/// Refers to the tracker, whose last update it belongs to. Times are after the step's start [s].
+/// Refers to the filter, whose last update it belongs to. Times are after the step's start [s].
 class CrankStep {
  public:
   /// The blow passed forward or backward, whether or not anything strikes.
@@ -37,7 +37,7 @@ class CrankStep {
     bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 
-  CrankStep(const CrankTracker& tracker, const HullModel& model) : tracker_(&tracker), model_(&model) {}
+  CrankStep(const CrankFilter& tracker, const HullModel& model) : tracker_(&tracker), model_(&model) {}
 
   /// The time before the last sample, in position `at`, is not known.
   void forget(const CrankPosition& at) noexcept;
@@ -59,8 +59,7 @@ class CrankStep {
     if (angle == links_.angle) return links_.links;
     return angle == links_before_.angle ? links_before_.links : hammer_loads::linksAt(*model_, angle).links;
   }
-  double driveInertia() const noexcept { return tracker_->driveInertia(); }    ///< at its end [kg m2]
-  double struckInertia() const noexcept { return tracker_->struckInertia(); }  ///< as above
+  double driveInertia() const noexcept { return tracker_->driveInertia(); }  ///< at its end [kg m2]
   /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
   const Passage* begin() const noexcept { return passage_.data(); }
   const Passage* end() const noexcept { return passage_.data() + passages_; }
@@ -80,7 +79,7 @@ class CrankStep {
   double timeOfBlow(std::int64_t blow) const noexcept;
   double timeBesides(const Passage& passage, Side side) const noexcept;
 
-  const CrankTracker* tracker_;
+  const CrankFilter* tracker_;
   const HullModel* model_;
   LinksAtAngle links_before_, links_;  ///< at both ends
   bool known_{};

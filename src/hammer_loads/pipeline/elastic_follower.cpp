@@ -54,8 +54,16 @@ ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
 bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept {
   const CrankPosition& at = crank.estimate().position;
   return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && at.angle.offset < kFromLatest &&
-         crank.estimate().speed > kSlowCrank && filter.hasSpeed() && filter.isPlausible() && !filter.isDoubtful() &&
-         !filter.belief().motor && filter.readingDeviation() < RodEvidence::kCoarsest;
+         crank.estimate().speed > kSlowCrank && filter.hasSpeed() && filter.driveInertia() > 0.0 &&
+         filter.isPlausible() && !filter.isDoubtful() && filter.readingDeviation() < RodEvidence::kCoarsest;
+}
+
+const char* ElasticFollower::whyNotUsed() const noexcept {
+  if (!wanted_) return "the hammer file says that the connecting rod is rigid";
+  if (too_coarse_) return "readings are too coarse or jitter too much to show the connecting rod";
+  if (blows_ == 0) return "no blow has been followed yet";
+  return lost_ ? "readings contradict the model of an elastic connecting rod"
+               : "readings fit a rigid connecting rod as well";
 }
 
 void ElasticFollower::rest() noexcept {
@@ -79,20 +87,20 @@ void ElasticFollower::begin(const CrankFollower& crank, const CrankFilter& filte
 }
 
 void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) noexcept {
-  const CrankFilter* filter = crank.tracker().filterNow();
-  if (filter == nullptr) return;
+  const CrankFilter& filter = crank.tracker();
+  too_coarse_ = !(filter.readingDeviation() < RodEvidence::kCoarsest);
   if (!runs_) {
-    if (mayBegin(crank, *filter)) begin(crank, *filter, gravity);
+    if (mayBegin(crank, filter)) begin(crank, filter, gravity);
     return;
   }
   const double dt = length_ = crank.step().length();
   if (!(dt < look_back::kHeld)) return rest();
-  rigid_fit_ += filter->angleFit();
-  late_ = filter->constantErrors().considered(ConstantErrors::kLatency);
+  rigid_fit_ += filter.angleFit();
+  late_ = filter.constantErrors().considered(ConstantErrors::kLatency);
   for (RodFilter& rod : filters_) {
     if (!rod.isRunning()) continue;
-    rod.move(dt, filter->walks(), gravity);
-    if (!rod.take(filter->sample()) || isOver(rod)) rod.learn();
+    rod.move(dt, filter.walks(), gravity);
+    if (!rod.take(filter.sample()) || isOver(rod)) rod.learn();
   }
   if (std::none_of(filters_.begin(), filters_.end(), [](const RodFilter& rod) { return rod.isRunning(); })) judge();
 }
@@ -110,6 +118,7 @@ const RodFilter& ElasticFollower::likelier() const noexcept {
 /// then.
 void ElasticFollower::judge() noexcept {
   runs_ = false;
+  ++blows_;
   lost_ = alone_ ? !best_->isProven() : !filters_[0].isProven() && !filters_[1].isProven();
   if (alone_ && lost_) return;  // the other one is asked at the next blow
   const RodFilter& rod = alone_ ? *best_ : likelier();

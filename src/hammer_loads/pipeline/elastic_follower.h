@@ -31,7 +31,12 @@ class ElasticFollower {
   /// The last blow was none of two bodies on a tool near the dead centre, however the rod may be: nothing explains what
   /// it did to the crank.
   bool isLost() const noexcept { return lost_; }
-  bool runs() const noexcept { return best_ != nullptr && best_->isRunning() && best_->isProven(); }
+  bool isWanted() const noexcept { return wanted_; }  ///< level elastic, and a spring may be there
+  /// The spring is followed around each blow; elsewhere the machine is that of level linkage.
+  bool isUsed() const noexcept { return best_ != nullptr && best_->isProven(); }
+  /// Why the spring is not used.
+  const char* whyNotUsed() const noexcept;
+  bool runs() const noexcept { return isUsed() && best_->isRunning(); }
 
   /// While it runs: the crank as the two bodies have it, its acceleration as if its rod were rigid.
   CrankEstimate crank() const noexcept { return crankOf(filter().motion()); }
@@ -113,7 +118,8 @@ class ElasticFollower {
 
   const HullModel* model_;
   bool wanted_, runs_{};
-  bool lost_{};
+  bool lost_{}, too_coarse_{};
+  int blows_{};   ///< judged
   bool alone_{};  ///< the likelier filter alone, at this blow
   std::array<RodFilter, 2> filters_;
   double evidence_{};          ///< mean over some blows of the rod's fit less that of the rigid mechanism

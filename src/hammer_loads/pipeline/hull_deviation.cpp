@@ -79,9 +79,8 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
   columns.leftCols<ConstantErrors::kSize>() = g.lazyProduct(uncertainty.by_constant.topRows<3>());
   columns.middleCols<kMachineColumns>(ConstantErrors::kTable) +=
       hammer.wrench(drive_inertia, links.here, motionOf(crank), hull);
-  const double acceleration = crank.acceleration + crank.drive_lead_acceleration;
   const double by_inertia =
-      drive.torque(acceleration, hull.acceleration) - none.torque(acceleration, hull.acceleration);
+      drive.torque(crank.acceleration, hull.acceleration) - none.torque(crank.acceleration, hull.acceleration);
   columns.row(2).head<ConstantErrors::kSize>() += by_inertia * uncertainty.by_constant.row(CrankUncertainty::kInertia);
   columns(2, ConstantErrors::kSize) = by_inertia * uncertainty.inertia;
   const Eigen::Vector3d common = columns.rowwise().squaredNorm();
@@ -183,12 +182,9 @@ Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
   return covarianceRoot<3>(of_hammer.lazyProduct(of_hammer.transpose()));
 }
 
-double deviationFromBlow(const CrankTracker& tracker, double angle_deviation) noexcept {
-  const CrankFilter* filter = tracker.filter();
-  if (filter == nullptr) return angle_deviation;
-  const ConstantErrors& errors = filter->constantErrors();
-  if (filter->belief().motor) return std::hypot(angle_deviation, errors.zeroLeftOpen());
-  return std::hypot(angle_deviation, filter->rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
+double deviationFromBlow(const CrankFilter& filter, double angle_deviation) noexcept {
+  const ConstantErrors& errors = filter.constantErrors();
+  return std::hypot(angle_deviation, filter.rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
 }
 
 bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noexcept {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "hammer_loads/boom/boom.h"
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/hammer/wrench_columns.h"
@@ -12,7 +12,9 @@
 
 namespace hammer_loads {
 
-/// Standard deviations; NaN where the estimator has no covariance.
+class CrankFilter;
+
+/// Standard deviations; NaN where the crank's covariance is not known.
 struct HullDeviation {
   HullWrench wrench;      ///< of force_x [N], force_z [N], torque_y [N m]
   HullWrench common;      ///< the part of it that is the same in all samples: of constants
@@ -80,9 +82,8 @@ Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept;
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept;
 
 /// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong, or that a
-/// rod which gives lets the rocker strike later. Through a coupling they say little of the zero: what they leave open.
-/// angle_deviation: its own [rad]; NaN: not known.
-double deviationFromBlow(const CrankTracker& tracker, double angle_deviation) noexcept;
+/// rod which gives lets the rocker strike later. angle_deviation: its own [rad]; NaN: not known.
+double deviationFromBlow(const CrankFilter& filter, double angle_deviation) noexcept;
 
 /// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
 /// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored

@@ -6,6 +6,12 @@
 namespace hammer_loads {
 namespace {
 
+// Of a hull whose mass is not given, and of its motion where nothing measures it.
+constexpr double kUsualMass = 10.0;      // times the rocker's
+constexpr double kUsualDeviation = 0.5;  // of the mass
+constexpr double kGyration = 0.4;        // [m] about D
+constexpr double kResonance = 2.0;       // acceleration over that of a free hull: blows near the boom's frequency
+
 /// Of the tip of a boom; none if it is rigid.
 HullMotion vibrationOf(const BoomState& boom) noexcept {
   if (!boom.choice.compliant) return {};
@@ -26,7 +32,12 @@ HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
 }  // namespace
 
 HullState::HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom)
-    : source_(settings.hull_motion), weight_(settings, boom), imu_(settings.imu), filter_(settings.imu, hammer) {
+    : source_(settings.hull_motion),
+      hull_mass_(hammer.hull_mass > 0.0 ? hammer.hull_mass : kUsualMass * hammer.rocker_mass),
+      hull_mass_deviation_(hammer.hull_mass > 0.0 ? hammer.hull_mass_deviation / hammer.hull_mass : kUsualDeviation),
+      weight_(settings, boom),
+      imu_(settings.imu),
+      filter_(settings.imu, hammer) {
   if (boom && followsLoad()) mobility_.emplace(*boom, settings.imu.position);
   weigh();
 }
@@ -36,6 +47,26 @@ void HullState::weigh() noexcept {
   pitch_known_ = weight_.pitch().known();
   in_degrees_ = weight_.pitch().looksLikeDegrees();
   if (source_ == HullMotionSource::kFixed) now_ = {weight_.gravity(), false, HullMotionCovariance::Zero()};
+  if (source_ == HullMotionSource::kUnmeasured) now_ = {weight_.gravity(), false, unmeasured()};
+}
+
+void HullState::carry(const HullWrench& load, double duration) noexcept {
+  if (source_ != HullMotionSource::kUnmeasured) return;
+  load_.add(vectorOf(load), duration);
+  load_square_.add(vectorOf(load).cwiseAbs2(), duration);
+  now_.covariance = unmeasured();
+}
+
+/// By the scatter of the load in the last 2 s: the boom carries its mean. Near a resonance of the boom the hull moves
+/// by more than the load would move it alone.
+HullMotionCovariance HullState::unmeasured() const noexcept {
+  const Eigen::Vector3d scatter = (load_square_.mean() - load_.mean().cwiseAbs2()).cwiseMax(0.0);
+  const double factor = square(kResonance / hull_mass_) * (1.0 + square(hull_mass_deviation_));
+  const double force = factor * (scatter[0] + scatter[1]);
+  HullMotionCovariance covariance = HullMotionCovariance::Zero();
+  covariance(0, 0) = covariance(1, 1) = force;
+  covariance(3, 3) = factor * scatter[2] / square(square(kGyration)) + force / square(kGyration);
+  return covariance;
 }
 
 bool HullState::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
@@ -131,7 +162,7 @@ std::optional<StampedImuReading> HullState::newImuReading(StampNs sample, bool s
 }
 
 void HullState::vibrates(const BoomFollower* boom) noexcept {
-  if (source_ == HullMotionSource::kFixed) return;
+  if (source_ == HullMotionSource::kFixed || source_ == HullMotionSource::kUnmeasured) return;
   rest();
   const BoomState* state = boom != nullptr ? &boom->state() : nullptr;
   const bool followed = state != nullptr && !state->fault;

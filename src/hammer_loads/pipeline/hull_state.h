@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/estimation/look_back.h"
+#include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/hull_gravity.h"
 #include "hammer_loads/pipeline/hull_imu.h"
@@ -55,6 +57,8 @@ class HullState {
   /// The IMU's reading at the sample in the hull's axes, if one has come since the last call; where its stamps jitter,
   /// which bends the line through two of them, the last as it is.
   std::optional<StampedImuReading> newImuReading(StampNs sample, bool stamps_jitter) noexcept;
+  /// The wrench on the hull at a sample, and how long it lasts [s]: what an unmeasured hull does by it.
+  void carry(const HullWrench& load, double duration) noexcept;
   /// After it: the vibration of the boom at the sample; null: not known.
   void vibrates(const BoomFollower* boom) noexcept;
   /// Coming samples are not continuous with those before: the boom is at rest.
@@ -78,8 +82,13 @@ class HullState {
   std::optional<KnownHullMotion> measured(StampNs stamp) const noexcept;
   void forgetReading(double part) noexcept;
   HullMotionCovariance usualMotion() const noexcept;
+  HullMotionCovariance unmeasured() const noexcept;
 
   HullMotionSource source_;
+  double hull_mass_;                                                                         ///< [kg]
+  double hull_mass_deviation_;                                                               ///< relative [-]
+  RunningMean<Eigen::Vector3d> load_{look_back::kTenTurns, Eigen::Vector3d::Zero()};         ///< carry()
+  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< of its components
   HullGravity weight_;
   HullImu imu_;
   HullMotionFilter filter_;

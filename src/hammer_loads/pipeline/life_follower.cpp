@@ -59,14 +59,19 @@ void LifeFollower::follow() noexcept {
   const SampleResult& result = pipeline_->result();
   if (!result.refusal) {
     const CrankStep& step = pipeline_->crank().step();
-    if (last_ && step.known() && step.start() == *last_) {
+    const bool goes_on = last_ && step.known() && step.start() == *last_;
+    if (goes_on && !result.uncertain && !uncertain_) {
       followStep(result);
+    } else if (goes_on) {
+      for (const CrankStep::Passage& passage : step)
+        if (passage.may_strike) endTurn(step.stampAt(passage.time));
     } else {
       recorder_.gap();
       turn_.restart();
     }
     count(result);
     last_ = result.stamp;
+    uncertain_ = result.uncertain;
     if (!since_) since_ = last_;
   }
   confirmTurns(result);
@@ -74,7 +79,7 @@ void LifeFollower::follow() noexcept {
 
 void LifeFollower::count(const SampleResult& result) noexcept {
   channelValues(result, boom_, values_.data(), deviations_.data(), common_.data());
-  if (result.beside_blow) return;
+  if (!result.isPublished()) return;
   recorder_.sample(result.stamp, values_.data(), deviations_.data(), common_.data());
   turn_.add(result.stamp, values_.data(), deviations_.data(), common_.data());
 }

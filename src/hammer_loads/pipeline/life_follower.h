@@ -64,6 +64,7 @@ class LifeFollower {
   life::TurnLoadsRecorder turn_;
   std::optional<life::LifePiece> total_;
   std::optional<StampNs> since_, last_;  ///< first and last sample counted; last_: none after a gap
+  bool uncertain_{};                     ///< the last sample was: SampleResult
   std::optional<StampNs> last_blow_;     ///< the last one that was none but a blow
   /// Turns whose blow is not measured yet, and those just measured: as many as a result has ends, and one.
   std::array<life::TurnLoads, std::tuple_size<decltype(SampleResult::ends)>::value + 1> turns_;

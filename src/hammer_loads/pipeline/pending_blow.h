@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/blow_deviation.h"

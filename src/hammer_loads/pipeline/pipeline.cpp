@@ -17,20 +17,37 @@ constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings a
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
 // Guard: ToldCrank.ForcesAreAtMostAHalfAndThenThreeOfTheNominalOne of kMostForce, kMostForceUnproven
 // Guard: ToldCrank.AFirstSampleIsNoFasterThanTwiceAWorkingMachine of kMostSpeedUnproven
+constexpr double kPeakLasts = 60.0;  // [s]
+constexpr double kUncertain = 5.0;   // times withhold_above: half of the peak, beyond it a load says nothing
+constexpr double kLeastPeak = 0.1;   // of that at constant speed: a hammer that idles is judged as one that works
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
+
+/// Largest component of the force over a turn [N].
+double peakAtConstantSpeed(const Mechanism& mechanism, Level level, double speed) noexcept {
+  constexpr int kPoints = 72;
+  const HullModel model(mechanism, level == Level::kPulse ? Level::kRocker : level);
+  double force = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    const CrankAngle angle = CrankAngle::fromOffset(CrankAngle::wrapToPi(kTwoPi * i / kPoints - 1e-6));
+    const HullWrench w = hullWrench(model, CrankMotion{angle, speed, 0.0}, HullMotion{});
+    force = std::max({force, std::abs(w.force_x), std::abs(w.force_z)});
+  }
+  return force;
+}
 
 }  // namespace
 
 Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom,
-                   const SampleCounts& counts, const TrackerMaker& make)
+                   const SampleCounts& counts)
     : mechanism_(mechanism),
       settings_(settings),
       model_(mechanism_, settings.level),
       columns_(model_),
       displaced_links_(model_),
-      crank_(model_, settings_, make),
+      crank_(model_, settings_),
       trust_(settings_.crank_sensor),
+      zero_(ShaftModel(mechanism_, model_.level()), mechanism_.parameters().drive_inertia),
       hull_(mechanism_.parameters(), settings_, boom),
       rod_(model_),
       elastic_(model_, settings_.level),
@@ -38,6 +55,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       sampler_(model_, columns_, crank_.step(), crank_.tracker(), elastic_, settings_),
       nominal_force_(
           pulseAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
+      peak_at_speed_(peakAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate)),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings_, mechanism.parameters().striking_distance);
   result_.outputs.reserve(std::min(sampler_.mostOutputs(), kMostOutputs));
@@ -108,9 +126,12 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   hull_.vibrates(result_.boom != nullptr ? &*boom_ : nullptr);
   fill(links, drive, rod);
   sampler_.sample(links, result_);
+  followPeak();
+  if (crank_.step().known()) hull_.carry(result_.wrench, crank_.step().length());
   turn_.published(result_);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;
+  counts_.uncertain += result_.uncertain && !result_.beside_blow;
   if (crank_.step().known()) counts_.misuse.work_time += crank_.step().length();
   if (boom_) followMisuse();
   return result_;
@@ -123,13 +144,13 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
   result_.consistency = crank_.tracker().consistency();
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(result_.stamp);
   followTrust(taken);
-  const bool counts = !trust_.refusal() && trust_.hasRunUp() && !crank_.suspectsUnit();
+  const bool counts = !trust_.refusal() && !zero_.withholds() && trust_.hasRunUp() && !crank_.suspectsUnit();
   if (!counts) turn_.discard();
   if (taken == CrankFollower::Taken::kContinued) {
     passBlows();
     followHull();
     rod_.follow(crank_.step(), crank_.tracker());
-    rod_.take(crank_.tracker().filter(), elastic_.isLost());
+    rod_.take(crank_.tracker(), elastic_.isLost());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
     if (elastic_.runs())
       crank_.considerRod(elastic_.filter().motion().state.angle, elastic_.filter().motion().state.speed);
@@ -145,6 +166,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
 std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   settled_ = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
   if (const auto distrust = trust_.refusal()) return distrust;
+  if (zero_.withholds()) return Refusal::kInconsistent;
   if (hull_.anglesLookLikeDegrees()) return Refusal::kDegrees;
   return settled_ ? std::nullopt : std::make_optional(Refusal::kUnsettled);
 }
@@ -184,16 +206,18 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   result_.contact_doubt = contactDoubt(links.here.links, drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());
-  const CrankTracker& tracker = crank_.tracker();
+  const CrankFilter& tracker = crank_.tracker();
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
   result_.beside_blow =
       gives ? elastic_.isBesideBlow() : isBesideBlow(result_.crank, deviationFromBlow(tracker, of_angle));
+  result_.uncertain = !isKnown();
   return rod;
 }
 
 /// Hull, links, wrench and pin forces.
 void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept {
   const CrankMotion motion = motionOf(result_.crank);
+  result_.level = elastic_.isWanted() && !elastic_.isUsed() ? Level::kLinkage : settings_.level;
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitchKnown();
   result_.links = linkState(links.here.links, motion);
@@ -213,7 +237,8 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
 void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
   const double step = taken == CrankFollower::Taken::kContinued ? crank_.step().length() : 0.0;
   if (taken == CrankFollower::Taken::kBegan) trust_.begin();
-  trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step, !crank_.estimate().position.isMirrored());
+  trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
+  crank_.moveZero(zero_.follow(crank_.tracker(), crank_.reading(), step, {hull_.gravity()}));
   if (taken == CrankFollower::Taken::kContinued) {
     for (const CrankStep::Passage& passage : crank_.step())
       if (passage.forward) trust_.passBlow(settled_);
@@ -221,12 +246,33 @@ void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
   result_.inconsistent = result_.consistency > CrankTrust::kInconsistent;
 }
 
+/// Loads of a turn grow with the square of the speed: the present one's over the nominal one's.
+double Pipeline::speedScale() const noexcept { return square(result_.crank.speed / (kTwoPi * settings_.turn_rate)); }
+
 bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
   const double square_of_force = square(wrench.force_x) + square(wrench.force_z);
-  if (crank_.tracker().isProven()) return square_of_force <= square(kMostForce * nominal_force_);
+  if (crank_.tracker().isProven())
+    return square_of_force <= square(kMostForce * nominal_force_ * std::max(1.0, speedScale()));
   const double nominal_speed = kTwoPi * settings_.turn_rate;
   return square_of_force <= square(kMostForceUnproven * nominal_force_) &&
          std::abs(result_.crank.speed) <= kMostSpeedUnproven * nominal_speed;
+}
+
+/// Of a crank that is held at constant speed, which shows little of itself: no force's standard deviation is above five
+/// times withhold_above of its peak: of what was seen in the last minute,
+/// within what a turn at constant speed may have; of the latter before the first turn. (The drive's part of the moment
+/// has no such peak.)
+bool Pipeline::isKnown() const noexcept {
+  if (crank_.tracker().driveInertia() > 0.0) return true;  // of a crank at work
+  const double most = std::max(1.0, speedScale()) * peak_at_speed_;
+  const double peak = turn_.peakForce() > 0.0 ? std::clamp(seen_peak_, kLeastPeak * most, most) : most;
+  const HullWrench& deviation = result_.deviation.wrench;
+  return std::max(deviation.force_x, deviation.force_z) <= kUncertain * settings_.withhold_above * peak;
+}
+
+void Pipeline::followPeak() noexcept {
+  if (crank_.step().known()) seen_peak_ *= std::max(0.0, 1.0 - crank_.step().length() / kPeakLasts);
+  seen_peak_ = std::max({seen_peak_, std::abs(result_.wrench.force_x), std::abs(result_.wrench.force_z)});
 }
 
 /// The boom does not rest because a sample gives nothing.

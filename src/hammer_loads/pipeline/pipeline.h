@@ -16,6 +16,7 @@
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_follower.h"
 #include "hammer_loads/pipeline/wrench_sampler.h"
+#include "hammer_loads/pipeline/zero_watch.h"
 
 namespace hammer_loads {
 
@@ -23,9 +24,9 @@ namespace hammer_loads {
 /// inputs and settings alone.
 class Pipeline {
  public:
-  /// boom: nothing where its loads are not wanted. counts: where they go on from. make: of the crank's tracker.
+  /// boom: nothing where its loads are not wanted. counts: where they go on from.
   Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom = {},
-           const SampleCounts& counts = {}, const TrackerMaker& make = makeTracker);
+           const SampleCounts& counts = {});
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
@@ -61,6 +62,7 @@ class Pipeline {
   /// Of SampleResult::load_columns: names of the hammer's, behind those of the sensor.
   std::vector<std::string> hammerColumns() const { return columns_.names(); }
   const CrankTrust& crankTrust() const noexcept { return trust_; }
+  const ZeroWatch& zeroWatch() const noexcept { return zero_; }
   const ElasticFollower& elastic() const noexcept { return elastic_; }
   const HullState& hull() const noexcept { return hull_; }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }
@@ -75,7 +77,10 @@ class Pipeline {
   HullWrench contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
   ElasticFollower::Beside weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
   void fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept;
+  double speedScale() const noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
+  bool isKnown() const noexcept;
+  void followPeak() noexcept;
   void followTrust(CrankFollower::Taken taken) noexcept;
   void hullMovedAtBlow() noexcept;
   double stampNoise() const noexcept;
@@ -93,6 +98,7 @@ class Pipeline {
   DisplacedLinks displaced_links_;
   CrankFollower crank_;
   CrankTrust trust_;
+  ZeroWatch zero_;
   HullState hull_;
   RodRing rod_;
   ElasticFollower elastic_;
@@ -100,7 +106,9 @@ class Pipeline {
   MisuseFollower misuse_;
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
-  double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; see isPlausible()
+  double nominal_force_;  ///< peak of Fz at turn_rate_Hz and constant speed [N]; see isPlausible()
+  double seen_peak_{};    ///< of the force, see isKnown() [N]
+  double peak_at_speed_;  ///< largest component of the force there [N]
   bool settled_{};        ///< the last sample's estimate is good enough to be published, whatever the crank is trusted
   bool boom_follows_{};   ///< the boom has had every step since the last restart
   SampleCounts counts_;

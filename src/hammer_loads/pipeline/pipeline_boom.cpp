@@ -1,7 +1,6 @@
 // What the crank's motion is to the boom, and what the boom shows of how the machine is used.
 #include <cmath>
 
-#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/pipeline/pipeline.h"
 
 namespace hammer_loads {
@@ -14,16 +13,12 @@ constexpr double kLeadOfZero = 0.6;  // of the time that the crank needs at the 
 
 }  // namespace
 
-double Pipeline::stampNoise() const noexcept {
-  const CrankFilter* filter = crank_.tracker().filter();
-  return filter != nullptr ? filter->timingNoise() : 0.0;
-}
+double Pipeline::stampNoise() const noexcept { return crank_.tracker().timingNoise(); }
 
 /// By the sensor's zero, as the filter sees it. speed: of the crank at the blow [rad/s].
 CrankLead Pipeline::crankLead(double speed) const noexcept {
-  const CrankFilter* filter = crank_.tracker().filter();
-  if (filter == nullptr || !(speed > 0.0)) return {};
-  const ConstantErrors& errors = filter->constantErrors();
+  if (!(speed > 0.0)) return {};
+  const ConstantErrors& errors = crank_.tracker().constantErrors();
   const double by_angle = kLeadOfZero / speed;
   return {by_angle * errors.estimate()[0], by_angle * errors.deviation()[0]};
 }

@@ -41,6 +41,7 @@ struct SampleCounts {
   std::uint64_t accepted{};
   std::array<std::uint64_t, static_cast<std::size_t>(Refusal::kCount)> refused{};
   std::uint64_t beside_blow{};       ///< of the accepted ones: not published, see SampleResult
+  std::uint64_t uncertain{};         ///< likewise, of the others
   std::uint64_t restarts{};          ///< drop-outs, jumps and time running back
   std::uint64_t blows{};             ///< forward, for the first time, not creeping
   std::uint64_t impossible_blows{};  ///< not among them: RockerBlow::impossible

@@ -78,7 +78,6 @@ RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   const RodPrior prior = priorOf(p.rod, p.rod_deviation);
   gives_ = prior.gives;
   rods_ = rodsOf(prior);
-  take(nullptr, false);
 }
 
 void RodRing::begin(double beside_speed) noexcept {
@@ -128,7 +127,7 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   }
 }
 
-void RodRing::restart(const CrankTracker& tracker) noexcept {
+void RodRing::restart(const CrankFilter& tracker) noexcept {
   rest();
   const CrankEstimate now = tracker.estimate();
   const CrankAngle at = now.position.angle;
@@ -185,7 +184,7 @@ void RodRing::pass(const CrankStep::Passage& passage, const BlowFactor& blow) no
   strike(passage.speed_before, blow);
 }
 
-void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcept {
+void RodRing::follow(const CrankStep& step, const CrankFilter& tracker) noexcept {
   if (!gives_) return;
   double from = 0.0;
   for (const CrankStep::Passage& passage : step) {
@@ -199,14 +198,11 @@ void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcep
   drive(step, crank);
 }
 
-void RodRing::take(const CrankFilter* filter, bool lost) noexcept {
-  share_ = let_go_ = 1.0, lost_ = lost;
-  if (filter != nullptr) {
-    const RodEvidence& evidence = filter->rodEvidence();
-    share_ = std::sqrt(evidence.share(filter->readingDeviation()));
-    let_go_ = std::sqrt(evidence.letGoShare(filter->readingDeviation()));
-    lost_ = lost || evidence.isLost();
-  }
+void RodRing::take(const CrankFilter& filter, bool lost) noexcept {
+  const RodEvidence& evidence = filter.rodEvidence();
+  share_ = std::sqrt(evidence.share(filter.readingDeviation()));
+  let_go_ = std::sqrt(evidence.letGoShare(filter.readingDeviation()));
+  lost_ = lost || evidence.isLost();
 }
 
 double RodRing::doubtOf(double restitution) const noexcept {

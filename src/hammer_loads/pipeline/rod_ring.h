@@ -33,12 +33,12 @@ class RodRing {
 
   /// What came before the crank's last sample is not known: it has passed the blow, if it is behind it, by the kinetic
   /// energy that it has.
-  void restart(const CrankTracker& tracker) noexcept;
+  void restart(const CrankFilter& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
-  void follow(const CrankStep& step, const CrankTracker& tracker) noexcept;
-  /// The filter that has followed the readings, if any: they may show that no rod rings. lost:
+  void follow(const CrankStep& step, const CrankFilter& tracker) noexcept;
+  /// The filter that has followed the readings: they may show that no rod rings. lost:
   /// ElasticFollower::isLost().
-  void take(const CrankFilter* filter, bool lost) noexcept;
+  void take(const CrankFilter& filter, bool lost) noexcept;
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].
   HullWrench deviation(const LinkMotion& links, double crank) const noexcept;
@@ -75,7 +75,7 @@ class RodRing {
   };
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
-  double acceleration_{}, struck_{}, share_{}, let_go_{};
+  double acceleration_{}, struck_{}, share_{1.0}, let_go_{1.0};
   double driven_{};   ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
   double lacking_{};  ///< at the last blow, of the crank's speed [rad/s]
   bool lost_{};       ///< nothing explains what blows did to the crank

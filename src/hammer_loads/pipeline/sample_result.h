@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
@@ -65,15 +65,19 @@ struct SampleResult {
   /// Which side of the blow the sample is on is not known: what belongs to its instant is of the likelier side, and not
   /// published. Sums over steps go on.
   bool beside_blow{};
+  /// A standard deviation exceeds five times withhold_above of its component's peak in a turn: likewise.
+  bool uncertain{};
+  bool isPublished() const noexcept { return !refusal && !beside_blow && !uncertain; }
+  Level level{};  ///< of the model that gave the wrench: linkage where `elastic` has not shown itself
   CrankEstimate crank;
-  CrankUncertainty doubt;    ///< of the crank's motion; zero where the estimator has none
+  CrankUncertainty doubt;    ///< of the crank's motion
   LoadColumns load_columns;  ///< of the wrench
   HullWrench rod_momentum;  ///< that the rocker may have beside a rigid rod's, where no spring is followed [N s, N m s]
   HullWrench contact_doubt;  ///< as below, of where it is not known whether the tool was met
   HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
   bool rod_followed{};       ///< else rod_ring is a root mean square over a phase that is not known
   HullDeviation deviation;   ///< at the sample, with what the hull's motion adds
-  double consistency{};      ///< CrankTracker::consistency()
+  double consistency{};      ///< CrankFilter::consistency()
   bool inconsistent{};       ///< readings contradict the model, not yet so that samples are withheld
   LinkState links;
   HullState::Motion hull;

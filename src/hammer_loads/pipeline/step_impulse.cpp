@@ -24,7 +24,7 @@ LoadImpulse change(const HullModel& model, const DriveReaction& drive, const Par
   const CrankEstimate &a = from_end.crank, &b = to_end.crank;
   const LinkMomentum from = linkMomentum(model, from_end.links, a.position.angle, a.speed);
   const LinkMomentum to = linkMomentum(model, to_end.links, b.position.angle, b.speed);
-  const double drive_y = drive.by_crank * (a.speed - b.speed + (a.drive_lead_speed - b.drive_lead_speed));
+  const double drive_y = drive.by_crank * (a.speed - b.speed);
   return {{from.x - to.x, from.z - to.z, from.about_d - to.about_d + drive_y}, drive_y};
 }
 
@@ -115,7 +115,7 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexc
         const HullWrench impulse = change(model, drive, begin, end).all;
         piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
         if (ends_at == nullptr || !ends_at->strikes) return;
-        const RockerBlow blow = blowAt(model, step.struckInertia(), *ends_at);
+        const RockerBlow blow = blowAt(model, step.driveInertia(), *ends_at);
         piece.ends_in_blow = true;
         piece.blow_deviation = step.timeDeviation(*ends_at);
         piece.blow = {blow.support_impulse_x, blow.support_impulse_z, blow.support_impulse_y + blow.drive_impulse_y};

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/elastic_follower.h"
 #include "hammer_loads/pipeline/pending_blow.h"
@@ -19,7 +19,7 @@ namespace hammer_loads {
 class TurnFollower {
  public:
   /// Refers to them, which must outlive it.
-  TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankTracker& tracker,
+  TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankFilter& tracker,
                const RodRing& rod, const ElasticFollower& elastic)
       : model_(&model), columns_(&columns), step_(&step), tracker_(&tracker), rod_(&rod), elastic_(&elastic) {}
 
@@ -74,7 +74,7 @@ class TurnFollower {
   const HullModel* model_;
   const WrenchColumns* columns_;
   const CrankStep* step_;
-  const CrankTracker* tracker_;
+  const CrankFilter* tracker_;
   const RodRing* rod_;
   const ElasticFollower* elastic_;
   TurnRecorder turn_;

@@ -23,8 +23,25 @@ constexpr double kMoves = 1.0;  // [rad/s]: a slower angle says nothing of its u
 constexpr int kEnough = 8;  // votes more for another unit than against
 // Guard: SensorBounds.OfUnits of kTolerance, kStretch, kLongestStep, kEnough
 
+constexpr double kWindow = 8e-3;            // [s] over which a rate is taken
+constexpr double kMeanRate = 1.0;           // [s] of its mean
+constexpr double kSlow = 0.8, kFast = 1.2;  // of the mean rate: a hammer's crank passes both in each revolution
+constexpr double kLikeRevolution = 1.25;    // factor
+constexpr double kSameLength = 0.2;         // relative change from one revolution to the next
+constexpr double kLeastCounts = 100.0;      // of a revolution
+
+/// Of a cycle's length in the angle's own unit, times the gain. Nothing: it is none of them.
+std::optional<CrankUnit> unitOfRevolution(double length) noexcept {
+  const auto is = [&](double other) { return std::abs(std::log(length / other)) < std::log(kLikeRevolution); };
+  if (is(kTwoPi)) return CrankUnit::kRadians;
+  if (is(1.0)) return CrankUnit::kAngleInTurns;
+  if (is(360.0)) return CrankUnit::kDegrees;
+  return length > kLeastCounts ? std::make_optional(CrankUnit::kAngleInCounts) : std::nullopt;
+}
+
 /// The closest one within the tolerance; ratio: turned over predicted.
 CrankUnit unitOf(double ratio) noexcept {
+  if (std::abs(std::log(-ratio)) < std::log(kTolerance)) return CrankUnit::kSpeedSign;
   constexpr struct {
     double ratio;
     CrankUnit unit;
@@ -46,7 +63,8 @@ CrankUnit unitOf(double ratio) noexcept {
 
 void UnitCheck::begin(double angle) noexcept {
   last_angle_ = angle;
-  last_rate_ = turned_ = predicted_ = 0.0;
+  last_rate_ = turned_ = predicted_ = last_step_ = 0.0;
+  cycle_ = {};
 }
 
 void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexcept {
@@ -56,9 +74,15 @@ void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexce
   }
   if (!last_angle_ || !(dt > 0.0) || dt > kLongestStep) return begin(angle);
   const double step = angle - *last_angle_;
+  constexpr double kBack = 3.0;  // times the step before: the angle is wrapped there
+  const bool wraps = step * last_step_ < 0.0 && std::abs(step) > kBack * std::abs(last_step_);
+  const bool was_still = last_step_ == 0.0 && step != 0.0;
+  if (!wraps) last_step_ = step;
+  followCycle(dt, last_step_);
+  if (was_still) turned_ = predicted_ = 0.0;  // the first step of an angle that stood still may hold a revolution
   last_angle_ = angle;
   compareWithBound(dt, step / dt);
-  if (speed) compareWithSpeed(step, *speed * dt);
+  if (speed && !was_still) compareWithSpeed(last_step_, *speed * dt);
   suspected_for_ = suspects() ? suspected_for_ + dt : 0.0;
 }
 
@@ -85,12 +109,34 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
   vote(bound_votes_, too_fast ? CrankUnit::kDegrees : CrankUnit::kRadians);
 }
 
-/// One judge suffices to recognise a unit; both must agree that it is over.
+void UnitCheck::followCycle(double dt, double turned) noexcept {
+  auto& c = cycle_;
+  c.turned += turned;
+  c.time += dt;
+  if (c.time < kWindow) return;
+  const double rate = std::abs(c.turned) / c.time;
+  c.length += std::abs(c.turned);
+  c.mean += std::min(1.0, c.time / kMeanRate) * (rate - c.mean);
+  c.turned = c.time = 0.0;
+  c.slow = c.slow || rate < kSlow * c.mean;
+  if (!c.slow || rate < kFast * c.mean) return;
+  c.slow = false;
+  const double length = std::exchange(c.length, 0.0), before = std::exchange(c.before, length);
+  const std::optional<CrankUnit> unit = unitOfRevolution(gain_ * length);
+  if (!unit || std::abs(length - before) > kSameLength * length) return;
+  if (*unit != CrankUnit::kRadians && std::exchange(cycle_unit_, *unit) != *unit) cycle_votes_ = 0;
+  vote(cycle_votes_, *unit);
+}
+
+/// One judge suffices to recognise a unit; all must agree that it is over.
 void UnitCheck::vote(int& votes, CrankUnit unit) noexcept {
   const bool wrong = unit != CrankUnit::kRadians;
   votes = std::clamp(votes + (wrong ? 1 : -1), 0, kEnough);
   if (wrong && votes == kEnough && suspected_for_ >= look_back::kTurn) recognised_ = unit;
-  if (speed_votes_ == 0 && bound_votes_ == 0) recognised_ = CrankUnit::kRadians;
+  // Too fast for radians may be counts as well: the length of a revolution says which.
+  if (recognised_ == CrankUnit::kDegrees && cycle_votes_ == kEnough && cycle_unit_ == CrankUnit::kAngleInCounts)
+    recognised_ = CrankUnit::kAngleInCounts;
+  if (speed_votes_ == 0 && bound_votes_ == 0 && cycle_votes_ == 0) recognised_ = CrankUnit::kRadians;
 }
 
 }  // namespace hammer_loads

@@ -1,6 +1,7 @@
 /// Recognises a crank or a boom that sends another unit where radians and radians per second are required.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "hammer_loads/util/constants.h"
@@ -14,7 +15,16 @@ enum class CrankUnit {
   kSpeedInRpm,    ///< turns a minute
   kSpeedInTurns,  ///< turns a second
   kAngleInTurns,
+  kAngleInCounts,  ///< of the encoder
+  kSpeedSign,      ///< the speed's sign is not that of the angle's change
 };
+
+constexpr bool isOfAngle(CrankUnit unit) noexcept {
+  return unit == CrankUnit::kAngleInTurns || unit == CrankUnit::kAngleInCounts;
+}
+constexpr bool isOfSpeed(CrankUnit unit) noexcept {
+  return unit == CrankUnit::kSpeedInRpm || unit == CrankUnit::kSpeedInTurns || unit == CrankUnit::kSpeedSign;
+}
 
 /// The text of its warning.
 constexpr const char* textOf(CrankUnit unit) noexcept {
@@ -27,6 +37,10 @@ constexpr const char* textOf(CrankUnit unit) noexcept {
       return "speed is in turns per second, must be in rad/s";
     case CrankUnit::kAngleInTurns:
       return "angle is in turns, must be in radians";
+    case CrankUnit::kAngleInCounts:
+      return "angle is in encoder counts, must be in radians";
+    case CrankUnit::kSpeedSign:
+      return "speed has the opposite sign of the angle's change";
     case CrankUnit::kRadians:
       break;
   }
@@ -35,6 +49,8 @@ constexpr const char* textOf(CrankUnit unit) noexcept {
 
 /// Compares what the crank's angle turns with what its speed says, over stretches of a radian or more: a factor of 57.3
 /// either way is degrees in one of them, 1/9.55 a speed in rpm, 6.28 one in turns a second, 1/6.28 an angle in turns.
+/// A factor of -1 is a wrong sign. A hammer's crank is slow once in a revolution: what the angle turns between two such
+/// places is its unit's revolution, whatever the speeds are and whether the angle is wrapped or not.
 /// Where both would be in degrees, or no speed is measured, it looks for steps that repeat themselves, each faster than
 /// any crank, but not so if they were degrees. Needs the raw samples, those that are refused as well; judges within
 /// some 2 turns and takes nothing back before the samples contradict it. Degrees of both angle and speed below
@@ -42,14 +58,17 @@ constexpr const char* textOf(CrankUnit unit) noexcept {
 class UnitCheck {
  public:
   /// No crank is faster [rad/s].
-  explicit UnitCheck(double max_speed) noexcept : max_speed_(max_speed) {}
+  /// gain: crank angle per reading [-], != 0.
+  explicit UnitCheck(double max_speed, double gain = 1.0) noexcept : max_speed_(max_speed), gain_(std::abs(gain)) {}
 
   /// Sample dt after the one before it [s]; dt <= 0, a long pause and values that are not finite begin a new stretch.
   void add(double dt, double angle, std::optional<double> speed) noexcept;
   CrankUnit unit() const noexcept { return recognised_; }
   bool looksWrong() const noexcept { return recognised_ != CrankUnit::kRadians; }
   /// The last stretches speak for another unit, but not enough of them yet.
-  bool suspects() const noexcept { return speed_votes_ >= kSuspicious || bound_votes_ >= kSuspicious; }
+  bool suspects() const noexcept {
+    return speed_votes_ >= kSuspicious || bound_votes_ >= kSuspicious || cycle_votes_ >= kSuspicious;
+  }
 
  private:
   static constexpr int kSuspicious = 2;  ///< votes more for another unit than against
@@ -58,15 +77,25 @@ class UnitCheck {
   void begin(double angle) noexcept;
   void compareWithSpeed(double step, double predicted) noexcept;
   void compareWithBound(double dt, double rate) noexcept;
+  void followCycle(double dt, double turned) noexcept;
   void vote(int& votes, CrankUnit unit) noexcept;
 
-  double max_speed_;
+  double max_speed_, gain_;
   std::optional<double> last_angle_;
   double last_rate_{};             ///< of the angle over the last step [rad/s]
   double turned_{}, predicted_{};  ///< of this stretch, by angles and by speeds [rad]
   double suspected_for_{};         ///< time since the votes became suspicious [s]
   double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
-  int speed_votes_{}, bound_votes_{};
+  int speed_votes_{}, bound_votes_{}, cycle_votes_{};
+  CrankUnit cycle_unit_{CrankUnit::kRadians};  ///< that cycle_votes_ are for
+  double last_step_{};                         ///< of the angle, but for steps back by a revolution
+  /// Of the cycles from one slow place of the crank to the next, in the angle's own unit.
+  struct {
+    double turned{}, time{};    ///< of the present window
+    double mean{};              ///< rate [1/s]
+    double length{}, before{};  ///< turned since the cycle began; in the one before
+    bool slow{};
+  } cycle_;
   CrankUnit speed_unit_{CrankUnit::kRadians};  ///< that speed_votes_ are for
   CrankUnit recognised_{CrankUnit::kRadians};
 };

@@ -28,14 +28,17 @@ void warnOfUnits(const Pipeline& pipeline, const SampleCounts& counts, std::vect
                         std::string(boom ? "boom joints" : "crank") +
                             ": angle or speed is in degrees, must be in radians" + withheld(degrees),
                         boom || unit == CrankUnit::kDegrees});
-  if (turns > 0 || unit == CrankUnit::kAngleInTurns)
-    warnings.push_back({"angle unit", std::string("crank: ") + textOf(CrankUnit::kAngleInTurns) + withheld(turns),
-                        unit == CrankUnit::kAngleInTurns});
-  const bool now = unit == CrankUnit::kSpeedInRpm || unit == CrankUnit::kSpeedInTurns;
+  if (turns > 0 || isOfAngle(unit))
+    warnings.push_back({"angle unit",
+                        std::string("crank: ") +
+                            (isOfAngle(unit) ? textOf(unit) : "angle was in turns or counts, must be in radians") +
+                            withheld(turns),
+                        isOfAngle(unit)});
+  const bool now = isOfSpeed(unit);
   if (speed == 0 && !now) return;
   warnings.push_back({"speed unit",
                       std::string("crank: ") +
-                          (now ? textOf(unit) : "speed was in rpm or turns per second, must be in rad/s") +
+                          (now ? textOf(unit) : "speed was of another unit or sign, must be in rad/s") +
                           withheld(speed),
                       now});
 }
@@ -106,6 +109,7 @@ void warnOfConstants(const ConstantErrors& errors, const CrankSensor& sensor, bo
       const auto at = static_cast<Eigen::Index>(i);
       amount = i == begin ? errors.estimate()[at] : std::hypot(amount, errors.estimate()[at]);
       deviation = std::max(deviation, errors.deviation()[at]);
+      if (at == ConstantErrors::kZero) deviation = std::hypot(deviation, errors.zeroNotLinear());
     }
     const double certain = gives ? beyondRod(first, amount) : std::abs(amount);
     const bool named = first.warning != nullptr && certain > std::max(first.notable, gate::kUsual * deviation);
@@ -114,18 +118,23 @@ void warnOfConstants(const ConstantErrors& errors, const CrankSensor& sensor, bo
   }
 }
 
-/// A zero that is off by more than such a crank's slowest place is known; in which unit it was given.
-std::string zeroFarOff(const CrankSensor& sensor, double behind) {
-  constexpr double kDegree = kTwoPi / 360.0;
-  const double zero = sensor.place().zero, found = zero + behind / sensor.gain();
-  const auto misses = [&](double other) { return std::abs(CrankAngle::wrapToPi((found - other) * sensor.gain())); };
-  std::string text = format(
-      "the crank is slowest %.2g rad behind where it must be: crank_zero_rad, %.4g rad, is off by "
-      "some %.2g rad",
-      behind, zero, behind / sensor.gain());
-  if (std::abs(zero) >= 1.0 && misses(zero * kDegree) < CrankTrust::kSlowestKnown)
-    text += format("; %.4g degrees, %.4g rad, would fit", zero, zero * kDegree);
-  return text;
+/// The zero that the readings show, in the sensor's own angle, and what to do.
+std::string zeroFarOff(const Pipeline& pipeline, const CrankFilter& filter) {
+  const CrankSensor& sensor = pipeline.settings().crank_sensor;
+  const ConstantErrors& errors = filter.constantErrors();
+  const double off = (pipeline.zeroWatch().moved() + errors.estimate()[ConstantErrors::kZero]) / sensor.gain();
+  const double zero = sensor.place().zero, found = std::remainder(zero + off, kTwoPi);
+  std::string action = "set it, or run calibrate";
+  if (!pipeline.zeroWatch().isSettled())
+    return format("crank_zero_rad is off by about %.1f deg: loads are withheld while it is refined. Run calibrate.",
+                  off / kDegree);
+  if (std::abs(zero) >= 1.0 && std::abs(std::remainder(zero * kDegree - found, kTwoPi)) < 0.1)
+    action = format("%.4g degrees would fit", zero);
+  const double deviation =
+      std::hypot(errors.deviation()[ConstantErrors::kZero], errors.zeroNotLinear()) / std::abs(sensor.gain());
+  return format("crank_zero_rad is off by %.2f +- %.2f deg (%.4f rad would fit): %s: %s.", off / kDegree,
+                deviation / kDegree, found, pipeline.zeroWatch().withholds() ? "loads are withheld" : "it is corrected",
+                action.c_str());
 }
 
 /// The rod gives: what a rigid model takes that for is not said of the sensor, nor of the hammer file.
@@ -153,24 +162,20 @@ std::string howMuchTheyDiffer(const CrankFilter& filter, bool is_lost) {
 
 /// What contradicts the model, by where in the turn it does. strike: before the blow as well.
 std::string contradictionOf(const Pipeline& pipeline, bool strike) {
-  const CrankFilter& filter = *pipeline.crank().tracker().filter();
+  const CrankFilter& filter = pipeline.crank().tracker();
   const std::string how_much = howMuchTheyDiffer(filter, pipeline.crankTrust().isLost());
   if (!strike)
     return how_much +
-           "before the blow they agree, what follows it is not in the model, as where a shaft gives (shaft: flexible) "
-           "or the hull's retainer is struck; the deviations there are too small";
-  if (const std::optional<double> behind = pipeline.crankTrust().zeroFarOff())
-    return how_much + zeroFarOff(pipeline.settings().crank_sensor, *behind);
+           "before the blow they agree, what follows it is not in the model, as where a coupling between crank and "
+           "encoder twists (check or stiffen it) or the hull's retainer is struck; the deviations there are too small";
   const std::string rod =
       filter.rodEvidence().gives()
           ? format("just after it they differ by %.2g times, as where rod, pins and bearings give: ",
                    filter.rodEvidence().pickedUp())
           : "";
   return how_much + rod +
-         format(
-             "the crank is slowest where it must be, so crank_zero_rad is right to some %.1g rad; within that it, "
-             "masses and lengths of the hammer file, or a coupling between crank and encoder (%s), do not fit",
-             CrankTrust::kSlowestKnown, pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible");
+         "check crank_zero_rad, masses and lengths of the hammer file, or check and stiffen the coupling between crank "
+         "and encoder";
 }
 
 /// For readings that contradict the model before the blow.
@@ -190,8 +195,7 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
   const bool strike = filter.strikeConsistency() > CrankTrust::kInconsistent;
   const bool now = filter.consistency() > CrankTrust::kInconsistent || strike || filter.isUnexplained() ||
                    pipeline.crankTrust().isInconsistent() || mostIsWithheld(pipeline.counts());
-  const bool far_off = withheld > 0 && pipeline.crankTrust().zeroFarOff();  // no rod makes that
-  if (far_off || (now && !gives))
+  if (now && !gives)
     return warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld > 0), true});
   if (gives) {
     warnings.push_back({withheld > 0 ? "inconsistent" : "rod", rodOf(filter), true});
@@ -205,26 +209,29 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   // Guard: WarningNumbers.NothingIsSaidOfASensorBeforeTenBlows of kLearned
-  const CrankFilter* filter = pipeline.crank().tracker().filter();
+  const CrankFilter& filter = pipeline.crank().tracker();
   const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
-  if (filter == nullptr || pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
+  if (pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
   if (pipeline.counts().blows < kLearned && withheld == 0) return;
+  if (pipeline.zeroWatch().isOff())  // anything else that is seen may follow from it
+    return warnings.push_back(
+        {pipeline.zeroWatch().withholds() ? "inconsistent" : "zero", zeroFarOff(pipeline, filter), true});
   // A rod alone hardly makes most of a recording contradict the model before the blow.
-  const bool gives = filter->rodEvidence().gives() && !mostIsWithheld(pipeline.counts());
-  if (filter->isLost())
+  const bool gives = filter.rodEvidence().gives() && !mostIsWithheld(pipeline.counts());
+  if (filter.isLost())
     warnings.push_back({"lost",
                         std::string("crank: the estimate restarts again and again; readings and ") +
                             (gives ? "a rigid rod" : "hammer file") + " contradict each other",
                         true});
-  if (filter->encoder().contradictsGiven())
+  if (filter.encoder().contradictsGiven())
     warnings.push_back(
         {"count",
          format("crank_angle_resolution_rad: %.9g rad is given, the readings have %.9g rad; 0 reads it off",
-                pipeline.settings().crank_angle_resolution, filter->encoder().resolution()),
+                pipeline.settings().crank_angle_resolution, filter.encoder().resolution()),
          true});
-  warnOfStamps(pipeline.crank(), *filter, kTwoPi * pipeline.settings().turn_rate, warnings);
-  warnOfReadings(pipeline.crank(), *filter, warnings);
-  warnOfMismatch(pipeline, *filter, gives, warnings);
+  warnOfStamps(pipeline.crank(), filter, kTwoPi * pipeline.settings().turn_rate, warnings);
+  warnOfReadings(pipeline.crank(), filter, warnings);
+  warnOfMismatch(pipeline, filter, gives, warnings);
 }
 
 /// Of a unit that is not where or what it is said to be. weight: of the hull by the joint angles.
@@ -253,6 +260,14 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   if (!unheard.empty())
     warnings.push_back(
         {"pitch joints", "no angle of " + joined(unheard) + " (pitch_joints): weight by hull_pitch_rad", true, true});
+  constexpr double kMostPitch = 1.2;  // [rad]: a hammer that works strikes downward
+  const double pitch = hull.pitch().pitch();
+  if (hull.pitch().known() && std::abs(pitch) > kMostPitch && counts.blows > 0 && !hull.anglesLookLikeDegrees())
+    warnings.push_back({"pitch",
+                        format("hull pitch is %.0f deg at work: its weight is wrong if the tool points down. "
+                               "Check pitch_signs and pitch_offset_rad.",
+                               pitch / kDegree),
+                        true});
   const bool imu = pipeline.settings().hull_motion == HullMotionSource::kImu;
   if (imu && hull.imuCounts().accepted == 0)
     warnings.push_back(
@@ -269,7 +284,7 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
 }  // namespace
 
 bool isContradiction(std::string_view key) noexcept {
-  constexpr std::string_view kKeys[] = {"degrees", "speed unit", "backward", "inconsistent", "lost"};
+  constexpr std::string_view kKeys[] = {"degrees", "angle unit", "speed unit", "backward", "inconsistent", "lost"};
   return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
 }
 

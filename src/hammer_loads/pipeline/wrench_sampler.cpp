@@ -9,7 +9,7 @@
 namespace hammer_loads {
 
 WrenchSampler::WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step,
-                             const CrankTracker& tracker, const ElasticFollower& elastic,
+                             const CrankFilter& tracker, const ElasticFollower& elastic,
                              const PipelineSettings& settings)
     : model_(&model),
       hammer_(&columns),
@@ -55,7 +55,7 @@ void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexc
 /// Whether it is clear on which side of the blow the output is; a mean does not depend on it.
 bool WrenchSampler::isKnown(double time, const WrenchOutput& output, const SampleResult& result) const noexcept {
   if (kind_ == OutputKind::kMean) return true;
-  if (output.stamp == result.stamp) return !result.beside_blow;
+  if (output.stamp == result.stamp) return result.isPublished();
   if (elastic_->ranOverStep()) return !elastic_->isBesideBlowAt(time);
   return !isBesideBlow(output.crank, deviationFromBlow(*tracker_, output.deviation.angle));
 }
@@ -120,8 +120,7 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
       output.wrench = result.wrench;
     else
       setInstant(time, hull, output);
-    const double drive_acceleration = output.crank.acceleration + output.crank.drive_lead_acceleration;
-    output.drive_reaction_y = drive_.torque(drive_acceleration, hull.acceleration);
+    output.drive_reaction_y = drive_.torque(output.crank.acceleration, hull.acceleration);
   }
   last_output_ = stamp;
   const LinkState state = at_sample ? result.links : linkState(*model_, motionOf(output.crank));

@@ -18,8 +18,8 @@ namespace hammer_loads {
 /// are in RockerBlow, not here). Refers to its arguments, which must outlive it.
 class WrenchSampler {
  public:
-  WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step,
-                const CrankTracker& tracker, const ElasticFollower& elastic, const PipelineSettings& settings);
+  WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankFilter& tracker,
+                const ElasticFollower& elastic, const PipelineSettings& settings);
 
   /// Outputs restart with the next sample.
   void forget() noexcept { begun_ = false; }
@@ -48,7 +48,7 @@ class WrenchSampler {
   const HullModel* model_;
   const WrenchColumns* hammer_;
   const CrankStep* step_;
-  const CrankTracker* tracker_;
+  const CrankFilter* tracker_;
   const ElasticFollower* elastic_;
   OutputKind kind_;
   double rate_;         ///< [Hz]; 0: at each sample

@@ -6,13 +6,26 @@
 #include <string>
 #include <utility>
 
+#include "hammer_loads/settings/yaml_value.h"
+
 namespace hammer_loads::python {
 
-StateArrays::StateArrays(const std::vector<py::object>& quantities) {
+namespace {
+
+/// Beginning of a value as Python shows it.
+std::string shown(const py::handle& value) {
+  constexpr std::size_t kMost = 60;
+  const std::string text = onOneLine(py::repr(value).cast<std::string>());
+  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
+}  // namespace
+
+StateArrays::StateArrays(const std::vector<Quantity>& quantities) {
   bool alike = true;  // then NumPy need not be asked
-  for (const py::object& quantity : quantities) {
-    Array array = Array::ensure(quantity);
-    if (!array) throw py::error_already_set();
+  for (const auto& [name, quantity] : quantities) {
+    Array array = Array::ensure(quantity);  // clears Python's error
+    if (!array) raise({std::string(name) + ": " + shown(quantity) + ", must be a number or an array of numbers"});
     arrays_.push_back(std::move(array));
     const Array& added = arrays_.back();
     const std::vector<py::ssize_t> shape(added.shape(), added.shape() + added.ndim());
@@ -89,6 +102,13 @@ void ResultArrays::demandApartFrom(const StateArrays& states) const {
     const bool shared = i > 0 && static_cast<std::size_t>(sorted[i] - sorted[i - 1]) < states.count();
     if (shared || states.overlap(sorted[i], states.count())) raise({"out: shares memory with another array"});
   }
+}
+
+double numberOf(const std::string& name, const py::handle& value) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() == nullptr) return number;
+  PyErr_Clear();
+  raise({name + ": " + shown(value) + ", must be a number"});
 }
 
 void raise(const std::vector<std::string>& problems) {

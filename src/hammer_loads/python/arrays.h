@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hammer_loads::python {
@@ -16,8 +17,11 @@ namespace py = pybind11;
 /// one shape.
 class StateArrays {
  public:
-  /// ValueError where the shapes do not go together.
-  explicit StateArrays(const std::vector<py::object>& quantities);
+  /// A value with the name of its argument.
+  using Quantity = std::pair<const char*, py::object>;
+
+  /// ValueError where one is not of numbers, or the shapes do not go together.
+  explicit StateArrays(const std::vector<Quantity>& quantities);
 
   std::size_t count() const { return count_; }
   /// Of the results: the shape that all quantities have together; of numbers alone none.
@@ -57,6 +61,9 @@ class ResultArrays {
   std::vector<const double*> data_;
   py::dict arrays_;
 };
+
+/// A number that a caller gives under a name; ValueError where it is none.
+double numberOf(const std::string& name, const py::handle& value);
 
 /// Python's ValueError: the problems as the commands write them, a line each.
 [[noreturn]] void raise(const std::vector<std::string>& problems);

@@ -14,7 +14,7 @@ void countAll(Counter& counter, const double* values, std::size_t count) {
 
 py::dict countCycles(const py::object& series, const std::optional<std::pair<double, double>>& full_scale,
                      std::int64_t classes) {
-  const StateArrays values({series});
+  const StateArrays values({{"series", series}});
   if (values.shape().size() > 1) raise({"series: has more than one dimension, must have one"});
   std::optional<life::LoadGrid> grid;
   if (full_scale) {

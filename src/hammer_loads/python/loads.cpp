@@ -48,7 +48,7 @@ double gravityOf(const Hammer& hammer, const Weight& weight) {
 /// The pitch of all states.
 double onePitch(const Weight& weight) {
   if (weight.pitch.is_none()) return 0.0;
-  const double pitch = weight.pitch.cast<double>();
+  const double pitch = numberOf("pitch", weight.pitch);
   if (!std::isfinite(pitch)) raise({"pitch: " + numberText(pitch) + " rad, must be a finite number"});
   return pitch;
 }
@@ -136,7 +136,7 @@ py::dict wrenches(const Hammer& hammer, const py::object& angle, const py::objec
   const HullModel model(hammer.mechanism(), levelOf(hammer, options.level));
   const double g = gravityOf(hammer, options.weight);
   const py::object pitches = options.weight.pitch.is_none() ? py::float_(0.0) : options.weight.pitch;
-  const StateArrays states({angle, speed, acceleration, pitches});
+  const StateArrays states({{"angle", angle}, {"speed", speed}, {"acceleration", acceleration}, {"pitch", pitches}});
   const bool one_pitch = states.isNumber(3) || states.count() == 1;
   std::vector<double> scratch;
   const double pitch = states.count() > 0 && one_pitch ? *states.from(3, 0, 1, scratch) : 0.0;

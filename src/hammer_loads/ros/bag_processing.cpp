@@ -2,7 +2,6 @@
 
 #include <system_error>
 
-#include "hammer_loads/pipeline/smoothed_runs.h"
 #include "hammer_loads/ros/attach.h"
 #include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/ros/bag_runs.h"
@@ -28,10 +27,8 @@ struct Sinks {
 /// The hammer's bridge through the runs of a recording.
 class HammerRuns {
  public:
-  /// make: of the crank's tracker, for each run.
-  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, const Sinks& sinks, const TrackerMaker& make,
-             BagReport& report)
-      : runs_(runs), job_(job), sinks_(sinks), make_(make), report_(report) {
+  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, const Sinks& sinks, BagReport& report)
+      : runs_(runs), job_(job), sinks_(sinks), report_(report) {
     begin();
   }
 
@@ -67,7 +64,7 @@ class HammerRuns {
  private:
   void begin() {
     const Settings& settings = runs_[next_++].settings;
-    flow_.emplace(settings, make_);
+    flow_.emplace(settings);
     inputs_.emplace(settings);
     if (job_.pieces != nullptr) flow_->keepPieces(*job_.pieces);
     if (sinks_.bag != nullptr) attachToBag(flow_->outputs(), *sinks_.bag, job_.output_prefix, job_.pins);
@@ -78,45 +75,11 @@ class HammerRuns {
   const std::vector<BagRun>& runs_;
   const BagJob& job_;
   const Sinks sinks_;
-  const TrackerMaker make_;
   BagReport& report_;
   std::size_t next_{};
   std::optional<HammerBridge> flow_;
   std::optional<HammerInputs> inputs_;                       ///< of this run
   std::vector<std::function<void(HammerBridge&)>> latched_;  ///< messages that are the same in every run
-};
-
-/// The pass ahead of the one that writes: the live filter on the same messages.
-class AheadPass {
- public:
-  /// Opens the bags once more: each reader needs its own.
-  AheadPass(const std::vector<BagRun>& runs, const std::vector<std::string>& files, const std::set<std::string>& topics)
-      : inputs_(BagInputs::open(files)) {
-    if (!inputs_.value) throw std::runtime_error(inputs_.problems.front());
-    messages_.emplace(inputs_.value->messagesOn(topics));
-    runs_.emplace(runs, job_, Sinks{}, smoothed_.ahead(), report_);
-  }
-
-  TrackerMaker behind() { return smoothed_.behind(); }
-  /// Reads on until the pass behind can take its next message.
-  void readOn() {
-    while (!smoothed_.isReady()) {
-      if (const BagMessage* item = messages_->next()) {
-        runs_->take(*item);
-      } else {
-        runs_.reset();
-        smoothed_.end();
-      }
-    }
-  }
-
- private:
-  const BagJob job_{};  ///< writes nothing
-  BagReport report_;    ///< of no use: that of the other pass counts
-  Checked<BagInputs> inputs_;
-  SmoothedRuns smoothed_;
-  std::optional<BagMessages> messages_;
-  std::optional<HammerRuns> runs_;
 };
 
 Wanted wantedTopics(const std::vector<BagRun>& runs, bool hammer, const std::string& slider_topic) {
@@ -144,13 +107,6 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   return {};
 }
 
-/// Says in each run's run_info that it is smoothed.
-void markSmoothed(std::vector<BagRun>& runs, std::vector<BagWarning>& warnings) {
-  const std::string mark = "smooth: the crank is estimated by later samples as well; the live node gives other values";
-  for (BagRun& run : runs) run.settings.notes.push_back(mark);
-  addOnce(warnings, {"smooth", mark});
-}
-
 /// Everything that one job works with once its inputs are known to be good.
 struct Work {
   const BagInputs& inputs;
@@ -174,11 +130,9 @@ void process(const Work& work, const Sinks& sinks, const std::function<void(doub
   const Wanted wanted = wantedTopics(work.runs, work.hammer, work.slider_topic);
   std::set<std::string> topics;
   for (const auto& [name, type] : wanted) topics.insert(name);
-  std::optional<AheadPass> ahead;
   std::optional<HammerRuns> hammer;
   std::optional<GrappleFlow> grapple;
-  if (work.hammer && work.job.smooth) ahead.emplace(work.runs, work.job.inputs, topics);
-  if (work.hammer) hammer.emplace(work.runs, work.job, sinks, ahead ? ahead->behind() : makeTracker, report);
+  if (work.hammer) hammer.emplace(work.runs, work.job, sinks, report);
   if (work.job.grapple) {
     grapple.emplace(*work.job.grapple);
     if (sinks.bag != nullptr) attachToBag(grapple->outputs(), *sinks.bag, work.job.grapple_prefix, false);
@@ -192,7 +146,6 @@ void process(const Work& work, const Sinks& sinks, const std::function<void(doub
   while (const BagMessage* item = messages.next()) {
     progress(++done / count);
     heard.insert(item->connection);
-    if (ahead) ahead->readOn();
     if (hammer) hammer->take(*item);
     if (grapple && item->connection->topic == work.slider_topic) {
       item->to(slider);
@@ -240,7 +193,7 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
   if (!inputs.value) return inputs.problems;
   const std::string& names = inputs.value->names();
   try {
-    Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
+    const Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
     if (!runs.value) return runs.problems;
     report.notes = runs.notes;
     if (!job.output.empty()) report.hammer_prefix = job.output_prefix, report.grapple_prefix = job.grapple_prefix;
@@ -249,7 +202,6 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     for (const BagRun& run : *runs.value)
       work.hammer = work.hammer || inputs.value->has(run.settings.input_topics.crank);
     if (!work.hammer) report.notes = {}, report.warnings = {};
-    if (work.hammer && job.smooth) markSmoothed(*runs.value, report.warnings);
     if (job.grapple) work.slider_topic = first.joint_states;
     const bool hammer_required = !job.grapple || !job.tables.empty() || job.pieces != nullptr;
     const std::string& required = hammer_required ? first.crank : first.joint_states;
@@ -264,6 +216,8 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
       return {names + ": " +
               (work.hammer ? noWrench(*inputs.value, runs.value->back(), report)
                            : "no jaw edge; " + onOneLine(report.grapple))};
+    if (!job.tables.empty() && report.crank.contradictSince({}))
+      return {names + ": no tables, for some of their figures would be wrong: " + contradictionsOf(report.warnings)};
     if (work.hammer && useless)
       addOnce(report.warnings, {"no wrench", noWrench(*inputs.value, runs.value->back(), report)});
     return {};

@@ -26,7 +26,6 @@ struct BagJob {
   InputTopics topics;
   std::string output_prefix{"/hammer_loads"};
   bool pins{};                             ///< pin forces as well
-  bool smooth{};                           ///< the crank by later samples as well; not as the live node has it
   std::optional<GrappleSettings> grapple;  ///< the grapple as well; then a bag without the crank topic will do
   std::string grapple_prefix{"/grapple"};
 };

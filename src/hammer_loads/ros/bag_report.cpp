@@ -24,6 +24,7 @@ std::vector<std::string> textsOf(const std::vector<BagWarning>& warnings) {
 void add(const SampleCounts& counts, SampleCounts& sum) {
   sum.accepted += counts.accepted;
   sum.beside_blow += counts.beside_blow;
+  sum.uncertain += counts.uncertain;
   sum.restarts += counts.restarts;
   sum.blows += counts.blows;
   sum.impossible_blows += counts.impossible_blows;

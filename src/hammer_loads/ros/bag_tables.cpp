@@ -1,13 +1,17 @@
 #include "hammer_loads/ros/bag_tables.h"
 
+#include <algorithm>
 #include <sstream>
+#include <string>
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/pipeline/boom_health.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
+#include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_texts.h"
 #include "hammer_loads/tables/sha256.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
@@ -21,6 +25,16 @@ std::string withoutPaths(const std::string& yaml) {
     if (key.rfind("log_", 0) != 0 && key != "life_ledger") kept += line + '\n';
   }
   return kept;
+}
+
+/// A certificate states the uncertainty of every input: also those that no file gives.
+void addUsualDeviations(const HammerParameters& hammer, RunRecord& record) {
+  for (const auto& [key, deviation] : deviationsInForce(hammer)) {
+    const auto has_key = [&key = key](const RunRecord::Parameter& p) { return p.key == key; };
+    if (!(deviation > 0.0) || std::any_of(record.parameters.begin(), record.parameters.end(), has_key)) continue;
+    const std::string value = format("%.3g", deviation);
+    record.parameters.push_back({key, value, value});
+  }
 }
 
 /// The run's record at its beginning.
@@ -38,6 +52,7 @@ RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
   record.level = nameOf(settings.pipeline.level);
   for (const ParameterText& parameter : parameters)
     record.parameters.push_back({parameter.key, parameter.value, parameter.shipped});
+  addUsualDeviations(settings.mechanism.parameters(), record);
   return record;
 }
 
@@ -51,19 +66,17 @@ void addCounts(const SampleCounts& counts, RunRecord& record) {
   for (std::size_t i = 0; i < counts.refused.size(); ++i)
     record.refusals.push_back({kRefusalNames[i], counts.refused[i]});
   record.refusals.push_back({"beside the blow", counts.beside_blow});
+  record.refusals.push_back({"uncertain", counts.uncertain});
 }
 
 /// Numbers that the filter has learned by the end of the run.
-void addLearned(const CrankTracker& tracker, RunRecord& record) {
-  record.consistency = tracker.consistency();
-  record.angle_resolution = tracker.angleResolution();
-  const CrankFilter* filter = tracker.filter();
-  if (filter == nullptr) return;
-  record.timing_noise = filter->timingNoise();
-  record.speed_noise = filter->speedNoise();
-  const BlowFactor blow = filter->blowFactor();
-  record.drive_inertia = filter->driveInertia();
-  record.drive_inertia_deviation = blow.inertia_deviation;
+void addLearned(const CrankFilter& filter, RunRecord& record) {
+  record.consistency = filter.consistency();
+  record.angle_resolution = filter.angleResolution();
+  record.timing_noise = filter.timingNoise();
+  record.speed_noise = filter.speedNoise();
+  record.drive_inertia = filter.driveInertia();
+  record.drive_inertia_deviation = filter.blowFactor().inertia_deviation;
 }
 
 }  // namespace

@@ -94,9 +94,7 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warning
     list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + known->first + ")";
   }
   if (!list.empty())
-    addOnce(warnings, {"definitions", "messages of another version of this package: " + list + "; `rosbag fix -n " +
-                                          inputs.names() + " NEW.bag " + configDirectory() +
-                                          "/../migration/hammer_loads.bmr` makes them readable"});
+    addOnce(warnings, {"definitions", "messages of another version of this package cannot be read: " + list});
 }
 
 /// Topics that are wanted and did not come.
@@ -118,8 +116,17 @@ void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, con
 }
 
 bool isUseless(const BagReport& report) {
-  return report.wrenches == 0 || report.crank.contradictSince({}) ||
-         (report.crank.accepted <= 1 && report.samples > 1);  // one sample has no motion
+  const bool contradicts = report.turns == 0 && report.crank.contradictSince({});
+  return report.wrenches == 0 || contradicts || (report.crank.accepted <= 1 && report.samples > 1);
+}
+
+std::string contradictionsOf(const std::vector<BagWarning>& warnings) {
+  std::vector<std::string> texts;
+  for (const BagWarning& warning : warnings)
+    if (isContradiction(warning.key)) addOnce(texts, warning.text);
+  std::string text;
+  for (const std::string& one : texts) text += (text.empty() ? "" : "; ") + one;
+  return text;
 }
 
 std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report) {
@@ -130,8 +137,8 @@ std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport
   if (report.crank.refused[static_cast<std::size_t>(Refusal::kMissingJoint)] > 0)
     text += "joint " + run.settings.pipeline.crank_joint +
             " (crank_joint) is required, joints there: " + jointsOn(inputs, topic) + "; ";
-  for (const BagWarning& warning : report.warnings)
-    if (isContradiction(warning.key)) text += warning.text + "; ";
+  const std::string contradictions = contradictionsOf(report.warnings);
+  if (!contradictions.empty()) text += contradictions + "; ";
   if (report.crank.refusedFor(Refusal::kDuplicate) + 1 >= report.samples)
     text += "header stamps do not advance, must be the instants of the samples; ";
   std::string counts;

@@ -30,8 +30,11 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warning
 void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
                    std::vector<BagWarning>& warnings);
 
-/// No wrench came out, or most samples contradict what the parameters say.
+/// No wrench came out; or no whole turn did, and most samples contradict the parameters.
 bool isUseless(const BagReport& report);
+
+/// Those that say that the crank's readings are not those of such a machine, in one line.
+std::string contradictionsOf(const std::vector<BagWarning>& warnings);
 
 /// Why a run gave no wrench of use, in one line.
 std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report);

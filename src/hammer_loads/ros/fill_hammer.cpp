@@ -10,8 +10,6 @@ void prepareMechanism(const std::string& crank_joint, sensor_msgs::JointState& m
   message.velocity.resize(message.name.size());
 }
 
-void prepareHullLoads(Level level, HullLoads& message) { message.level = nameOf(level); }
-
 void fillWrench(StampNs stamp, const HullWrench& wrench, geometry_msgs::WrenchStamped& message) {
   message.header.stamp = timeOf(stamp);
   message.wrench.force.x = wrench.force_x;
@@ -43,6 +41,7 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
   message.crank_speed_common_deviation_rad_s = deviation.common_speed;
   message.crank_acceleration_common_deviation_rad_s2 = deviation.common_acceleration;
   message.interval_s = output.interval;
+  message.level = nameOf(result.level);  // short enough for no allocation
   message.consistency = result.consistency;
   message.flags = 0;
   if (output.interval > 0.0) message.flags |= HullLoads::FLAG_MEAN;

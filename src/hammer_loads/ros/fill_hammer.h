@@ -19,8 +19,6 @@ namespace hammer_loads {
 void prepareMechanism(const std::string& crank_joint, sensor_msgs::JointState& message);
 
 void fillWrench(StampNs stamp, const HullWrench& wrench, geometry_msgs::WrenchStamped& message);
-/// The level is filled once: by prepareHullLoads.
-void prepareHullLoads(Level level, HullLoads& message);
 void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullLoads& message);
 void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message);
 void fillPinForces(const SampleResult& result, PinForces& message);

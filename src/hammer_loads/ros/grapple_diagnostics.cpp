@@ -3,7 +3,6 @@
 #include <string>
 
 #include "hammer_loads/ros/log_diagnostics.h"
-#include "hammer_loads/ros/report_now.h"
 #include "hammer_loads/ros/steady_time.h"
 #include "hammer_loads/util/format.h"
 
@@ -18,13 +17,12 @@ std::string limitText(const SliderLimit& limit) { return format("%.13g, %s", lim
 
 GrappleDiagnostics::GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow,
                                        const BagLog& log)
-    : flow_(flow), updater_(node, private_node, private_node.getNamespace()) {
-  updater_.setHardwareID("none");
-  updater_.add("slider", this, &GrappleDiagnostics::describeSlider);
-  updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
+    : flow_(flow), publisher_(node, private_node) {
+  publisher_.add("slider", this, &GrappleDiagnostics::describeSlider);
+  publisher_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
-  timer_ = node.createWallTimer(ros::WallDuration(updater_.getPeriod()),
-                                [this](const ros::WallTimerEvent&) { reportNow(updater_); });
+  timer_ = node.createWallTimer(ros::WallDuration(publisher_.period()),
+                                [this](const ros::WallTimerEvent&) { publisher_.publish(); });
 }
 
 void GrappleDiagnostics::summarise(Clock::time_point now, diagnostic_updater::DiagnosticStatusWrapper& status) const {

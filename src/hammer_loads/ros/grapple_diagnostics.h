@@ -1,13 +1,13 @@
 /// The grapple node's own health on /diagnostics.
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 
 #include <chrono>
 #include <cstdint>
 
 #include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/ros/diagnostics_publisher.h"
 #include "hammer_loads/ros/grapple_flow.h"
 
 namespace hammer_loads {
@@ -30,7 +30,7 @@ class GrappleDiagnostics {
   const GrappleFlow& flow_;
   Clock::time_point last_slider_{}, last_report_{Clock::now()};
   std::uint64_t last_accepted_{}, last_refused_{}, last_without_velocity_{};
-  diagnostic_updater::Updater updater_;
+  DiagnosticsPublisher publisher_;
   ros::WallTimer timer_;
 };
 

@@ -15,8 +15,7 @@ std::string hullFrame(const Settings& settings) {
 
 }  // namespace
 
-HammerBridge::HammerBridge(const Settings& settings, TrackerMaker make)
-    : settings_(settings), make_tracker_(std::move(make)) {
+HammerBridge::HammerBridge(const Settings& settings) : settings_(settings) {
   prepareOutputs();
   std::vector<std::string> frames;
   for (const std::size_t output : frame_outputs_) frames.push_back(settings.pipeline.boom_wrench_links[output]);
@@ -62,14 +61,13 @@ void HammerBridge::begin(const Settings& settings) {
   if (pipeline_) finishRun();
   settings_ = settings;
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
-  pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts, make_tracker_);
+  pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
   beginCount();
   if (frame_wrenches_) frame_wrenches_->reset();
   RunInfo& run_info = outputs_.run_info.message;
   run_info.parameters_yaml = settings_.yaml;
   run_info.robot_description = settings_.robot_description;
   run_info.notes = settings_.notes;
-  prepareHullLoads(settings_.pipeline.level, outputs_.hull_loads.message);
   run_begun_ = false;
 }
 
@@ -132,7 +130,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
-  if (result.beside_blow) return;
+  if (!result.isPublished()) return;
   if (result.boom != nullptr && !result.boom->fault) sendBoom(record_time);
   // Pure functions of the result: nothing else depends on them.
   if (outputs_.mechanism.attached()) fillMechanism(result, outputs_.mechanism.message);

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/frame_wrench.h"
 #include "hammer_loads/ros/hammer_outputs.h"
@@ -25,8 +24,7 @@ namespace hammer_loads {
 /// input, passed on to the outputs that it causes.
 class HammerBridge {
  public:
-  /// make: of the crank's tracker, for each run.
-  explicit HammerBridge(const Settings& settings, TrackerMaker make = makeTracker);
+  explicit HammerBridge(const Settings& settings);
 
   void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
@@ -76,7 +74,6 @@ class HammerBridge {
   void send(const TurnEnd& end, const ros::Time& record_time);
 
   Settings settings_;
-  TrackerMaker make_tracker_;
   std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
   HammerOutputs outputs_;
   std::optional<LifeFlow> life_;  ///< of the pipeline, replaced with each count

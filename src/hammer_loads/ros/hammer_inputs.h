@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/missing_messages.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -33,6 +34,7 @@ struct Input {
   Message message{};                                ///< memory of a reader of bags
   std::uint64_t count{};                            ///< messages that a reader has taken
   ros::Subscriber subscriber{};                     ///< of a node
+  MissingMessages missing{};                        ///< at a node
   std::chrono::steady_clock::time_point arrived{};  ///< the last one, at a node
 };
 

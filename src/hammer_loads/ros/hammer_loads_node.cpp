@@ -60,6 +60,9 @@ void HammerLoadsNode::take(Input<Message>& input, const Event<Message>& event) {
   const ros::Time record_time = again ? clock_.last() : recordTime(event.getReceiptTime());
   const Message& message = *event.getConstMessage();
   input.arrived = std::chrono::steady_clock::now();
+  // With simulated time a bag may be played, whose topics can be of several publishers.
+  if constexpr (ros::message_traits::HasHeader<Message>::value)
+    if (!again && !ros::Time::isSimTime()) input.missing.take(event.getPublisherName(), message.header.seq);
   if (input.latched) log_->writeLatched(input.topic, record_time, message, event.getPublisherName());
   if (!input.latched && !again) log_->write(input.topic, record_time, message);
   input.take(bridge_, message, record_time);
@@ -102,7 +105,7 @@ HammerLoadsConfig HammerLoadsNode::configInForce(bool log_enabled) const {
   return config;
 }
 
-/// A log that stopped by itself restarts only where that is asked for. The answer says what is in force.
+/// The answer says what is in force.
 void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
   const bool switched = config.log_enabled != config_.log_enabled;
   if (switched) switchLog(config.log_enabled);

@@ -110,9 +110,8 @@ void LifeFlow::mark(const sensor_msgs::JointState& message) {
 void LifeFlow::name() {
   if (named_) return;
   named_ = true;
-  const std::string older = format("%lld-%.16s", static_cast<long long>(first_), machine_.identity.c_str());
-  life::RunId id(older + format("-%016llx", static_cast<unsigned long long>(digest_)));
-  id.older = older;
+  life::RunId id(format("%lld-%.16s-%016llx", static_cast<long long>(first_), machine_.identity.c_str(),
+                        static_cast<unsigned long long>(digest_)));
   id.parameters = parameters_;
   pieces_->begin(machine_, id);
   for (const life::LifePiece& piece : unnamed_) pieces_->add(piece);

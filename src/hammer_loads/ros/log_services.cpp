@@ -1,5 +1,7 @@
 #include "hammer_loads/ros/log_services.h"
 
+#include <ros/console.h>
+
 #include <utility>
 
 namespace hammer_loads {
@@ -17,6 +19,7 @@ LogServices::LogServices(ros::NodeHandle private_node, BagLog& log, std::functio
   start_ = serve("log/start", &LogServices::start);
   stop_ = serve("log/stop", &LogServices::stop);
   split_ = serve("log/split", &LogServices::split);
+  timer_ = private_node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { lookForRoom(); });
 }
 
 void LogServices::start(Response& response) {
@@ -31,6 +34,13 @@ void LogServices::start(Response& response) {
   if (!response.success) return;
   begin_();
   switched_();
+}
+
+void LogServices::lookForRoom() {
+  if (!log_.hasRoomAgain()) return;
+  Response response;
+  start(response);
+  ROS_WARN("log: there is room on the disk again, %s", response.message.c_str());
 }
 
 void LogServices::stop(Response& response) {

@@ -1,4 +1,4 @@
-/// Start, stop and split of a node's log on request.
+/// Start, stop and split of a node's log on request; restart after a full disk.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -12,12 +12,13 @@
 namespace hammer_loads {
 
 /// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request carries nothing: where to and under which
-/// names the log is written comes from the parameters alone. The answer says what was done or why not.
+/// names the log is written comes from the parameters alone. The answer says what was done or why not. A log that a
+/// full disk has stopped restarts by itself when there is room again.
 class LogServices {
  public:
-  /// finish: called before a log begins, goes on in a new file or ends: what ends a run belongs into the file that holds
-  /// it. begin: called when a log begins or goes on in a new file, so that the file holds a run from its beginning.
-  /// switched: called when the log has been started or stopped. The log must outlive this.
+  /// finish: called before a log begins, goes on in a new file or ends: what ends a run belongs into the file that
+  /// holds it. begin: called when a log begins or goes on in a new file, so that the file holds a run from its
+  /// beginning. switched: called when the log has been started or stopped. The log must outlive this.
   LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> finish, std::function<void()> begin,
               std::function<void()> switched);
 
@@ -27,10 +28,12 @@ class LogServices {
   void start(Response& response);
   void stop(Response& response);
   void split(Response& response);
+  void lookForRoom();
 
   BagLog& log_;
   std::function<void()> finish_, begin_, switched_;
   ros::ServiceServer start_, stop_, split_;
+  ros::WallTimer timer_;
 };
 
 }  // namespace hammer_loads

@@ -6,8 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <thread>
+#include <utility>
+
+#include "hammer_loads/ros/node_diagnostics.h"
 
 namespace hammer_loads {
 namespace {
@@ -18,9 +22,12 @@ using simulation::Session;
 using std::chrono::steady_clock;
 
 constexpr auto kBatch = std::chrono::milliseconds(1);
+constexpr double kLongestBatch = 5e-3;  // [s] of wall time
+constexpr double kMostAhead = 2.0;      // [s] of wall time; a node reports once a second, and its queues hold ten
 constexpr auto kPoll = std::chrono::milliseconds(10);
 constexpr double kJointPatience = 1.0;  // who listens to the crank connects to the boom at about the same time [s]
-constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // for what is still in the queues at the end
+constexpr double kNotable = 1.0;        // [s]
+constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // of the last samples to those who do not report
 constexpr std::uint32_t kQueueSize = 100000;                    // 20 s at 5 kHz: a subscriber that stalls loses nothing
 constexpr std::uint32_t kOwnClockStart = 1700000000;            // [s]; fixed, so that the same seed gives the same bag
 
@@ -41,6 +48,8 @@ MachinePlayer::MachinePlayer(ros::NodeHandle node, const simulation::SimulatorSe
                                           : TimeSource::kSteadyClock),
       crank_publisher_(node.advertise<sensor_msgs::JointState>("crank", kQueueSize)),
       joint_publisher_(node.advertise<sensor_msgs::JointState>("joint_states", kQueueSize)) {
+  if (source_ != TimeSource::kClockTopic)
+    diagnostics_ = node.subscribe("/diagnostics", 100, &MachinePlayer::onDiagnostics, this);
   if (source_ == TimeSource::kOwnClock)
     clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueueSize, true);
   crank_message_.name = {"hammer_crank_joint"};
@@ -75,28 +84,39 @@ void MachinePlayer::run() {
   start();
   const double duration = settings_.machine.duration;
   Session session;
-  double last = 0.0, latest = 0.0;
-  for (SteadyTime next = steady_start_; ros::ok() && last < duration;
+  double last = 0.0;
+  for (SteadyTime next = last_step_; ros::ok() && last < duration;
        next = std::max(next + kBatch, steady_clock::now())) {
     std::this_thread::sleep_until(next);
-    const double time = std::min(elapsed(), duration);
+    ros::spinOnce();
+    const double time = std::min(timeAfter(last), duration);
     if (time < last) {
       ROS_WARN("time ran back by %.3f s: the machine restarts", last - time);
       start();
       last = 0.0;
       continue;
     }
-    latest = std::max(latest, time - last);
     publishClock(time);
     session = {};
     stream_->advanceTo(time, session);
     publish(session);
+    if (truth_) truth_->write(session, settings_.machine.start_stamp);
     last = time;
   }
-  ROS_INFO("%lu crank samples, %lu joint samples, %lu blows in %.3f s; longest batch %.1f ms",
-           static_cast<unsigned long>(crank_count_), static_cast<unsigned long>(joint_count_),
-           static_cast<unsigned long>(blow_count_), last, 1e3 * latest);
-  if (ros::ok()) std::this_thread::sleep_for(kLastDelivery);
+  ROS_INFO("%lu crank samples, %lu joint samples, %lu blows in %.3f s", static_cast<unsigned long>(crank_count_),
+           static_cast<unsigned long>(joint_count_), static_cast<unsigned long>(blow_count_), last);
+  if (left_out_ > kNotable)
+    ROS_WARN("the machine took %.1f s longer than in real time: the computer was too busy; nothing is lost", left_out_);
+  waitForTheLast();
+}
+
+/// Whoever ends with the machine drops what is in its queues: until the node has taken the last sample.
+void MachinePlayer::waitForTheLast() {
+  if (followed_ == 0 && ros::ok()) std::this_thread::sleep_for(kLastDelivery);
+  while (ros::ok() && followed_ != 0 && followed_ < newest_ && crank_publisher_.getNumSubscribers() > 0) {
+    std::this_thread::sleep_for(kPoll);
+    ros::spinOnce();
+  }
 }
 
 void MachinePlayer::waitForSubscribers() {
@@ -117,13 +137,14 @@ void MachinePlayer::waitForTime() {
 }
 
 void MachinePlayer::start() {
-  steady_start_ = steady_clock::now();
+  last_step_ = steady_clock::now();
   const ros::Time begin = source_ == TimeSource::kOwnClock ? ros::Time(kOwnClockStart, 0)
                           : source_ == TimeSource::kClockTopic
                               ? ros::Time::now()
                               : stampOf(static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
-  settings_.machine.start_stamp = static_cast<std::int64_t>(begin.toNSec());
+  settings_.machine.start_stamp = newest_ = static_cast<std::int64_t>(begin.toNSec());
   stream_.emplace(settings_.machine);
+  if (!settings_.play.truth_prefix.empty()) truth_.emplace(settings_.play.truth_prefix);
 }
 
 void MachinePlayer::publishClock(double time) {
@@ -133,11 +154,34 @@ void MachinePlayer::publishClock(double time) {
   clock_publisher_.publish(clock);
 }
 
-/// Since the start [s of the machine's time].
-double MachinePlayer::elapsed() const {
+/// Since the start, of the batch after that one [s of the machine's time].
+double MachinePlayer::timeAfter(double last) {
   if (source_ == TimeSource::kClockTopic) return (ros::Time::now() - stampOf(settings_.machine.start_stamp)).toSec();
-  const double steady = seconds(steady_clock::now() - steady_start_);
-  return source_ == TimeSource::kOwnClock ? steady * settings_.play.clock_factor : steady;
+  const SteadyTime now = steady_clock::now();
+  const double passed = seconds(now - std::exchange(last_step_, now));
+  const double batch = isFollowed(last) ? std::min(passed, kLongestBatch) : 0.0;
+  left_out_ += passed - batch;
+  return last + speed() * batch;
+}
+
+/// Unless nobody listens, or nobody who reports.
+bool MachinePlayer::isFollowed(double last) {
+  if (followed_ == 0 || crank_publisher_.getNumSubscribers() == 0) return true;
+  const double behind = last - 1e-9 * static_cast<double>(followed_ - settings_.machine.start_stamp);
+  if (behind <= speed() * kMostAhead) return true;
+  ROS_WARN_ONCE("the machine waits: the node is %.1f s behind, the computer is too busy for it", behind);
+  return false;
+}
+
+void MachinePlayer::onDiagnostics(const diagnostic_msgs::DiagnosticArray& message) {
+  for (const diagnostic_msgs::DiagnosticStatus& status : message.status) {
+    for (const diagnostic_msgs::KeyValue& value : status.values) {
+      if (value.key != kLastSampleKey) continue;
+      const std::int64_t stamp = std::strtoll(value.value.c_str(), nullptr, 10);
+      // Else of another machine.
+      if (stamp >= settings_.machine.start_stamp && stamp <= newest_) followed_ = std::max(followed_, stamp);
+    }
+  }
 }
 
 /// Readings before a crank sample in time, then the sample.
@@ -161,6 +205,7 @@ void MachinePlayer::publish(const Session& session) {
 }
 
 void MachinePlayer::publishCrank(const CrankReading& reading) {
+  newest_ = std::max(newest_, reading.stamp);
   crank_message_.header.stamp = stampOf(reading.stamp);
   crank_message_.position[0] = reading.angle;
   if (reading.speed) crank_message_.velocity[0] = *reading.speed;

@@ -1,8 +1,10 @@
-/// Plays a simulated machine onto topics, in real time or in simulated time.
+/// A simulated machine played onto topics, in real time or in simulated time.
 #pragma once
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <ros/subscriber.h>
 #include <sensor_msgs/FluidPressure.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
@@ -14,6 +16,7 @@
 
 #include "hammer_loads/simulation/machine_parameters.h"
 #include "hammer_loads/simulation/session.h"
+#include "hammer_loads/simulation/truth_files.h"
 
 namespace hammer_loads {
 
@@ -24,6 +27,9 @@ namespace hammer_loads {
 /// - the steady clock from the wall time of the start on, without /use_sim_time;
 /// - /clock, with /use_sim_time; when it jumps back the machine restarts;
 /// - its own steps, with /use_sim_time and publish_clock: then it publishes /clock, before the samples up to it.
+/// Unless it follows /clock, it never outruns the computer: a batch is 5 ms long at most, and the machine stands while
+/// the diagnostics of the node that takes its samples are 2 s behind. Its time then runs slower than the wall clock. It
+/// ends when that node has taken the last sample.
 class MachinePlayer {
  public:
   MachinePlayer(ros::NodeHandle node, const simulation::SimulatorSettings& settings);
@@ -37,9 +43,13 @@ class MachinePlayer {
   void advertiseHull(ros::NodeHandle& node);
   void waitForSubscribers();
   void waitForTime();
+  void waitForTheLast();
   void start();
   void publishClock(double time);
-  double elapsed() const;
+  double speed() const { return source_ == TimeSource::kOwnClock ? settings_.play.clock_factor : 1.0; }
+  double timeAfter(double last);
+  bool isFollowed(double last);
+  void onDiagnostics(const diagnostic_msgs::DiagnosticArray& message);
   void publish(const simulation::Session& session);
   void publishCrank(const simulation::CrankReading& reading);
   void publishJoints(const simulation::JointReading& reading);
@@ -54,7 +64,12 @@ class MachinePlayer {
   sensor_msgs::Imu imu_message_;
   sensor_msgs::FluidPressure pressure_message_;
   std::optional<simulation::SessionStream> stream_;
-  SteadyTime steady_start_;
+  std::optional<simulation::TruthFiles> truth_;
+  SteadyTime last_step_;
+  double left_out_{};  ///< wall time that the machine did not follow [s]
+  ros::Subscriber diagnostics_;
+  std::int64_t newest_{};    ///< stamp of the last crank sample [ns]
+  std::int64_t followed_{};  ///< newest stamp that a node has taken; 0: none has reported [ns]
   std::uint64_t crank_count_{}, joint_count_{}, blow_count_{};
 };
 

@@ -5,7 +5,6 @@
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/ros/life_diagnostics.h"
 #include "hammer_loads/ros/log_diagnostics.h"
-#include "hammer_loads/ros/report_now.h"
 #include "hammer_loads/ros/steady_time.h"
 
 namespace hammer_loads {
@@ -17,26 +16,20 @@ using diagnostic_msgs::DiagnosticStatus;
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
                                  const HammerInputs& inputs, const BagLog& log, const life::LedgerThread* ledger)
-    : bridge_(bridge),
-      inputs_(inputs),
-      log_(log),
-      ledger_(ledger),
-      // The name space is the node's own, a nodelet's in a manager as well.
-      updater_(node, private_node, private_node.getNamespace()) {
-  updater_.setHardwareID("none");
-  updater_.add("inputs", this, &NodeDiagnostics::describeInputs);
-  updater_.add("crank", this, &NodeDiagnostics::describeCrank);
-  updater_.add("hull pitch", this, &NodeDiagnostics::describePitch);
-  if (bridge.pipeline().boom()) updater_.add("boom", this, &NodeDiagnostics::describeBoom);
-  if (bridge.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
-  if (inputs.hull_imu.wanted) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
-  updater_.add("model", this, &NodeDiagnostics::describeModel);
-  updater_.add("misuse", this, &NodeDiagnostics::describeMisuse);
-  updater_.add("life", [this](Status& status) { describeLife(bridge_.life(), ledger_, status); });
-  updater_.add("log", [&log](Status& status) { describeLog(log, status); });
+    : bridge_(bridge), inputs_(inputs), log_(log), ledger_(ledger), publisher_(node, private_node) {
+  publisher_.add("inputs", this, &NodeDiagnostics::describeInputs);
+  publisher_.add("crank", this, &NodeDiagnostics::describeCrank);
+  publisher_.add("hull pitch", this, &NodeDiagnostics::describePitch);
+  if (bridge.pipeline().boom()) publisher_.add("boom", this, &NodeDiagnostics::describeBoom);
+  if (bridge.frameWrenches()) publisher_.add("frames", this, &NodeDiagnostics::describeFrames);
+  if (inputs.hull_imu.wanted) publisher_.add("hull imu", this, &NodeDiagnostics::describeImu);
+  publisher_.add("model", this, &NodeDiagnostics::describeModel);
+  publisher_.add("misuse", this, &NodeDiagnostics::describeMisuse);
+  publisher_.add("life", [this](Status& status) { describeLife(bridge_.life(), ledger_, status); });
+  publisher_.add("log", [&log](Status& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ =
-      node.createWallTimer(ros::WallDuration(updater_.getPeriod()), [this](const ros::WallTimerEvent&) { report(); });
+      node.createWallTimer(ros::WallDuration(publisher_.period()), [this](const ros::WallTimerEvent&) { report(); });
 }
 
 /// Each warning on the console when it is new, of an input that is awaited where it has not come by the next report
@@ -53,7 +46,7 @@ void NodeDiagnostics::report() {
   const bool stopped = health.state == LogState::kDiskFull || health.state == LogState::kFailed;
   if (stopped && health.state != log_state_) ROS_ERROR("log stopped: %s", health.reason.c_str());
   log_state_ = health.state;
-  reportNow(updater_);
+  publisher_.publish();
 }
 
 std::vector<Warning> NodeDiagnostics::warnings() const {
@@ -62,11 +55,17 @@ std::vector<Warning> NodeDiagnostics::warnings() const {
   if (const auto warning = ledgerWarning(ledger_)) warnings.push_back(*warning);
   if (!bridge_.settings().hammer_given)
     warnings.push_back({"hammer", "no hammer file was given: the masses and lengths of the MO-100 are used", true});
-  inputs_.forEachSensor([&warnings](const auto& input) {
+  std::uint64_t missing = 0;
+  inputs_.forEachSensor([&](const auto& input) {
     const std::uint32_t count = input.subscriber.getNumPublishers();
     if (count > 1)
       warnings.push_back({"publishers", input.topic + ": " + std::to_string(count) + " publishers, must be one", true});
+    missing += input.missing.count();
   });
+  if (missing > 0)
+    warnings.push_back({"missing messages", "inputs: " + std::to_string(missing) +
+                                                " messages never came (header.seq), for machine or network is "
+                                                "overloaded: lower the load or the rates"});
   return warnings;
 }
 
@@ -77,6 +76,9 @@ void NodeDiagnostics::describeInputs(Status& status) {
     if (i == 0) status.summary(DiagnosticStatus::WARN, all[i].text);
     status.add(all[i].key, all[i].text);
   }
+  inputs_.forEachSensor([&](const auto& input) {
+    if (input.missing.count() > 0) status.add("never came: " + input.topic, input.missing.count());
+  });
 }
 
 void NodeDiagnostics::describeCrank(Status& status) {
@@ -116,23 +118,24 @@ void NodeDiagnostics::describeCrank(Status& status) {
   }
   status.add("accepted rate [Hz]", static_cast<double>(accepted) / elapsed);
   if (heard) status.add("age of the last sample [s]", age);
+  if (heard) status.add(kLastSampleKey, pipeline.result().sample_stamp);
   status.add("accepted", counts.accepted);
   for (std::size_t i = 0; i < counts.refused.size(); ++i) {
     status.add(std::string("refused: ") + kRefusalNames[i], counts.refused[i]);
   }
   status.add("not published, closer to the blow than the angle is known", counts.beside_blow);
+  status.add("not published, standard deviation above five times withhold_above of the peak", counts.uncertain);
   status.add("restarts", counts.restarts);
   status.add("blows", counts.blows);
   status.add("blows with an impossible restitution or energy, not counted", counts.impossible_blows);
   status.add("passages of the blow backward", counts.backward_passes);
-  if (const CrankFilter* filter = pipeline.crank().tracker().filter()) {
-    status.add("drive inertia, identified [kg m2]", filter->state().drive_inertia);
-    status.add("net torque [N m]", filter->state().torque);
-    status.add("speed noise, identified [rad/s]", filter->speedNoise());
-    status.add("jitter of the stamps, identified [s]", filter->timingNoise());
-    status.add("encoder count in use [rad]", filter->encoder().resolution());
-    status.add("consistency: mean of innovation^2 over its variance [-]", filter->consistency());
-  }
+  const CrankFilter& filter = pipeline.crank().tracker();
+  status.add("drive inertia, identified [kg m2]", filter.state().drive_inertia);
+  status.add("net torque [N m]", filter.state().torque);
+  status.add("speed noise, identified [rad/s]", filter.speedNoise());
+  status.add("jitter of the stamps, identified [s]", filter.timingNoise());
+  status.add("encoder count in use [rad]", filter.encoder().resolution());
+  status.add("consistency: mean of innovation^2 over its variance [-]", filter.consistency());
   last_counts_ = counts;
   last_report_ = now;
 }
@@ -175,7 +178,11 @@ void NodeDiagnostics::describeImu(Status& status) {
 }
 
 void NodeDiagnostics::describeModel(Status& status) {
-  status.summaryf(DiagnosticStatus::OK, "level %s", nameOf(bridge_.settings().pipeline.level));
+  const ElasticFollower& elastic = bridge_.pipeline().elastic();
+  const bool falls_back = bridge_.settings().pipeline.level == Level::kElastic && !elastic.isUsed();
+  status.summaryf(DiagnosticStatus::OK, "level %s",
+                  nameOf(falls_back ? Level::kLinkage : bridge_.settings().pipeline.level));
+  if (falls_back) status.add("elastic is not used", elastic.whyNotUsed());
   for (const std::string& note : bridge_.settings().notes) status.add("note", note);
 }
 
@@ -207,7 +214,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
   const BoomState& state = boom.state();
   // Joints are judged at the last crank sample: a crank that has stopped is no fault of theirs.
   const bool none_yet = inputs_.crank.arrived == Clock::time_point{};
-  const auto complaints = state.fault ? boom.joints().complaints(state.stamp) : std::vector<std::string>{};
+  const std::vector<std::string> complaints = boom.complaints();
   if (none_yet) {
     status.summary(DiagnosticStatus::WARN, "waits for crank samples");
   } else if (!complaints.empty()) {

@@ -1,7 +1,6 @@
 /// The node's own health on /diagnostics; what is new of it on the console, once.
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 
 #include <chrono>
@@ -13,9 +12,13 @@
 #include "hammer_loads/life/ledger_thread.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/ros/diagnostics_publisher.h"
 #include "hammer_loads/ros/hammer_inputs.h"
 
 namespace hammer_loads {
+
+/// Value of the crank's status: header stamp of the last sample that the node has taken [ns].
+inline constexpr char kLastSampleKey[] = "header stamp of the last sample [ns]";
 
 /// Published at `~diagnostic_period` (1 s) of wall time: rates, ages, counts of accepted and refused input by reason,
 /// model, boom, log health.
@@ -51,7 +54,7 @@ class NodeDiagnostics {
   std::set<std::string> said_;     ///< keys of warnings on the console already
   std::set<std::string> awaited_;  ///< of inputs that had not come at the last report
   LogState log_state_{LogState::kOff};
-  diagnostic_updater::Updater updater_;
+  DiagnosticsPublisher publisher_;
   ros::WallTimer timer_;
 };
 

@@ -20,8 +20,11 @@ template <typename Make>
 int runNode(int argc, char** argv, const char* name, Make make) {
   keepMemorySteady();
   ros::init(argc, argv, name);
-  // roscpp ends cleanly on SIGINT only; a log must survive SIGTERM as well.
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  // roscpp ends cleanly on SIGINT only; a log must survive SIGTERM and a closed terminal as well.
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    const auto before = std::signal(signal, [](int) { ros::requestShutdown(); });
+    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  }
   ros::NodeHandle node, private_node("~");
   std::vector<std::string> problems;
   const auto made = make(node, private_node, problems);

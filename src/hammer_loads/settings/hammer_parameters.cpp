@@ -52,12 +52,20 @@ void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::
     double& deviation = parameters.deviations[i];
     if (reader.given(key)) {
       deviation = reader.number(key, constant.unit, NumberRule::within(0.0, 1e6)) / inFile(constant, 1.0);
-      if (std::isfinite(deviation) && !isPossible(parameters, i))
-        reader.addProblem(format("%s: %.9g %s, no hammer of the other values is so far off", key.c_str(),
-                                 inFile(constant, deviation), constant.unit));
     } else if (deviation > 0.0) {
       name(key, inFile(constant, deviation), usual);
     }
+  }
+}
+
+/// The values themselves must be those of a hammer.
+void checkDeviations(ParameterReader& reader, const HammerParameters& parameters) {
+  for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
+    const HammerConstant& constant = kHammerConstants[i];
+    const std::string key = deviationKey(constant);
+    if (reader.given(key) && !isPossible(parameters, i))
+      reader.addProblem(format("%s: %.9g %s, no hammer of the other values is so far off", key.c_str(),
+                               inFile(constant, parameters.deviations[i]), constant.unit));
   }
 }
 
@@ -87,6 +95,17 @@ void readRod(ParameterReader& reader, HammerParameters& parameters, std::string&
   }
 }
 
+/// Optional: what an unmeasured hull can do depends on it.
+void readHullMass(ParameterReader& reader, HammerParameters& parameters) {
+  constexpr const char *kHullMass = "hull_mass_kg", *kDeviation = "hull_mass_std_kg";
+  constexpr double kUsual = 0.3;  // of a mass whose deviation is not given
+  if (reader.given(kHullMass)) parameters.hull_mass = reader.number(kHullMass, "kg", NumberRule::within(1.0, 1e5));
+  parameters.hull_mass_deviation = kUsual * parameters.hull_mass;
+  if (!reader.given(kDeviation)) return;
+  parameters.hull_mass_deviation = reader.number(kDeviation, "kg", NumberRule::within(0.0, 1e5));
+  if (!(parameters.hull_mass > 0.0)) reader.addProblem(std::string(kDeviation) + ": must stand beside " + kHullMass);
+}
+
 }  // namespace
 
 std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes) {
@@ -103,6 +122,7 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   std::string usual;
   readDeviations(reader, parameters, usual);  // known keys, whatever else is wrong
   readRod(reader, parameters, usual);
+  readHullMass(reader, parameters);
   const Checked<Mechanism> mechanism = Mechanism::make(parameters);
   for (const std::string& problem : mechanism.problems) reader.addProblem(problem);
   for (std::size_t i = 0; i < kRatio; ++i) {
@@ -114,6 +134,7 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   if (mechanism.value)
     reader.demand("striking_distance_m", "m", parameters.striking_distance,
                   NumberRule::within(kLeastLever * gyration, kMostLever * gyration));
+  if (reader.problems().size() == problems_before) checkDeviations(reader, parameters);
   notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
   if (!usual.empty()) notes.push_back("standard deviations not given, the usual ones count: " + usual);
   if (!reader.given(ratio))
@@ -128,6 +149,14 @@ std::vector<std::string> hammerKeys() {
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < kRatio; ++i) keys.emplace_back(kHammerConstants[i].key);
   return keys;
+}
+
+std::vector<std::pair<std::string, double>> deviationsInForce(const HammerParameters& parameters) {
+  std::vector<std::pair<std::string, double>> deviations;
+  for (std::size_t i = 0; i < kHammerConstantCount; ++i)
+    deviations.emplace_back(deviationKey(kHammerConstants[i]), inFile(kHammerConstants[i], parameters.deviations[i]));
+  for (const RodKey& k : kRodKeys) deviations.emplace_back(k.deviation, parameters.rod_deviation.*k.field);
+  return deviations;
 }
 
 /// The drive's inertia is a first guess, which a calibration replaces in any hammer; how it turns is no part of the

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hammer_loads/linkage/mechanism.h"
@@ -17,6 +18,9 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
 
 /// Keys that the hammer file must have, in its order.
 std::vector<std::string> hammerKeys();
+
+/// Keys and values [the key's unit] of the standard deviations in force, those that the file does not give among them.
+std::vector<std::pair<std::string, double>> deviationsInForce(const HammerParameters& parameters);
 
 bool hasHammerKey(const ParameterMap& parameters);
 

@@ -12,7 +12,6 @@
 #include "hammer_loads/settings/read_boom.h"
 #include "hammer_loads/settings/read_life.h"
 #include "hammer_loads/settings/read_log.h"
-#include "hammer_loads/settings/retired_keys.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/format.h"
 
@@ -45,7 +44,7 @@ std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, 
     return "boom_stiffness: identified, must be given without a boom on its cylinders' oil (boom: compliant or auto, "
            "and a boom file)";
   if (!boom_file && pipeline.hull_motion == HullMotionSource::kModel)
-    return "hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring";
+    return "hull_motion: model, must be unmeasured, fixed or imu without a boom file: its cylinders' oil is the spring";
   return {};
 }
 
@@ -107,7 +106,6 @@ life::LifeSettings readLife(ParameterReader& reader, const std::optional<Boom>& 
 
 Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description, bool hammer_given) {
   Checked<Settings> result;
-  dropRetiredKeys(parameters, result.notes);
   const InputTopics topics = takeInputTopics(parameters, result.problems);
   const bool boom_file = hasBoomKey(parameters);
   ParameterReader reader(std::move(parameters));

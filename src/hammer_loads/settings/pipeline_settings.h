@@ -9,7 +9,6 @@
 
 #include "hammer_loads/boom/chain.h"
 #include "hammer_loads/boom/gravity.h"
-#include "hammer_loads/crank/coupling.h"
 #include "hammer_loads/crank/crank_sensor.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/linkage/level.h"
@@ -52,15 +51,6 @@ enum class BoomModel {
   kAuto,       ///< compliant unless rigid is within rigid_tolerance for the last turn's pulse
 };
 
-/// Gear between the crank sensor and the crank.
-enum class Shaft {
-  kRigid,     ///< nothing that gives
-  kFlexible,  ///< the sensor sits on the motor, beyond a coupling that twists
-};
-
-constexpr std::array<std::pair<const char*, Shaft>, 2> kShaftNames{
-    {{"rigid", Shaft::kRigid}, {"flexible", Shaft::kFlexible}}};
-
 /// Source of the boom's own acceleration.
 enum class BoomAcceleration {
   kNone,        ///< zero
@@ -84,13 +74,17 @@ constexpr std::array<std::pair<const char*, BoomAcceleration>, 2> kBoomAccelerat
 
 /// Source of the hull's own motion.
 enum class HullMotionSource {
-  kFixed,  ///< it is at rest; weight by pitch
-  kImu,    ///< as its IMU reports
-  kModel,  ///< it vibrates as the compliant boom does
+  kFixed,       ///< it is held; weight by pitch
+  kUnmeasured,  ///< weight by pitch; what its own motion adds is in the standard deviation
+  kImu,         ///< as its IMU reports
+  kModel,       ///< it vibrates as the compliant boom does
 };
 
-constexpr std::array<std::pair<const char*, HullMotionSource>, 3> kHullMotionNames{
-    {{"fixed", HullMotionSource::kFixed}, {"imu", HullMotionSource::kImu}, {"model", HullMotionSource::kModel}}};
+constexpr std::array<std::pair<const char*, HullMotionSource>, 4> kHullMotionNames{
+    {{"unmeasured", HullMotionSource::kUnmeasured},
+     {"fixed", HullMotionSource::kFixed},
+     {"imu", HullMotionSource::kImu},
+     {"model", HullMotionSource::kModel}}};
 
 struct PipelineSettings {
   Level level{};        ///< in force; where it was `auto`, the one chosen
@@ -117,7 +111,6 @@ struct PipelineSettings {
   CrankStamps crank_stamps{};          ///< which instants the samples get
   double crank_timing_noise{};         ///< standard deviation of a sample's stamp, first guess [s], >= 0
   double crank_speed_noise{};          ///< standard deviation of a measured speed [rad/s], > 0
-  std::optional<Coupling> coupling;    ///< between the crank sensor and the crank; nothing: they turn as one
   double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
   double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0
   double inertia_walk{};               ///< relative to the drive inertia [1/sqrt(s)], >= 0

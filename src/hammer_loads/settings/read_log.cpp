@@ -24,7 +24,6 @@ LogSettings readLogSettings(ParameterReader& reader) {
   if (s.prefix == "auto") s.prefix.clear();
   s.split_size = bytes(reader, "log_split_mb", 1);
   s.total_size = bytes(reader, "log_total_mb", 0);
-  s.prune_earlier_runs = reader.boolean("log_prune_earlier_runs");
   s.min_free_space = bytes(reader, "log_min_free_mb", 0);
   s.queue_size = bytes(reader, "log_queue_mb", 1);
   return s;

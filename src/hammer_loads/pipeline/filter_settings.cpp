@@ -1,4 +1,4 @@
-#include "hammer_loads/pipeline/make_tracker.h"
+#include "hammer_loads/pipeline/filter_settings.h"
 
 #include "hammer_loads/linkage/blow_inertia.h"
 
@@ -18,15 +18,8 @@ CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSet
   filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
   filter.initial_inertia_deviation = s.initial_inertia_deviation;
   filter.max_speed = s.max_crank_speed;
-  const double drive = mechanism.parameters().drive_inertia;
-  const double struck = s.coupling ? (1.0 - s.coupling->motor_share) * drive : drive;
-  filter.blow_factor = blowInertia(mechanism, rigid(s.level), struck).smoothFactor();
+  filter.blow_factor = blowInertia(mechanism, rigid(s.level), mechanism.parameters().drive_inertia).smoothFactor();
   return filter;
-}
-
-std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
-  return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level, s.coupling), mechanism.parameters().drive_inertia,
-                                       filterSettings(mechanism, s));
 }
 
 }  // namespace hammer_loads

@@ -1,0 +1,70 @@
+/// A crank sample, and the estimate of the crank at an instant with its uncertainty.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+
+#include "hammer_loads/crank/constant_errors.h"
+#include "hammer_loads/crank/crank_state.h"
+#include "hammer_loads/linkage/hull_motion.h"
+
+namespace hammer_loads {
+
+/// One crank sample as measured.
+struct CrankSample {
+  double angle{};               ///< any winding [rad]
+  std::optional<double> speed;  ///< [rad/s]
+};
+
+/// Best estimate at an instant.
+struct CrankEstimate {
+  CrankPosition position;
+  double speed{};         ///< [rad/s]
+  double acceleration{};  ///< [rad/s2]
+};
+
+/// How far an estimate may be off: by what is drawn anew at each sample, and by constants, which are off alike at all.
+struct CrankUncertainty {
+  enum Row : Eigen::Index { kAngle, kSpeed, kAcceleration, kInertia };
+
+  Eigen::Matrix3d own{Eigen::Matrix3d::Zero()};  ///< covariance of angle [rad], speed [rad/s], acceleration [rad/s2]
+  /// One standard deviation each of errors that are independent of each other; by rows as above, the last relative to
+  /// the drive's inertia.
+  ByConstants<4, ConstantErrors::kSize> by_constant{ByConstants<4, ConstantErrors::kSize>::Zero()};
+  double inertia{};  ///< of the drive's inertia, relative, beside the constants
+
+  /// Of the speed where the crank passes an angle, which an error of its angle delays. rate: acceleration over speed
+  /// [1/s].
+  Eigen::Matrix<double, 1, ConstantErrors::kSize> speedAtAngle(double rate) const noexcept {
+    return by_constant.row(kSpeed) - rate * by_constant.row(kAngle);
+  }
+  Eigen::Matrix3d covariance() const noexcept;
+};
+
+/// The crank at one place between two samples: by the way forward from the earlier one, by the way back from the later.
+struct CrankWays {
+  CrankEstimate forward, back;
+};
+
+/// A blow's factor on the crank: its speed after over its speed before. Deviations are beside the constants.
+struct BlowFactor {
+  double mean{1.0};                                            ///< [-]
+  double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
+  double drive_inertia{};      ///< Jc, on which the blow acts; gives the restitution [kg m2]; 0: not known
+  double inertia_deviation{};  ///< relative [-]
+  bool early{};                ///< it acted before the dead centre, where the crank passed with its speed after
+  /// What independent errors of constants make of the factor [-] and, relatively, of the inertia, a standard deviation
+  /// each.
+  ByConstants<2, ConstantErrors::kSize> by_constant{ByConstants<2, ConstantErrors::kSize>::Zero()};
+};
+
+/// How a sample was taken.
+enum class Tracking {
+  kContinued,  ///< agrees with what came before
+  kRestarted,  ///< restarted at this sample: what lies between is not known
+  kRevised,    ///< goes on, but what came before was otherwise than thought: a turn without contact, or with it
+  kOutlier,    ///< contradicts what came before and was ignored; a second one like it restarts
+};
+
+}  // namespace hammer_loads

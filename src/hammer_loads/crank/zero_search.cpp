@@ -1,0 +1,247 @@
+#include "hammer_loads/crank/zero_search.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr int kMeanOfTurns = 5;
+constexpr int kEvery = 8;                 // turns between evaluations, once the first ones are done
+constexpr double kSameTurn = 0.2;         // relative change of a turn's time: otherwise the machine starts or stops
+constexpr double kLongestStep = 0.1;      // [s]
+constexpr double kInertiaKnown = 0.5;     // standard deviation of the logarithm of Jc
+constexpr double kStiffnessKnown = 30.0;  // standard deviation of K [N m/rad]
+constexpr double kLeastEnergy = 1.0;      // [J]
+constexpr double kLongestMove = 0.1;      // [rad] of the zero in one step of the fit
+constexpr double kExplained = 0.05;       // part of the times' squares that the best fit may leave
+constexpr double kStated = 0.06;          // largest standard deviation of a zero that is stated [rad]
+constexpr double kStepGain = 0.02;        // of the mean step
+constexpr int kCoarseSteps = 3, kFineSteps = 5;
+enum : Eigen::Index { kInertia, kEnergy, kTorque, kStiffness, kZero, kStart };
+
+}  // namespace
+
+void ZeroSearch::restart() noexcept {
+  samples_ = passed_ = turns_ = 0;
+  due_ = kTurnsToKnow;
+  place_time_.reset();
+  found_.reset();
+}
+
+void ZeroSearch::add(double angle, double step, const HullMotion& hull) noexcept {
+  const double turned = samples_ > 0 ? CrankAngle::wrapToPi(angle - last_.back().angle) : 0.0;
+  if (!(step > 0.0) || step > kLongestStep || turned < -0.5 * kWidth * kPlaces / 8.0) samples_ = 0;
+  if (samples_ == 0) {
+    samples_ = 1, passed_ = 0;
+    place_time_.reset();
+    last_.back() = {CrankAngle::wrapToPi(angle), 0.0};
+    return;
+  }
+  model_.setHullMotion(hull);
+  step_ += kStepGain * (step - step_);
+  std::move(last_.begin() + 1, last_.end(), last_.begin());
+  last_.back() = {last_[2].angle + turned, last_[2].time + step};
+  samples_ = std::min(samples_ + 1, 4);
+  if (samples_ < 4) {
+    place_ = static_cast<std::int64_t>(std::floor(last_[2].angle / kWidth));
+    return;
+  }
+  const auto reached = static_cast<std::int64_t>(std::floor(last_[2].angle / kWidth));
+  while (place_ < reached) {
+    ++place_;
+    pass(timeAt(static_cast<double>(place_) * kWidth), place_);
+  }
+}
+
+/// Of a place between the second and the third of the last samples: a cubic where the steps are long.
+double ZeroSearch::timeAt(double angle) const noexcept {
+  const Point &from = last_[1], &to = last_[2];
+  const bool grows = last_[1].angle - last_[0].angle > 1e-4 && last_[3].angle - last_[2].angle > 1e-4;
+  if (!(to.angle - from.angle > 0.25 * kWidth) || !grows)
+    return from.time + (angle - from.angle) / (to.angle - from.angle) * (to.time - from.time);
+  double time = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    double weight = 1.0;
+    for (std::size_t j = 0; j < 4; ++j)
+      if (j != i) weight *= (angle - last_[j].angle) / (last_[i].angle - last_[j].angle);
+    time += weight * last_[i].time;
+  }
+  return std::clamp(time, from.time, to.time);
+}
+
+void ZeroSearch::pass(double place_time, std::int64_t place) noexcept {
+  const auto before = static_cast<std::size_t>(((place - 1) % kPlaces + kPlaces) % kPlaces);
+  if (place_time_) {
+    turn_[before] = place_time - *place_time_;
+    ++passed_;
+  }
+  place_time_ = place_time;
+  if (before != kPlaces / 2 - 1) return;  // half a turn from the blow of a right zero
+  if (passed_ == kPlaces && !skips_) endTurn();
+  skips_ = false;
+  passed_ = 0;
+}
+
+void ZeroSearch::endTurn() noexcept {
+  double all = 0.0;
+  for (const double time : turn_) all += time;
+  if (turns_ > 0 && std::abs(all - turn_time_) > kSameTurn * all) turns_ = 0, due_ = kTurnsToKnow;
+  ++turns_;
+  const double weight = 1.0 / std::min(turns_, kMeanOfTurns);
+  turn_time_ = turns_ == 1 ? all : turn_time_ + weight * (all - turn_time_);
+  for (std::size_t i = 0; i < kPlaces; ++i)
+    times_[i] = turns_ == 1 ? turn_[i] : times_[i] + weight * (turn_[i] - times_[i]);
+  if (turns_ < due_) return;
+  due_ = turns_ < kEvery ? turns_ + 1 : turns_ + kEvery;
+  evaluate();
+}
+
+ZeroSearch::Table ZeroSearch::tableAt(double zero) const noexcept {
+  Table table;
+  for (int i = 0; i <= 2 * kPlaces; ++i) {
+    const double offset = CrankAngle::wrapToPi(0.5 * i * kWidth - kTwoPi - zero);
+    const ShaftLoad load = model_(CrankAngle::fromOffset(offset));
+    table.inertia[static_cast<std::size_t>(i)] = load.inertia;
+    if (i % 2 == 1) table.weight[static_cast<std::size_t>(i / 2)] = load.weight_torque;
+  }
+  return table;
+}
+
+/// Linear least squares of the energy halfway between places; blow: the place where it is.
+ZeroSearch::Vector ZeroSearch::guess(int blow, const Table& table) const noexcept {
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d score = Eigen::Vector4d::Zero();
+  double all = 0.0;
+  for (int k = kFrom; k < to_; ++k) all += time(blow, k);
+  const double mean_speed = (to_ - kFrom) * kWidth / all;
+  double work = 0.0, by_supply = 0.0, ahead = 0.0, elapsed = 0.0;
+  for (int k = kFrom; k < to_; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double took = time(blow, k), speed = kWidth / took, angle = (k - kFrom) * kWidth;
+    if (k > kFrom) {
+      work += 0.5 * (table.weight[i - 1] + table.weight[i]) * kWidth;
+      elapsed += 0.5 * (time(blow, k - 1) + took);
+      const double next = mean_speed * elapsed - angle;
+      by_supply += 0.5 * (ahead + next) * kWidth;
+      ahead = next;
+    }
+    const double inertia = table.inertia[2 * i + 1], half_square = 0.5 * speed * speed;
+    const double weight = 1.0 / ((inertia + drive_inertia_) * half_square * speed);
+    const Eigen::Vector4d row(-half_square * drive_inertia_, 1.0, angle, by_supply);
+    information += square(weight) * row * row.transpose();
+    score += square(weight) * (inertia * half_square - work) * row;
+  }
+  const Eigen::Vector4d x = information.ldlt().solve(score);
+  Vector unknowns = Vector::Zero();
+  unknowns[kInertia] = std::log(std::clamp(x[0], 0.2, 5.0));
+  unknowns[kEnergy] = x[1], unknowns[kTorque] = x[2], unknowns[kStiffness] = x[3];
+  return unknowns;
+}
+
+/// One step of Gauss and Newton; what it returns has the squares before the step.
+ZeroSearch::Fit ZeroSearch::step(int blow, const Table& table, const Vector& x, bool with_zero) const noexcept {
+  double all = 0.0;
+  for (int k = kFrom; k < to_; ++k) all += time(blow, k);
+  const double mean_speed = (to_ - kFrom) * kWidth / all, drive = drive_inertia_ * std::exp(x[kInertia]);
+  Fit fit;
+  Vector row = Vector::Zero(), score = Vector::Zero();
+  row[kStart] = 1.0;
+  double rest = -x[kStart], work = 0.0, by_supply = 0.0, ahead = 0.0, elapsed = 0.0;
+  const auto add = [&] {
+    fit.information += row * row.transpose();
+    score += rest * row;
+    fit.squares += square(rest);
+  };
+  add();
+  for (int k = kFrom; k < to_; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double took = time(blow, k), angle = (k - kFrom) * kWidth;
+    if (k > kFrom) {
+      work += 0.5 * (table.weight[i - 1] + table.weight[i]) * kWidth;
+      elapsed += 0.5 * (time(blow, k - 1) + took);
+      const double next = mean_speed * elapsed - angle;
+      by_supply += 0.5 * (ahead + next) * kWidth;
+      ahead = next;
+    }
+    const double begin = std::sqrt(table.inertia[2 * i] + drive), middle = std::sqrt(table.inertia[2 * i + 1] + drive),
+                 end = std::sqrt(table.inertia[2 * i + 2] + drive);
+    const double energy = std::max(kLeastEnergy, x[kEnergy] + x[kTorque] * angle + x[kStiffness] * by_supply + work);
+    const double root = 1.0 / std::sqrt(2.0 * energy), expected = kWidth * root * (begin + 4.0 * middle + end) / 6.0;
+    const double by_energy = -0.5 * expected / energy;
+    row[kInertia] += kWidth * root * drive * (1.0 / begin + 4.0 / middle + 1.0 / end) / 12.0;
+    row[kEnergy] += by_energy;
+    row[kTorque] += by_energy * angle;
+    row[kStiffness] += by_energy * by_supply;
+    if (with_zero) row[kZero] -= root * (end - begin);
+    rest += took - expected;
+    add();
+  }
+  const double variance = std::max(fit.squares / (to_ - kFrom - kUnknowns), 1e-12);
+  fit.information /= variance;
+  score /= variance;
+  fit.information(kInertia, kInertia) += 1.0 / square(kInertiaKnown);
+  score[kInertia] -= x[kInertia] / square(kInertiaKnown);
+  fit.information(kStiffness, kStiffness) += 1.0 / square(kStiffnessKnown);
+  score[kStiffness] -= x[kStiffness] / square(kStiffnessKnown);
+  if (!with_zero) fit.information(kZero, kZero) += 1.0;
+  Vector change = fit.information.ldlt().solve(score);
+  change[kZero] = std::clamp(change[kZero], -kLongestMove, kLongestMove);
+  change[kInertia] = std::clamp(change[kInertia], -kInertiaKnown, kInertiaKnown);
+  fit.unknowns = x + change;
+  return fit;
+}
+
+/// Standard deviation [rad]; infinite where the fit does not explain the times, or where these are of an even speed.
+double ZeroSearch::deviationOfZero(const Fit& fit, int blow) const noexcept {
+  double all = 0.0, elapsed = 0.0, uneven = 0.0;
+  for (int k = kFrom; k < to_; ++k) all += time(blow, k);
+  for (int k = kFrom; k < to_; ++k) {
+    elapsed += time(blow, k);
+    uneven += square(elapsed - all * (k + 1 - kFrom) / (to_ - kFrom));
+  }
+  Vector unit = Vector::Zero();
+  unit[kZero] = 1.0;
+  const double variance = fit.information.ldlt().solve(unit)[kZero];
+  const bool explains = fit.squares < kExplained * uneven && variance > 0.0 && fit.unknowns.allFinite();
+  return explains ? std::sqrt(variance) : kInfinity;
+}
+
+void ZeroSearch::evaluate() noexcept {
+  found_.reset();
+  ++evaluations_;
+  // Samples beyond the blow bend the times of the places before it.
+  to_ = kPlaces - 1 - static_cast<int>(step_ / turn_time_ * kPlaces);
+  if (to_ < kFrom + kPlaces / 4) return;
+  for (const double time : times_)
+    if (!(time > 0.0)) return;
+  const Table table = tableAt(0.0);
+  int blow = 0;
+  Fit best;
+  best.squares = kInfinity;
+  for (int i = 0; i < kPlaces; ++i) {
+    Vector x = guess(i, table);
+    Fit fit;
+    for (int n = 0; n < kCoarseSteps; ++n) {
+      fit = step(i, table, x, false);
+      if (n + 1 < kCoarseSteps) x = fit.unknowns;
+    }
+    if (!(fit.squares < best.squares)) continue;
+    best = fit;
+    best.unknowns = x;
+    blow = i;
+  }
+  Vector x = best.unknowns;
+  for (int n = 0; n <= kFineSteps; ++n) {
+    best = step(blow, tableAt(x[kZero]), x, true);
+    if (n < kFineSteps) x = best.unknowns;
+  }
+  const double deviation = deviationOfZero(best, blow);
+  if (deviation < kStated) found_ = Found{CrankAngle::wrapToPi(blow * kWidth + x[kZero]), deviation};
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,44 @@
+/// The tasks of diagnostic_updater on /diagnostics, without its arithmetic on ROS time.
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include <string>
+
+namespace hammer_loads {
+
+/// Replaces diagnostic_updater::Updater, which adds its period to the time now. That throws within the last second
+/// before 2^32 s, in the constructor as well, and a /clock may say anything.
+class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
+ public:
+  DiagnosticsPublisher(ros::NodeHandle node, const ros::NodeHandle& private_node)
+      : publisher_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),
+        period_(private_node.param("diagnostic_period", 1.0)),
+        // The name space is the node's own, a nodelet's in a manager as well.
+        name_(private_node.getNamespace().substr(1)) {}
+
+  double period() const { return period_; }  ///< of wall time, between two reports [s]
+
+  void publish() {
+    diagnostic_msgs::DiagnosticArray message;
+    for (const DiagnosticTaskInternal& task : getTasks()) {
+      diagnostic_updater::DiagnosticStatusWrapper status;
+      task.run(status);
+      status.name = name_ + ": " + task.getName();
+      status.hardware_id = "none";
+      message.status.push_back(status);
+    }
+    message.header.stamp = ros::Time::now();
+    publisher_.publish(message);
+  }
+
+ private:
+  ros::Publisher publisher_;
+  double period_;
+  std::string name_;
+};
+
+}  // namespace hammer_loads
