@@ -285,8 +285,8 @@ TEST(Report, SaysInSixLinesWhatWasFoundWhatWasNotAndWhatToDo) {
                       "rocker_inertia_about_pivot_kg_m2\n"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("next: weigh or measure rocker_inertia_about_pivot_kg_m2 and give "
-                      "rocker_inertia_about_pivot_deviation_kg_m2"),
+  EXPECT_NE(text.find("next: weigh or measure rocker_inertia_about_pivot_kg_m2 and give its standard "
+                      "deviation"),
             std::string::npos)
       << text;
   EXPECT_EQ(text.find("correlation"), std::string::npos);

@@ -207,8 +207,9 @@ TEST(Life, WhatNoRunCanHaveWrittenIsOneLineHereAndWhereARunIsAdded) {
     EXPECT_NE(outcome.err.find(ledger.path() + ": "), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
     life::LedgerRun run(ledger.path(), {}, "b");
-    const std::optional<std::string> problem = run.add({});
-    EXPECT_TRUE(problem) << "a writer refuses it";
+    life::LifePiece piece;
+    piece.turns = 1;
+    EXPECT_TRUE(run.add(piece)) << "a writer refuses it";
   }
 }
 

@@ -81,17 +81,21 @@ std::string nextStepOf(const Calibration& c) {
            "with crank and rod in line; "
            "write that reading as crank_zero_rad, and set level: elastic";
   std::vector<std::string> steps, measured;
-  bool few = false;
+  bool few = false, at_other_level = false;
   for (const Estimate& e : c.estimates) {
     if (e.determined()) continue;
     few = few || e.hidden_by.empty();
     if (e.hidden_by.empty() || std::find(measured.begin(), measured.end(), e.hidden_by) != measured.end()) continue;
-    measured.push_back(e.hidden_by);
-    const std::optional<std::size_t> constant = indexOfConstant(e.hidden_by);
-    steps.push_back(constant
-                        ? "weigh or measure " + e.hidden_by + " and give " + deviationKey(kHammerConstants[*constant])
-                        : "set level: linkage");
+    if (indexOfConstant(e.hidden_by)) {
+      measured.push_back(e.hidden_by);
+    } else {
+      at_other_level = true;
+    }
   }
+  std::string constants;
+  for (const std::string& key : measured) constants += (constants.empty() ? "" : ", ") + key;
+  if (!measured.empty()) steps.push_back("weigh or measure " + constants + " and give its standard deviation");
+  if (at_other_level) steps.emplace_back("set level: linkage");
   if (std::max(c.fitted, c.held_out) > square(kLargeResidual))
     steps.emplace_back("check the lengths of the hammer file and the stamps, for the residuals are above 1.3");
   if (few && std::isfinite(c.more_blows)) steps.push_back("record " + needOf(c));
