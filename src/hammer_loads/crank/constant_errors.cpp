@@ -30,6 +30,10 @@ constexpr double kGiven = 0.01;   // standard deviation of a zero as it is given
 
 bool ConstantErrors::knows() const noexcept { return turns_ >= kTurnsToKnow; }
 
+double ConstantErrors::zeroDeviation() const noexcept {
+  return knows() ? std::hypot(std::sqrt(moment_(kZero, kZero)), kUnknowns[kZero].unmodelled) : kGiven;
+}
+
 void ConstantErrors::takeSupply(double change) noexcept {
   fit_.take(kSupply, change);
   estimate_[kSupply] += change;

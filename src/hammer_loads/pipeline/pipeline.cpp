@@ -207,7 +207,9 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());
   const CrankFilter& tracker = crank_.tracker();
-  const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
+  // An encoder's edge shows the side of the blow as far as the zero is known.
+  const double of_angle =
+      tracker.readingShowsSide() ? tracker.constantErrors().zeroDeviation() : result_.deviation.angle;
   result_.beside_blow =
       gives ? elastic_.isBesideBlow() : isBesideBlow(result_.crank, deviationFromBlow(tracker, of_angle));
   result_.uncertain = !isKnown();
