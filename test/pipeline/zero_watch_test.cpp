@@ -82,13 +82,13 @@ TEST(ZeroWatch, PublishesNothingThatIsImpossibleByItsDeviationAfterTenTurns) {
   }
 }
 
-/// The blow comes later than the zero has it, which no elastic rod does: the first turn shows it.
-TEST(ZeroWatch, PublishesNothingThatIsImpossibleAfterTheFirstTurnWhereTheBlowIsLate) {
+/// Before the first blow nothing shows the zero: its prior stands in the deviations, then what the first turns show.
+TEST(ZeroWatch, PublishesNothingThatIsImpossibleByItsDeviationFromTheFirstTurnOn) {
   const simulation::Session session = zeroSession(1000.0, 5);
   const double first_turn = session.blows.at(1).time;
-  for (const double degrees : {1.5, 3.0, 4.0, 8.0}) {
+  for (const double degrees : {-8.0, -4.0, -3.0, -1.5, 1.5, 3.0, 4.0, 8.0}) {
     const ZeroPlayed played = playWithZero(session, degrees * kDegree, true, first_turn);
-    EXPECT_EQ(played.beyond, 0U) << degrees << " deg: " << played.worst << " deviations";
+    EXPECT_LE(played.beyond, std::abs(degrees) > 3.0 ? 5U : 0U) << degrees << " deg: " << played.worst << " deviations";
   }
 }
 

@@ -102,6 +102,7 @@ class ConstantErrors {
     return all;
   }
   void considerPriors() noexcept;
+  void considerZeroOfFirstTurns() noexcept;
 
   Vector prior_;
   ConstantFit<kTable> fit_;

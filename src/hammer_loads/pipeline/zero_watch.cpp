@@ -14,8 +14,6 @@ constexpr double kOfStep = 0.12;  // of the way between samples: what is seen no
 constexpr double kDeviations = gate::kVeryRare;
 constexpr double kFilterShows =
     1.2 * kDegree;  // by the filter, positive: with a right zero it shows up to 0.5 deg, on a light hull 0.9 deg
-constexpr double kFirstTurnsShow = 1.0 * kDegree;
-constexpr double kRodShows = 1.7 * kDegree;  // negative, with a right zero
 constexpr double kRefined = 0.5 * kDegree;
 
 }  // namespace
@@ -53,7 +51,6 @@ double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
         std::abs(found->error) > std::max(least, kDeviations * std::hypot(found->deviation, readings)))
       return move(found->error);
   }
-  contradicted_ = !errors.knows() && (errors.zeroSeen() > kFirstTurnsShow || errors.zeroSeen() < -kRodShows);
   if (!errors.knows()) return 0.0;
   const bool is_off = moved_ != 0.0 ? std::abs(shown) > std::max(kRefined, gate::kUsual * deviation)
                                     : shown > std::max(kFilterShows, gate::kRare * deviation);

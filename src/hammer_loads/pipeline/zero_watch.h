@@ -11,8 +11,7 @@ namespace hammer_loads {
 /// Compares two judges of the zero once a turn: ZeroSearch sees the whole turn within some 2 deg; the filter's own
 /// estimate is good to 0.3 deg, but only of small errors. Where either of them shows an error that matters, the
 /// filter's zero is moved there and refined until the filter agrees. Nothing is published meanwhile, nor of a zero that
-/// is off by more than kMost: the parameter has to be set right. A zero that the first turns contradict is not used
-/// before the filter's estimate is known.
+/// is off by more than kMost: the parameter has to be set right.
 ///
 /// A small negative error is left to the deviations: an elastic connecting rod looks like one of up to 1.6 deg.
 class ZeroWatch {
@@ -25,7 +24,7 @@ class ZeroWatch {
   /// motion. Returns by how much the filter's zero is to be moved [rad], mostly 0.
   double follow(const CrankFilter& filter, double reading, double step, const HullMotion& hull) noexcept;
 
-  bool withholds() const noexcept { return contradicted_ || (isOff() && (!settled_ || std::abs(moved_) > kMost)); }
+  bool withholds() const noexcept { return isOff() && (!settled_ || std::abs(moved_) > kMost); }
   /// The zero in force is another one than the parameter's.
   bool isOff() const noexcept { return std::abs(moved_) > kNone; }
   bool isSettled() const noexcept { return settled_; }  ///< the filter agrees with the zero that was found
@@ -42,7 +41,6 @@ class ZeroWatch {
   int evaluations_{}, slips_{};
   double moved_{};
   bool settled_{};
-  bool contradicted_{};  ///< by the first turns
 };
 
 }  // namespace hammer_loads
