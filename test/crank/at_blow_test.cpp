@@ -70,17 +70,5 @@ TEST_F(FilterAtBlow, WhatAToolTookIsKnownWhereverItIsMet) {
   EXPECT_LT(worst, 0.03);
 }
 
-/// A crank that rests just behind the blow does not go back over it for four counts and the reading's noise.
-TEST_F(FilterAtBlow, ACrankAtRestStandsThereWithinFourCounts) {
-  constexpr double kCount = test::kEncoderCount;
-  for (const double counts : {3.9, 6.1}) {
-    CrankFilter f = filterOf(test::filterSettings(kCount, 1e-6));
-    f.start({2.0 * kCount, 0.0});
-    for (int i = 0; i < 20; ++i) f.update(0.01, {2.0 * kCount, 0.0});
-    f.update(0.01, {-counts * kCount, 0.0});
-    EXPECT_EQ(f.state().position.angle.side, counts < 5.0 ? Side::kAfterBlow : Side::kBeforeBlow) << counts;
-  }
-}
-
 }  // namespace
 }  // namespace hammer_loads

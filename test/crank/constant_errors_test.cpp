@@ -93,14 +93,6 @@ void learnTurn(ConstantErrors& errors, double zero, int samples, double variance
   errors.endTurn(growth, count);
 }
 
-/// The drive inertia is learned in them.
-TEST(ConstantErrors, WhatTheFirstFourTurnsShowIsForgotten) {
-  ConstantErrors errors;
-  for (int turn = 0; turn < 4; ++turn) learnTurn(errors, 0.1, 40, 1e-6, 1.0, 0.0);
-  for (int turn = 0; turn < 2; ++turn) learnTurn(errors, 0.02, 40, 1e-6, 1.0, 0.0);
-  EXPECT_NEAR(errors.estimate()[0], 0.02, 1e-3);
-}
-
 /// On which side of the blow a sample is cannot wait for it.
 TEST(ConstantErrors, AZeroIsSeenBeforeAnythingElseIsConcluded) {
   const auto seen = [](double zero, double variance) {
@@ -115,30 +107,6 @@ TEST(ConstantErrors, AZeroIsSeenBeforeAnythingElseIsConcluded) {
   for (const double s : seen(0.03, 1e-6)) EXPECT_NEAR(s, 0.03, 2e-3);
   for (const double s : seen(0.002, 1e-6)) EXPECT_EQ(s, 0.0) << "a clean machine's";
   for (const double s : seen(0.03, 0.1)) EXPECT_EQ(s, 0.0) << "not seen well enough";
-}
-
-TEST(ConstantErrors, AreThoseOfThreeHundredTurns) {
-  ConstantErrors errors;
-  for (int turn = 0; turn < 2000; ++turn) learnTurn(errors, 0.1, 12, 0.01, 1.0, 0.0);
-  EXPECT_NEAR(errors.estimate()[0], 0.1, 1e-3);
-  for (int turn = 0; turn < 300; ++turn) learnTurn(errors, 0.0, 12, 0.01, 1.0, 0.0);
-  EXPECT_NEAR(errors.estimate()[0], 0.1 * std::exp(-1.0), 0.1 * 0.08);
-}
-
-/// Beside noise, what no model has: of a coarse encoder half a count, where it is seen badly two and a half deviations,
-/// and the more the rarer the samples are.
-TEST(ConstantErrors, ADeviationCoversWhatTheModelLacks) {
-  const auto after = [](int samples, double growth, double count) {
-    ConstantErrors errors;
-    for (int turn = 0; turn < 8; ++turn) learnTurn(errors, 0.0, samples, 1e-6, growth, count);
-    return errors;
-  };
-  EXPECT_NEAR(after(40, 1.0, 0.4).deviation()[0], 0.2, 0.04);
-  const ConstantErrors unsure = after(40, 1e4, 0.0);
-  EXPECT_NEAR(unsure.deviation()[0] / std::sqrt(unsure.moment()(0, 0)), 2.5, 0.3);
-  const double often = after(40, 1e-6, 0.0).deviation()[0];
-  EXPECT_NEAR(often, kUnknowns[0].unmodelled, 1e-5);
-  EXPECT_NEAR(after(10, 1e-6, 0.0).deviation()[0] / often, 2.0, 0.3);
 }
 
 }  // namespace

@@ -185,18 +185,6 @@ TEST_F(CrankDynamics, ABlowTakesItsPartOfTheSpeed) {
   }
 }
 
-/// The instant of a blow shows in the speed after it, but not where the crank creeps over it at less than 1 rad/s.
-TEST_F(CrankDynamics, ACrankThatCreepsOverTheBlowHasNoInstantOfPassingIt) {
-  for (const double speed : {0.8, 1.25}) {
-    ShaftState s = stateAt(0.0, speed, 100.0);
-    s.position.angle = {0.0, Side::kBeforeBlow};
-    ShaftLoad load;
-    ShaftTransition passing = ShaftTransition::Identity();
-    passBlow(rocker_, 0.7, s, load, passing);
-    EXPECT_EQ(passing(1, 0) != 0.0, speed > 1.0);
-  }
-}
-
 /// A state that a correction pushed beyond the blow stands where it would, had it passed in time.
 TEST_F(CrankDynamics, PassesLateAsInTime) {
   const Passing blow{0.7, true};
@@ -261,22 +249,6 @@ TEST(CrankPosition, PassesABlowOnlyWhenItIsAtOrBehindIt) {
   EXPECT_EQ(p.blow, 3);
   p.turn(-0.02);
   EXPECT_EQ(p.blowsPassed(), 2);
-}
-
-/// A filter that has gone astray may be fast: no tool stands a radian before the dead centre.
-TEST_F(CrankDynamics, AToolIsMetNearTheDeadCentreAlone) {
-  const auto isNear = [](double offset, double speed) {
-    ShaftState state;
-    state.position.angle = {offset, Side::kBeforeBlow};
-    state.speed = speed;
-    return isNearTool(state, 0.01);
-  };
-  EXPECT_TRUE(isNear(-0.05, 0.0));
-  EXPECT_FALSE(isNear(-0.07, 0.0));
-  EXPECT_TRUE(isNear(-0.2, 14.0));
-  EXPECT_FALSE(isNear(-0.22, 14.0));
-  EXPECT_TRUE(isNear(-0.45, 84.0));
-  EXPECT_FALSE(isNear(-0.55, 84.0));
 }
 
 }  // namespace

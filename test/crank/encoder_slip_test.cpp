@@ -93,15 +93,5 @@ TEST(EncoderSlip, NorIsASensorThatIsSomewhereElse) {
   }
 }
 
-/// The crank goes on meanwhile: the second one may differ by four tenths.
-TEST(EncoderSlip, IsAboutTheSameInTheNextReading) {
-  for (const double more : {0.32, 0.5}) {
-    EncoderSlip slip = quiet();
-    EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
-    EXPECT_EQ(slip.follow((1.0 + more) * 0.035, kVariance, kByTorque, kWay, kWay, true),
-              more < 0.4 ? Step::kSlipped : Step::kNone);
-  }
-}
-
 }  // namespace
 }  // namespace hammer_loads

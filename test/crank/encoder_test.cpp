@@ -105,14 +105,5 @@ TEST(EncoderCount, ThatIsGivenWrongIsContradicted) {
   EXPECT_TRUE(of_none.contradictsGiven());
 }
 
-TEST(EncoderCount, TwoReadingsThatFitNothingAreOfAFinerSensor) {
-  Encoder encoder(kTwoPi / 1000.0);
-  for (int i = 0; i < 20; ++i) encoder.angle(kTwoPi / 1000.0 * i);
-  encoder.angle(0.2 + kTwoPi / 1000.0 * 0.123456789);
-  EXPECT_FALSE(encoder.isFiner());
-  encoder.angle(0.3 + kTwoPi / 1000.0 * 0.356789123);
-  EXPECT_TRUE(encoder.isFiner());
-}
-
 }  // namespace
 }  // namespace hammer_loads

@@ -33,28 +33,6 @@ TEST(RodEvidence, IsTheExcessJustAfterTheBlow) {
   EXPECT_NEAR(after(1e9, 1.0, 50).pickedUp(), 100.0, 1.0);
 }
 
-TEST(RodEvidence, ReadingsWithoutExcessLeaveARingLittleRoom) {
-  EXPECT_LT(after(0.95, 1.0, 50).share(kFine), 0.06);
-  EXPECT_EQ(after(4.3, 1.0, 50).share(kFine), 1.0);  // the least of 60 rods
-  EXPECT_NEAR(after(2.0, 1.0, 50).share(kFine), 0.38, 0.02);
-  EXPECT_EQ(after(0.95, 1.0, 3).share(kFine), 1.0);     // too few
-  EXPECT_EQ(after(0.95, 1.0, 50).share(kCoarse), 1.0);  // nothing would show
-}
-
-/// From the blow until the rod has picked up; three times as many where it has rung out, which is three times as long.
-TEST(RodEvidence, IsThatOfTheLastFourHundredSamples) {
-  RodEvidence rod;
-  const auto add = [&](double ratio, int samples) {
-    for (int i = 0; i < samples; ++i) {
-      for (const double at : {-10.0, 10.0}) rod.add(CrankAngle::fromOffset(at * kDegree), ratio);
-      for (const double at : {100.0, 130.0, 160.0}) rod.add(CrankAngle::fromOffset(at * kDegree), ratio);
-    }
-  };
-  add(1.0, 4000);
-  add(2.0, 400);
-  for (const double mean : {rod.runUp(), rod.pickedUp(), rod.later()}) EXPECT_NEAR(mean, 2.0 - std::exp(-1.0), 0.01);
-}
-
 /// What contradicts a rigid mechanism before the blow and after it are two questions.
 TEST(RodEvidence, KnowsARockerThatIsLetGoByTheRunUp) {
   RodEvidence worn;

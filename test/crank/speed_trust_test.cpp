@@ -122,57 +122,5 @@ TEST(SpeedTrust, IsSilentBeforeItKnows) {
   EXPECT_FALSE(trust.knows() || trust.lags() || trust.isOutOfScale());
 }
 
-/// One turn says nothing of how far turns differ.
-TEST(SpeedTrust, KnowsAfterFiveTurns) {
-  SpeedTrust trust;
-  const int turn = static_cast<int>(1e3 * 2.0 * M_PI / SwingingCrank::kOmega);
-  int turns = 0;
-  for (int i = 1; turns < 5; ++i) {
-    const double t = 1e-3 * i, noise = i % 2 == 0 ? 0.1 : -0.1;
-    trust.follow(1e-3, {SwingingCrank::filtered(t, 5e-3) + noise, SwingingCrank::speed(t),
-                        SwingingCrank::acceleration(t), 0.0, 0.0, 0.0});
-    if (i % turn != 0) continue;
-    trust.endTurn();
-    ++turns;
-    EXPECT_NEAR(trust.lag(), turns == 1 ? 0.0 : 5e-3, turns == 1 ? 0.0 : 2e-3) << turns;
-    EXPECT_EQ(trust.knows(), turns == 5);
-  }
-  EXPECT_TRUE(trust.lags());
-}
-
-/// What was notable once is given up at half of that.
-TEST(SpeedTrust, WhatShowedOnceIsReleasedAtHalf) {
-  for (const double part : {0.4, 0.65}) {
-    SpeedTrust trust;
-    bool seen = false;
-    const int turn = static_cast<int>(1e3 * 2.0 * M_PI / SwingingCrank::kOmega);
-    for (int i = 1; i < 300 * turn; ++i) {
-      const double t = 1e-3 * i, noise = i % 2 == 0 ? 0.02 : -0.02, lag = i < 40 * turn ? 2e-3 : part * 5e-4;
-      trust.follow(1e-3, {SwingingCrank::filtered(t, lag) + noise, SwingingCrank::speed(t),
-                          SwingingCrank::acceleration(t), 0.0, 0.0, 0.0});
-      if (i % turn == 0) trust.endTurn();
-      seen = seen || (trust.lags() && trust.lag() > 1e-3);
-    }
-    EXPECT_TRUE(seen);
-    EXPECT_NEAR(trust.lag(), part * 5e-4, 0.05 * 5e-4);
-    EXPECT_EQ(trust.lags(), part > 0.5) << part;
-  }
-}
-
-/// Ten turns of thirty that fade: 30 / (30 (1 - (29/30)^10)) = 3.5.
-TEST(SpeedTrust, KnowsAsMuchAsThirtyTurnsShow) {
-  const double few = trustAfter(200.0, 0.0, 1.0, 0.3, 0.0, 11).lagDeviation(),
-               many = trustAfter(200.0, 0.0, 1.0, 0.3, 0.0, 400).lagDeviation();
-  EXPECT_NEAR(few / many * few / many, 3.5, 1.0);
-}
-
-/// One in another unit.
-TEST(SpeedTrust, FindsNoMoreThanAnyDriveHas) { EXPECT_NEAR(trustAfter(1000.0, 0.0, 3.0, 0.15).scale(), 0.5, 0.1); }
-
-TEST(SpeedTrust, NamesAScaleFromAHundredthOn) {
-  EXPECT_FALSE(trustAfter(1000.0, 0.0, 1.008, 0.05).isOutOfScale());
-  EXPECT_TRUE(trustAfter(1000.0, 0.0, 1.0125, 0.05).isOutOfScale());
-}
-
 }  // namespace
 }  // namespace hammer_loads

@@ -39,32 +39,5 @@ TEST(StampRounding, FineStampsHaveNone) {
 /// A controller that samples by its own clock stamps whole milliseconds and is right.
 TEST(StampRounding, EvenStepsMayBeExact) { EXPECT_EQ(roundingOf(1000.0, 1000000, 0), 0.0); }
 
-/// Whole milliseconds that are one or two apart.
-TEST(StampRounding, IsKnownAfterAHundredStamps) {
-  StampRounding rounding;
-  int stamps = 0;
-  for (; stamps < 1000 && rounding.step() == 0.0; ++stamps) rounding.add(stamps % 2 == 0 ? 1000000 : 2000000);
-  EXPECT_GT(stamps, 80);
-  EXPECT_LT(stamps, 125);
-}
-
-/// Exact whole milliseconds of which some are missing: each gap is two uneven steps.
-TEST(StampRounding, SomeLostSamplesDoNotMakeIt) {
-  for (const int lost : {4, 7}) {  // of a hundred
-    StampRounding rounding;
-    for (int i = 0; i < 1000; ++i) rounding.add(i % (100 / lost) == 0 ? 2000000 : 1000000);
-    EXPECT_EQ(rounding.step() > 0.0, lost > 5) << lost;
-  }
-}
-
-/// Numbers of seconds in double precision: some 0.2 us of today's time.
-TEST(StampRounding, StampsWithinAMicrosecondAreWhole) {
-  for (const int off : {800, 1250}) {
-    StampRounding rounding;
-    for (int i = 0; i < 1000; ++i) rounding.add((i % 2 == 0 ? 1000000 : 2000000) + (i % 3 == 0 ? off : 0));
-    EXPECT_EQ(rounding.step() > 0.0, off < 1000) << off;
-  }
-}
-
 }  // namespace
 }  // namespace hammer_loads

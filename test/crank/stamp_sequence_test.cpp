@@ -210,26 +210,5 @@ TEST(StampSequence, HeaderStampsAreHeldToTheirOrder) {
   EXPECT_EQ(sequence.place(kStart + kMs - 1, Repeats::kNo).kind, Kind::kOutOfOrder);
 }
 
-/// Each hundredth message comes late: after seven more than five of the last thousand have.
-TEST(StampSequence, IsRefittedWhereMoreThanFiveOfAThousandChangePlaces) {
-  StampSequence sequence(CrankStamps::kAuto, 0.25);
-  std::mt19937 random(2);
-  int samples = 0;
-  for (; samples < 5000 && !sequence.isSteady(); ++samples) {
-    const int late = samples % 100 == 50 ? 2 : 0, jitter = static_cast<int>(random() % 100000);
-    sequence.place(kStart + (samples - late) * kMs + jitter, Repeats::kNo);
-  }
-  EXPECT_GT(samples, 600);
-  EXPECT_LT(samples, 900);
-}
-
-TEST(StampSequence, OneStampThatRepeatsIsNoBurstYet) {
-  StampSequence sequence(CrankStamps::kAuto, 0.25);
-  for (int i = 0; i < 4; ++i) sequence.place(kStart + i * kMs, Repeats::kNo);
-  EXPECT_EQ(sequence.place(kStart + 3 * kMs, Repeats::kNo).kind, Kind::kPlaced);
-  EXPECT_EQ(sequence.place(kStart + 4 * kMs, Repeats::kNo).kind, Kind::kPlaced);
-  EXPECT_EQ(sequence.place(kStart + 4 * kMs, Repeats::kNo).kind, Kind::kDuplicate);
-}
-
 }  // namespace
 }  // namespace hammer_loads

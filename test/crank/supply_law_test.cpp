@@ -63,23 +63,6 @@ TEST(SupplyLaw, NothingLeadsBeforeATurnWasSeen) {
   EXPECT_EQ(supply.law().lead(1.0, 0.1), 0.0);
 }
 
-/// The first guess counts as a turn.
-TEST(SupplyLaw, ATorqueIsUsualWithinThreeTurns) {
-  LearnedSupply supply(400.0);
-  EXPECT_EQ(supply.usual(), square(400.0));
-  const auto turn = [&supply](double torque, bool known = true) {
-    for (const double part : {1.4, -1.4, 0.2, -0.2}) supply.feel(part * torque);
-    supply.endTurn({}, known);
-  };
-  turn(100.0);
-  turn(1e6, false);
-  supply.endTurn({});
-  turn(-100.0);
-  EXPECT_NEAR(supply.usual(), (square(400.0) + 2.0 * square(100.0)) / 3.0, 1e-6);
-  for (int i = 0; i < 3; ++i) turn(100.0);
-  EXPECT_NEAR(supply.usual(), square(100.0) + std::pow(2.0 / 3.0, 3) * 50000.0, 1e-6);
-}
-
 TEST(SupplyLaw, NeverPushesTheOtherWay) {
   LearnedSupply supply(100.0);
   EXPECT_EQ(supply.learn(0.5), 0.0);

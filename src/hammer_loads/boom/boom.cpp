@@ -14,7 +14,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMostRefreshAngle = 0.05;  // [rad]: frequencies off by some 2 %; modes of another pose run away
-// Limit: FigureLimits.OfTheModesAngle of kMostRefreshAngle
+// Limit: kMostRefreshAngle
 
 /// Notes a value that is not good: key, value, unit, whether it is good, rule.
 using Check = std::function<void(const char*, double, const char*, bool, const char*)>;

@@ -26,7 +26,7 @@ struct BoomParameters {
   std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
   double link_mass_deviation{0.03};         ///< standard, of each link that is not weighed, relative [-]
   double link_com_deviation{0.02};          ///< standard, of its centre of mass in x and z each [m]
-  // Prior: BoomBounds.DeviationsWhereAFileGivesNone of link_mass_deviation, link_com_deviation
+  // Prior: link_mass_deviation, link_com_deviation
   double rigid_tolerance{};  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 

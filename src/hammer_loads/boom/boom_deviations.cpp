@@ -13,7 +13,6 @@ constexpr double kRounded = 1e-12;  // of a column: what rounding makes of zero
 /// First bending of a link with what it carries, the joints held [rad/s]: anything from 10 to 30 Hz, by the root mean
 /// square of what it then gives, 1/kBending^2.
 constexpr double kBending = 16.0 * kTwoPi;
-// Guard: BendingLinks.AreInTheDeviationsOfAnImuAlone of kBending
 constexpr double kOfRefreshAngle = 4;  // moves of joints that make 0.5 % of a deviation
 // Numerical: kOfRefreshAngle
 

@@ -44,7 +44,7 @@ void checkOptional(const CylinderParameters& p, std::vector<std::string>& proble
         format("%s_%s: %.9g%s, must be from %g to %g%s", p.name.c_str(), key, value, unit, least, most, unit));
   };
   constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
-  // Limit: FigureLimits.OfCylinders of kLeastLength, kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
+  // Limit: kLeastLength, kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
   within("friction_force_N", p.friction_force, " N", 0.0, 1e6);
   within("friction_force_deviation_N", p.friction_force_deviation, " N", 0.0, 1e6);
   within("friction", p.friction, "", 0.0, kMostFriction);

@@ -30,7 +30,7 @@ struct CylinderParameters {
 
   static constexpr double kFrictionDeviation = 0.03;  ///< where the boom file gives none; seals of 0.5 to 5 %
   static constexpr double kStiffnessDeviation = 0.1;  ///< as above; air and hoses of one machine's cylinders
-  // Prior: BoomBounds.DeviationsWhereAFileGivesNone of kFrictionDeviation, kStiffnessDeviation
+  // Prior: kFrictionDeviation, kStiffnessDeviation
 };
 
 /// Length and leverage at a joint angle.
@@ -59,7 +59,6 @@ class Cylinder {
   /// Arms below this share of the triangle's shorter fixed side are a dead centre: the force would be 50 times the
   /// torque over that side.
   static constexpr double kDeadCentreRatio = 0.02;
-  // Guard: BoomBounds.OfADeadCentre of kDeadCentreRatio
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, and a triangle
   /// that needs the cylinder shorter than closed or longer than open within the joint's limits. bulk_modulus: of oil

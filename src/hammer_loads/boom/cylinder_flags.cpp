@@ -19,7 +19,6 @@ std::uint16_t cylinderFlags(const Cylinder& cylinder, const CylinderPosition& po
                             double total_torque) noexcept {
   if (position.dead_centre) return kDeadCentre;
   constexpr double kVacuum = -1.0e5;  // [Pa]
-  // Guard: BoomBounds.OfVacuum of kVacuum
   const ChamberPressures p = chamberPressures(cylinder, position, steady_torque, total_torque);
   const double relief = cylinder.parameters().relief_pressure;
   const bool empty = p.bore < kVacuum || p.rod < kVacuum;

@@ -5,6 +5,6 @@ namespace hammer_loads::figure {
 
 constexpr double kMostLength = 1e3;  ///< [m]
 constexpr double kMostMass = 1e9;    ///< [kg]; of a weighed link's inertia [kg m2] as well
-// Limit: FigureLimits.OfWeighedLinks of kMostLength, kMostMass
+// Limit: kMostLength, kMostMass
 
 }  // namespace hammer_loads::figure

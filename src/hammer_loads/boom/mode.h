@@ -11,7 +11,7 @@ namespace hammer_loads {
 
 constexpr double kFrequencyDeviation = 0.15;  // bulk modulus +-30 %: what a file can know of oil with air in it
 constexpr double kDampingDeviation = 0.5;
-// Prior: BoomBounds.DeviationsWhereAFileGivesNone of kFrequencyDeviation, kDampingDeviation
+// Prior: kFrequencyDeviation, kDampingDeviation
 
 /// Standard deviations of the logarithms of every mode's frequency (half of the bulk modulus's) and damping [-].
 struct OilDeviation {

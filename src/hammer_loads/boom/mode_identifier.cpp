@@ -12,16 +12,16 @@ namespace {
 constexpr double kCommonDeviation = 2.0 * kFrequencyDeviation;  // of log stiffness, of all cylinders together
 constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that warms up, a pose that changes
 constexpr double kDampingWalk = 0.01;  // of log damping in a second
-// Prior: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk
+// Prior: kOilWalk, kDampingWalk
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
-// Prior: IdentifierNumbers.OfAMotionThatIsNotKnown of kUnknownRate
+// Prior: kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]
 constexpr double kContactWalkSeen = 3e5;  // where an IMU shows each landing: they are no noise then
-// Prior: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kContactWalkSeen
+// Prior: kContactWalkSeen
 constexpr double kUnknownContact = 1e4;  // of it at the start [N]
-// Prior: IdentifierNumbers.OfTheRocksForce of kContactWalk, kUnknownContact
+// Prior: kContactWalk, kUnknownContact
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
-// Prior: IdentifierNumbers.OfTheDampingsBounds of kLeastDamping, kMostDamping
+// Prior: kLeastDamping, kMostDamping
 
 }  // namespace
 

@@ -50,10 +50,10 @@ class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
   static constexpr double kMostOil = 2.0;  ///< of log stiffness that is found: a frequency that is e times that given
-  // Prior: IdentifierNumbers.OfTheOilsBounds of kMostOil
+  // Prior: kMostOil
   /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
-  // Prior: IdentifierNumbers.OfWhatAModesShapeLacks of kLeftFrequency, kLeftDamping
+  // Prior: kLeftFrequency, kLeftDamping
 
   /// learns: stiffnesses and damping; else they are exact as given, and only the motion is followed. own_deviation: of
   /// each cylinder's oil against the common one, standard [-].
@@ -144,10 +144,10 @@ class ModeIdentifier {
 
  private:
   static constexpr double kDelayDeviation = 2e-3;  ///< of a delay that is not known, standard [s]
-  // Prior: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kDelayDeviation
+  // Prior: kDelayDeviation
   static constexpr double kForcePart = 0.05;  ///< deviation of the modal force over its root mean square
   static constexpr double kForceTime = 0.01;  ///< for which a force stays wrong the same way [s]
-  // Prior: IdentifierNumbers.OfAForceThatLasts of kForcePart, kForceTime
+  // Prior: kForcePart, kForceTime
   static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
   static_assert(kMaxStates <= kMostStates);

@@ -10,9 +10,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kKnown = 0.03;  // deviation of log frequency of a mode that is known
-// Guard: IdentifiedOil.IsIdentifiedAtThreePercentOfAFrequency of kKnown
 constexpr double kMostEarly = 0.004, kMostLate = 0.012;  // [s]
-// Prior: IdentifiedOil.StampsAreNeverLaterThanTwelveMillisecondsNorEarlierThanFour of kMostEarly, kMostLate
+// Prior: kMostEarly, kMostLate
 
 }  // namespace
 

@@ -13,7 +13,6 @@ constexpr double kFarOff = gate::kRare;  // standard deviations beyond which a r
 constexpr double kSurpriseShare = 3e-4;  // of one reading in the mean of squares: 1.7 s at 1 kHz
 constexpr double kSurprised = 5.0;       // of that mean: at 4, one pose of eight on rock took the wrong oil for its own
 constexpr double kCalm = 1.8;            // likewise
-// Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kSurpriseShare, kSurprised, kCalm
 constexpr double kWorstSurprise = square(gate::kImpossible);  // what one can add at most
 constexpr std::size_t kTogether = 3;                          // readings that are linear about one state
 

@@ -48,7 +48,7 @@ class Errors : public console_bridge::OutputHandler {
 /// Beyond these no figure of a machine lies, and no product of figures overflows.
 constexpr double kMostOffset = 1e6;    // [m]
 constexpr double kMostInertia = 1e18;  // [kg m2]
-// Limit: FigureLimits.OfDescriptions of kMostOffset, kMostInertia
+// Limit: kMostOffset, kMostInertia
 
 bool within(double value, double most) { return std::abs(value) <= most; }  // false for NaN
 

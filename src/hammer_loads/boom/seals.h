@@ -26,7 +26,6 @@ struct Seals {
 inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, double driven) noexcept {
   // A rod's speed [m/s] near standstill, as Stribeck's.
   constexpr double kSlowRod = 0.002;
-  // Guard: RubbingBoom.DeviationsCoverSealsThatAreNotKnown of kSlowRod
   const CylinderParameters& p = cylinder.parameters();
   const double size = std::abs(arm), force = std::abs(oil_torque / arm);
   return {size * (p.friction_force + p.friction * force),

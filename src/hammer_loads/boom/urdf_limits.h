@@ -12,7 +12,7 @@ struct UrdfLimits {
   static constexpr int kDepth = 64;                             ///< tags within tags
   static constexpr int kLinks = 1000;                           ///< links of the robot
   static constexpr int kJoints = 1000;                          ///< joints of the robot
-  // Limit: BoomBounds.OfDescriptions of kBytes, kDepth, kLinks, kJoints
+  // Limit: kBytes, kDepth, kLinks, kJoints
 };
 
 /// One line when the text passes a limit, naming it, or has a `<` within a tag, where parsers may disagree; else empty.

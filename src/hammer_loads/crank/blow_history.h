@@ -40,7 +40,6 @@ class BlowHistory {
   static constexpr double kFirstCounts = 0.1, kLength = 10.0 + kFirstCounts;
   static constexpr double kLeast = 0.01;  // deviation
   static constexpr double kMost = 0.3;
-  // Guard: LearnedNumbers.TheBlowsOfTenTurns of kFirstCounts, kLength, kLeast, kMost
   BlowPrior first_;
   RunningMean<> mean_, variance_;
   RunningMean<ConstantErrors::Row> by_error_;

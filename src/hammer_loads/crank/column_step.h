@@ -29,7 +29,6 @@ class NearColumns {
  private:
   /// [rad], within which a column changes by a hundredth of its largest value.
   static constexpr double kBeside = 1e-3;
-  // Guard: NearColumns.AreThoseOfTheirPlaceToAHundredthOfTheLargest of kBeside
   bool serves(CrankAngle angle) const noexcept {
     return angle.side == angle_.side && std::abs(angle.offset - angle_.offset) < kBeside;
   }

@@ -40,8 +40,6 @@ class Consistency {
 
  private:
   static constexpr int kLength = 500, kEnough = 200;
-  // Guard: LearnedNumbers.ConsistencyIsAMeanOfFiveHundred of kMostSurprise, kLength
-  // Guard: LearnedNumbers.AYoungConsistencyIsAsDoubtfulAsTheOneBefore of kEnough
   int samples_{};
   double mean_{};
   double before_{1.0};  ///< doubt() before the restart
@@ -94,12 +92,9 @@ class RodEvidence {
   }
   /// Beside the blow: a rod that gives has picked the rocker up; it has rung out [rad].
   static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;
-  // Guard: Rival.IsLookedAtAgainBehindTheDeadCentre of kPickedUp
-  // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kRungOut
   /// Standard deviation of a reading from which on it shows no rod [rad]: through noise beyond it the sensor's place is
   /// taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
-  // Guard: RodEvidence.ReadingsWithoutExcessLeaveARingLittleRoom of kCoarsest
   /// Mean just before the blow, where a rod in worn pins lets go of the rocker and the crank runs ahead (4 and more;
   /// rods that give in tight pins 1.5 to 2), while the rod picks the rocker up, and when it has rung out [-].
   double runUp() const noexcept { return run_up_.mean(); }
@@ -124,9 +119,7 @@ class RodEvidence {
   }
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
   static constexpr double kShare = 5.0;
-  // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kEnough, kShare
   static constexpr double kSamples = 400.0;  ///< samples until it has picked up: some 20 turns at 1 kHz
-  // Guard: RodEvidence.IsThatOfTheLastFourHundredSamples of kSamples
   RunningMean<> run_up_{kSamples}, picked_up_{kSamples}, later_{kSamples * (kPi - kRungOut) / kPickedUp};
 };
 

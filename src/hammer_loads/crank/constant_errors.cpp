@@ -12,16 +12,13 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kFirstTurns = 4;  // the drive inertia is learned first
-// Guard: ConstantErrors.WhatTheFirstFourTurnsShowIsForgotten of kFirstTurns
 constexpr int kTurnsToKnow = 6;  // nothing is concluded before
-// Guard: Unknowns.OfTheSensorsPlaceDoWhatTheFilterSays of kTurnsToKnow
 constexpr double kUnmodelledCounts =
     0.5;  // what a clean machine shows, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
 constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well, before a warning
 constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a supply that follows the crank's
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
-// Guard: ConstantErrors.ADeviationCoversWhatTheModelLacks of kUnmodelledCounts, kUnmodelledDeviations, kSamplesToFollow
 
 constexpr double kNotSeen = 0.6;  // of the zero's prior
 constexpr double kGiven = 0.01;   // standard deviation of a zero as it is given [rad]

@@ -11,11 +11,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kDecided = 12.0;  // logarithm of odds: the less likely belief is set aside, and never less likely
-// Guard: Rival.IsSetAsideAtAHundredThousandToOne of kDecided
 constexpr double kChange = 9.0;  // as above at which the other one becomes the estimate
-// Guard: Rival.IsBelievedAtEightThousandToOne of kChange
 constexpr double kMostFit = 8.0;  // as above that one sample may add: it may be an outlier
-// Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kMostFit
 
 }  // namespace
 

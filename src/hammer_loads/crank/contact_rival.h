@@ -46,7 +46,7 @@ class ContactRival {
 
  private:
   static constexpr double kTurnsWithout = 0.5;  // before any was seen
-  // Prior: Rival.OneSampleOfAnyKindLeavesNoDoubt of kTurnsWithout
+  // Prior: kTurnsWithout
 
   std::optional<CrankBelief> belief_;
   double evidence_{};  ///< logarithm of its odds against the estimate

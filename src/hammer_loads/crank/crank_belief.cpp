@@ -12,11 +12,9 @@ namespace {
 
 constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
-// Prior: BeliefBounds.OfABlowsFactor of kLeastFactor, kMostFactor
+// Prior: kLeastFactor, kMostFactor
 constexpr double kMostDoubt = 1.0;  // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
-// Guard: BeliefBounds.OfABlowThatIsUnlikeTheOthers of kMostDoubt
 constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
-// Guard: BeliefBounds.OfADeadCentreWhereNothingStrikes of kTightFactor
 
 /// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].
 void doubtSpeedChange(double variance, double w, double since, double dt, CrankBelief& b) noexcept {

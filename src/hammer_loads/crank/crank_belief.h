@@ -17,7 +17,6 @@ constexpr double kNoiseStep = 2e-3;  ///< [s] over which the process noise is sp
 // Numerical: kNoiseStep
 /// Of the inertia's logarithm by one sample: beyond it the linearisation is worth nothing.
 constexpr double kMostInertiaChange = 0.3;
-// Guard: BeliefBounds.OfWhatOneSampleTeachesOfTheInertia of kMostInertiaChange
 
 /// Random walks of the variables that are not measured, and the law of the torque.
 struct CrankWalks {

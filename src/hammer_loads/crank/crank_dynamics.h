@@ -16,18 +16,14 @@ namespace hammer_loads {
 
 // A path is cut into smooth pieces that end at the blow.
 constexpr double kMaxStepAngle = 0.04;  ///< [rad] of the crank in one piece
-// Guard: CrankDynamics.PassesTheBlowInOneStepAsInMany of kMaxStepAngle
 constexpr int kMaxSteps = 4096;  ///< bounds the work for absurd speeds; steps get longer beyond it
 // Numerical: kMaxSteps
 /// [rad/s]: a slower crank is moved by friction and stopped by the tool; nothing jumps there.
 constexpr double kSlowCrank = 5.0;
-// Guard: BesideBlow.IsWhereSomethingJumps of kSlowCrank
 /// [rad/s]: a crank that creeps over the blow has no defined instant of passing it.
 constexpr double kCreeping = 1.0;
-// Guard: CrankDynamics.ACrankThatCreepsOverTheBlowHasNoInstantOfPassingIt of kCreeping
 /// So often in one way: then both sides push it back to the other, and it stays at the blow.
 constexpr int kMostCreepingPasses = 8;
-// Guard: CrankDynamics.WhereBothSidesPushItBackItPassesAFewTimesOnly of kMostCreepingPasses
 
 /// Of the way.
 struct WayPiece {
@@ -99,7 +95,6 @@ struct ShaftState {
 
 constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: it would be higher than long
 constexpr double kStepsToTool = 1.5;
-// Guard: CrankDynamics.AToolIsMetNearTheDeadCentreAlone of kNearTool, kHighestTool, kStepsToTool
 
 /// Whether the tool may be met within a step of length dt [s].
 inline bool isNearTool(const ShaftState& state, double dt) noexcept {

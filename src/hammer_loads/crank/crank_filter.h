@@ -37,7 +37,7 @@ struct CrankFilterSettings {
   double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
   ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
   double blow_deviation{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
-  // Prior: FilterTrouble.TheFirstGuessOfABlowHoldsAnyTool of blow_deviation
+  // Prior: blow_deviation
 };
 
 /// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
@@ -167,8 +167,6 @@ class CrankFilter {
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kHeld = 10.0;                 ///< times the first guess: no drive is as heavy
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
-  // Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kLost
-  // Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kOftenDoubted
   static constexpr double kSteps = 20.0;  ///< in their mean
   // Numerical: kSteps
 

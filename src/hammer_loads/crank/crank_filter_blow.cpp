@@ -14,10 +14,8 @@ constexpr double kNearCounts = 4.0;       // counts from the blow within which t
 constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
 constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
 constexpr double kRingOver = 0.8;         // [rad] behind the blow: a rod's ring is not taken for a torque any more
-// Guard: BlankStrokes.OneThatIsMissedIsFoundByTheTorque of kRingOver
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
-// Guard: FilterAtBlow.ACrankAtRestStandsThereWithinFourCounts of kNearCounts
-// Prior: FilterAtBlow.AToolMayTakeMostOfTheSpeed of kToolDeviation
+// Prior: kToolDeviation
 
 }  // namespace
 

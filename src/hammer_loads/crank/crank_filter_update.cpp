@@ -14,11 +14,8 @@ namespace {
 using Belief = CrankBelief;
 
 constexpr double kUnlearnEvery = 3.0;  // [s]
-// Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kUnlearnEvery
 constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
-// Guard: FilterTrouble.OfAPredictionThatIsWorthNothing of kDoubtfulAngle
 constexpr double kForgetDoubts = 30.0;  // [s]
-// Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kForgetDoubts
 
 }  // namespace
 

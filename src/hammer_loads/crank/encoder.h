@@ -63,17 +63,12 @@ class Encoder {
 
  private:
   static constexpr double kUsual = kTwoPi / 4096.0;
-  // Guard: EncoderCount.SurvivesSinglePrecisionAndAZeroOfItsOwn of kUsual
   static constexpr double kFinest = kTwoPi / 65536.0;
-  // Guard: EncoderCount.IsReadOffTheReadings of kFinest
   static constexpr double kMultipleTolerance = 1e-3;  // of a count; single-precision sensors round by 4e-4 of 2 pi/4096
   static constexpr int kEnough = 2;
-  // Guard: EncoderCount.TwoReadingsThatFitNothingAreOfAFinerSensor of kEnough
   static constexpr double kSame = kMultipleTolerance * kFinest;
   static constexpr int kEnoughStrays = 4;
-  // Guard: EncoderCount.OutlivesAReadingThatFitsNothing of kEnoughStrays
   static constexpr int kEnoughToKnow = 24;  // differences: all even or all multiples of three by chance: 1e-7
-  // Guard: JointBounds.OfAnEncodersCount of kMultipleTolerance, kEnoughToKnow
 
   static bool isMultiple(double difference, double count) noexcept {
     const double counts = difference / count, whole = std::nearbyint(counts);
@@ -151,7 +146,6 @@ class EncoderSlip {
   /// [rad]: an innovation that no working machine makes between two samples; the sensor is another one, and the
   /// estimate begins anew.
   static constexpr double kMost = 0.5;
-  // Guard: EncoderSlip.NorIsASensorThatIsSomewhereElse of kMost
 
   /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
   /// in a step of usual length; longer: in what this one lasts beyond that [rad]. possible: place and samples before
@@ -192,8 +186,6 @@ class EncoderSlip {
  private:
   static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
-  // Guard: EncoderSlip.IsAboutTheSameInTheNextReading of kSame
-  // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kOfClock
   double before_{};  ///< innovation of the sample before [rad]
   double seen_{};    ///< the same where it may be a slip; else 0
   double last_{}, deviation_{};

@@ -12,25 +12,24 @@ namespace {
 
 constexpr double kFirstRestitution = 0.16, kRestitutionDeviation = 0.1;
 constexpr double kPlaceDeviation = 5e-3;  // [rad]: a millimetre
-// Prior: RodFilterStart.KnowsToolAndRodAsFarAsTheyAreGiven of kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
+// Prior: kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
 constexpr double kOtherPlace = 2e-2;  // [rad] after a blow that this one does not explain: a retainer is 5 mm away
-// Prior: RodFilterStart.ABlowOnSomethingElseMayBeElsewhere of kOtherPlace
+// Prior: kOtherPlace
 constexpr double kWalks[] = {0.005, 0.01, 5e-6, 0.02, 3e-3};  // of the learned rows from blow to blow
-// Prior: RodFilterStart.WhatItLearnsWandersFromBlowToBlow of kWalks
+// Prior: kWalks
 constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
-// Prior: RodFilterStart.ARodIsNeitherOfRubberNorOfDiamond of kLeastLog, kMostLog
+// Prior: kLeastLog, kMostLog
 constexpr double kLongest = 5e-4, kLongestLater = 1e-3;  // [s] of a part: near the blow the lever changes fast
 // Numerical: kLongest, kLongestLater
 constexpr double kNear = 0.25;  // [rad]
 // Numerical: kNear
 constexpr double kAngleDoubt = 1e-4, kSpeedDoubt = 0.02, kInertiaDoubt = 0.01;  // of a rigid rod's filter
-// Prior: RodFilterStart.ARigidRodsFilterIsDoubtedALittle of kAngleDoubt, kSpeedDoubt, kInertiaDoubt
+// Prior: kAngleDoubt, kSpeedDoubt, kInertiaDoubt
 constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;  // [rad], [rad/s]
-// Prior: RodFilterStart.ARodAtRestRingsALittle of kSettledX, kSettledSpeed
+// Prior: kSettledX, kSettledSpeed
 constexpr double kUnmodelled = 1.0;  // [rad/s/sqrt(s)] of the rocker's speed
-// Prior: RodFilterStart.TheRockersSpeedIsDoubtedByWhatTheModelLacks of kUnmodelled
+// Prior: kUnmodelled
 constexpr int kEnough = 8;
-// Guard: RodFilterStart.IsProvenByEightSamplesAcrossABlow of kEnough
 
 }  // namespace
 

@@ -16,13 +16,8 @@ constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by n
 constexpr double kNotableScale = 0.01;  // likewise
 constexpr double kLeastSquare = 1e-4;   // of a residual, over that expected: no reading is a hundred times better
 constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
-// Guard: SpeedTrust.KnowsAfterFiveTurns of kLeastTurns
 constexpr double kMostOfOne = 0.999;  // of a correlation
-// Guard: SpeedTrust.AnEvenSpeedWithoutNoiseSaysNothing of kLeastSquare
-// Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kNotableLag
-// Guard: SpeedTrust.KnowsAsMuchAsThirtyTurnsShow of kSpeedTurns
-// Prior: SpeedTrust.FindsNoMoreThanAnyDriveHas of kMostScale
-// Guard: SpeedTrust.NamesAScaleFromAHundredthOn of kNotableScale
+// Prior: kMostScale
 // Numerical: kMostOfOne
 
 /// Over what is seen.

@@ -78,9 +78,6 @@ class StampRounding {
   static constexpr std::int64_t kTolerance = 1000;  // [ns]: of stamps that were numbers of seconds on their way
   static constexpr int kMany = 100;                 // stamps that are judged together
   static constexpr int kUneven = 10;                // of them: some samples are late or lost
-  // Guard: StampRounding.IsKnownAfterAHundredStamps of kMany
-  // Guard: StampRounding.SomeLostSamplesDoNotMakeIt of kUneven
-  // Guard: StampRounding.StampsWithinAMicrosecondAreWhole of kTolerance
 
   static bool isWhole(std::int64_t difference, std::int64_t step) noexcept {
     const std::int64_t rest = std::llabs(difference) % step;

@@ -59,7 +59,6 @@ class LearnedSupply {
 
  private:
   static constexpr double kTurns = 3.0;
-  // Guard: SupplyLaw.ATorqueIsUsualWithinThreeTurns of kTurns
   RunningMean<> usual_, half_turn_;
   SupplyLaw law_;
   CrankPosition from_;
@@ -88,8 +87,7 @@ class SupplyRoughness {
   static constexpr double kGain = 1.0 / look_back::kReadings;
   static constexpr double kFading = 0.85;              // some 7 samples are looked at
   static constexpr double kLeast = 0.25, kMost = 3.0;  // a sudden supply is still followed within some samples
-  // Guard: LearnedNumbers.TheSupplysWalk of kFading
-  // Prior: LearnedNumbers.TheSupplysWalk of kLeast, kMost
+  // Prior: kLeast, kMost
   double factor_{1.0}, sum_{};
 };
 

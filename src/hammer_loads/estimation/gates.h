@@ -12,17 +12,13 @@ namespace hammer_loads {
 namespace gate {
 constexpr double kUsual = 2.0;  ///< 5 in 100
 constexpr double kRare = 3.0;   ///< 3 in 1000: three times a second
-// Guard: LearnedNumbers.TheFirstSixtySamplesShowLittleJitter of kUsual, kRare
 constexpr double kVeryRare = 4.0;  ///< 6 in 100 000: some four times a minute
-// Guard: FieldCrank.ABlowUnlikeTheFirstOnesIsOneBlow of kVeryRare
 constexpr double kImpossible = 5.0;  ///< 6 in 10 million: twice an hour
-// Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kImpossible
 }  // namespace gate
 
 /// Logarithms of odds.
 namespace odds {
 constexpr double kLikely = 2.0;  ///< 7 to 1
-// Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kLikely
 }  // namespace odds
 
 /// Means of innovation^2 over its variance. A right model has 1, or a little less; what they are at machines that are
@@ -31,9 +27,6 @@ namespace mismatch {
 constexpr double kSeen = 2.0;         ///< something else shows
 constexpr double kUnexplained = 3.0;  ///< it is to be said
 constexpr double kContradicts = 4.0;  ///< the model is wrong
-// Guard: PoseAndTrust.ACrankThatContradictsTheModelIsRefused of kContradicts
-// Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kSeen
-// Guard: FilterAtWork.DoubtsTheInertiaAtThreeTimesTheVariance of kUnexplained
 }  // namespace mismatch
 
 /// Whether an innovation of that variance is beyond this many deviations. One that is no number is not.
@@ -51,7 +44,6 @@ inline double weightWithin(double deviations, double innovation, double variance
 class Latch {
  public:
   static constexpr double kReleased = 0.5;  ///< of the level at which it engages
-  // Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kReleased
 
   explicit Latch(double engages) noexcept : Latch(engages, kReleased * engages) {}
   /// releases <= engages.

@@ -5,31 +5,21 @@ namespace hammer_loads::look_back {
 
 // Turns of a hammer at work, which strikes some five times a second.
 constexpr double kTurn = 0.2;  ///< [s]: all that a turn holds was there
-// Guard: SensorBounds.OfAFrozenImu of kTurn
 constexpr double kHalfTurn = 0.5 * kTurn;  ///< [s]: a sensor that speaks has said something
 constexpr double kSomeTurns = 0.5;         ///< [s]: the least for a mean
-// Guard: VibrationNumbers.OfTheRocksMeanForce of kSomeTurns
 constexpr double kFiveTurns = 1.0;  ///< [s]: what was there in each of them is no accident
-// Guard: VibrationNumbers.OfTheUsualSwing of kFiveTurns
 constexpr double kTenTurns = 2.0 * kFiveTurns;  ///< [s]: a mean in which one turn more or less does not show
 
 // Boom and hull vibrate at 2 to 40 Hz.
 constexpr double kHeld = 0.01;  ///< [s]: a reading holds
-// Guard: SensorBounds.OfASilentSensor of kHeld
 constexpr double kLine = 0.02;  ///< [s]: a line through the last readings goes on
-// Guard: MeasuredBoom.ALineGoesOnForTwentyMilliseconds of kLine
 constexpr double kLongestReading = 0.05;  ///< [s]: that one counts for, over a gap as well
-// Guard: SensorBounds.OfPressuresTimes of kLongestReading
 
 // A variance by n values is known to sqrt(2/n).
 constexpr double kReadings = 200.0;  ///< to a tenth
-// Guard: MeasuredBoom.TwoHundredReadingsSayHowFarOneIsOff of kReadings
 constexpr double kManyReadings = 1000.0;  ///< to a twentieth
-// Guard: FollowerNumbers.ASignalsNoiseIsThatOfAThousandReadings of kManyReadings
 
 constexpr int kTurnsToKnow = 5;  ///< nothing is concluded before
-// Guard: SpeedTrust.KnowsAfterFiveTurns of kTurnsToKnow
 constexpr double kManyTurns = 300.0;  ///< a minute at work
-// Guard: ConstantErrors.AreThoseOfThreeHundredTurns of kManyTurns
 
 }  // namespace hammer_loads::look_back

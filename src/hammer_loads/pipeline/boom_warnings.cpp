@@ -15,7 +15,6 @@ namespace {
 
 /// A stamp that is later [s] is named, and may be taken for oil that is softer.
 constexpr double kLateStamp = 8e-4;
-// Guard: MistakenSensors.PressuresThatAreLateAreNamedAndAllowedFor of kLateStamp
 
 /// By which pressures seem late where what damps the boom is not in its oil [s]: what is more than the boom file has,
 /// or where that is odd all that is found, and as much as the delay itself is not known.
@@ -33,7 +32,6 @@ double lagOfDamping(const Boom& boom, int odd) {
 /// A clock of its own, as the boom's modes show it. explained: late by this without one [s].
 bool isOff(const ModeIdentifier& identifier, Clock clock, double explained = 0.0) {
   constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
-  // Guard: MistakenSensors.ImuStampsThatAreOffAreNamedAndAllowedFor of kKnown, kPart
   const double delay = identifier.delay(clock);
   return std::abs(delay) > kLateStamp && !(delay > 0.0 && delay < explained) &&
          identifier.delayDeviation(clock) < kKnown + kPart * std::abs(delay);
@@ -128,7 +126,6 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
 /// Pressures that are not used.
 void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warning>& warnings) {
   constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of what air has
-  // Guard: WarningNumbers.PressuresOfNoCylinderAreInAnotherUnit of kOfNoCylinder
   if (trust.isLate()) {
     warnings.push_back({"pressure stamps",
                         "cylinder_pressures: not used, their stamps are about " + laterOrEarlier(trust.lateBy()) +

@@ -10,10 +10,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kSettlingSamples = 5;  // without measured speeds: until then they are known from linearised steps
-// Guard: CrankWithoutSpeeds.IsWithheldForSomeSamplesAfterADropOut of kSettlingSamples
 constexpr double kSettledDeviations = gate::kRare;  // that the predicted error has
 constexpr double kFrozenCounts = 5;                 // a crank that turned further gives another angle
-// Guard: CrankTrust.AnotherUnitIsWithheldAndNamed of kFrozenCounts
 constexpr double kFrozenDeviations = gate::kImpossible;  // of a sensor's noise, as well
 
 /// resolution: of the angle sensor [rad].

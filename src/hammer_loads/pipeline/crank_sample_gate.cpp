@@ -8,7 +8,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLargestAngle = 1e9;  // [rad]: beyond it a double resolves less than an encoder count
-// Limit: SensorBounds.OfCrankAngles of kLargestAngle
+// Limit: kLargestAngle
 
 }  // namespace
 

@@ -60,9 +60,7 @@ class CrankTrust {
   /// Strokes in a row. Wherever the model holds one in some hundred is not believed, after lost samples; with a zero
   /// 30 deg off, on a machine whose rod gives, or one that runs away without a tool, nine of ten are not.
   static constexpr int kUnbelieved = 2;
-  // Guard: PoseAndTrust.TwoStrokesInARowThatAreNotBelieved of kUnbelieved
   static constexpr double kRunUp = 1.0;  ///< [rad]: noise of readings is less, a blow's way more
-  // Guard: PoseAndTrust.ACrankHasRunUpAfterARadian of kRunUp
   /// A hammer that stops falls back on its tool, by less than half a turn: the rocker passes the dead centre no other
   /// way.
   void followTurning(double turned) noexcept {

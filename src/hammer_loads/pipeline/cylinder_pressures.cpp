@@ -7,7 +7,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMostPressure = 2e8;  // [Pa]: 2000 bar
-// Limit: SensorBounds.OfPressures of kMostPressure
+// Limit: kMostPressure
 
 }  // namespace
 

@@ -46,7 +46,6 @@ class CylinderPressures {
 
  private:
   static constexpr double kLeastJump = 5e6;  // [Pa]: a fifth of the working pressure
-  // Guard: SensorBounds.OfPressures of kLeastJump
 
   struct Reading {
     StampNs stamp{};

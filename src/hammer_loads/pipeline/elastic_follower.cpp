@@ -15,21 +15,14 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kFrom = -0.30, kFromLatest = -0.05;  // [rad] where it begins: some 15 ms before the blow
-// Guard: ElasticSession.PlayIsLearned of kFrom
-// Guard: ElasticNumbers.ItDoesNotBeginJustBeforeTheBlow of kFromLatest
 constexpr double kTo = 2.2;  // [rad]: by then no rod rings
-// Guard: ElasticSession.TightPinsDoNotPassForWornOnes of kTo
 constexpr double kContact = 5e-4;  // [s]
-// Guard: ElasticNumbers.AContactLastsForHalfAMillisecond of kContact
 
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
-// Guard: ElasticNumbers.ARodThatWasReplacedIsForgottenWithinThreeBlows of kEvidenceGain
-// Guard: ElasticNumbers.OneClearBlowIsEnough of kGivenUp
 constexpr std::int64_t kOthersTurn = 4;  // [blows]
 // Numerical: kOthersTurn
 
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
-// Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
 
 /// x'' [rad/s2]: of the rocker beside a rigid rod's at the crank's acceleration.
 double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {

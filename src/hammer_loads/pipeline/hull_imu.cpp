@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLargestForce = 2000.0;  // [m/s2]: 200 g, some twenty times a hull's under the MO-100's full pulse
 constexpr double kLargestRate = 100.0;    // [rad/s]
-// Limit: SensorBounds.OfImuReadings of kLargestForce, kLargestRate
+// Limit: kLargestForce, kLargestRate
 
 }  // namespace
 

@@ -70,7 +70,6 @@ class HullImu {
   // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for steel that rings too.
   static constexpr double kLeastForceJump = 200.0;  // [m/s2]
   static constexpr double kLeastRateJump = 3.0;     // [rad/s]
-  // Guard: SensorBounds.OfImuReadings of kLeastForceJump, kLeastRateJump
 
   /// In axes of hammer_hull.
   struct Sample {

@@ -13,24 +13,21 @@ namespace {
 // First guesses of a reading's noise, a usual MEMS unit's; learned.
 constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
 constexpr double kSwings = 2.0;  // times what a load does to it at once: a hull on oil, whose modes blows excite
-// Guard: HullByBoom.AnImuThatNeverSpeaksLeavesTheHullsMotionInDoubt of kSwings
 // Standard deviation of what such a unit adds to all readings alike, which no filter shows.
 constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
-// Prior: FollowerNumbers.AnImusOffsetsAreInTheHullsMotion of kForceOffset, kRateOffset
+// Prior: kForceOffset, kRateOffset
 // A hull is some five times as heavy as its rocker at least.
 constexpr double kLightest = 0.2;
-// Prior: FollowerNumbers.AHullIsNoLighterThanFiveRockers of kLightest
+// Prior: kLightest
 constexpr double kLongestPiece = 2e-3;  // [s]: some 20 of a period of 25 Hz
 // Numerical: kLongestPiece
 constexpr double kWorking = 0.05;  // of the greatest load: the hammer is at work
-// Guard: FollowerNumbers.AnImusNoiseIsLearnedAtWork of kWorking
-// Prior: FollowerNumbers.AnImusNoiseIsLearnedAtWork of kForceNoise
+// Prior: kForceNoise
 
 constexpr double kStiffest = 4e3;  // [1/s2]: some 10 Hz
 constexpr double kDamped = 10.0;   // [1/s]: of that a twelfth of the critical
 constexpr double kArm = 0.5;       // [m] of a hull's turning: from D to where it hangs
-// Prior: HullMotionFilter.GivesTheForcesVectorRightAfterBlowsTooAndHonestDeviations of kRateNoise, kStiffest, kDamped,
-// kArm
+// Prior: kRateNoise, kStiffest, kDamped, kArm
 
 /// signal_arm: 1 of a force's signal; of turning over kArm.
 DrivenSignal::Settings signalOf(DrivenSignal::Reads reads, double noise, Eigen::Vector3d compliance,

@@ -14,7 +14,7 @@ class HullPitch {
  public:
   /// A larger angle is refused: degrees are taken and recognised, garbage is not [rad].
   static constexpr double kMostAngle = 1e4;
-  // Limit: SensorBounds.OfBoomAngles of kMostAngle
+  // Limit: kMostAngle
 
   /// initial: pitch until every joint has been heard [rad].
   HullPitch(std::vector<std::string> joints, double initial) : HullPitch(std::move(joints), {}, 0.0, initial) {}

@@ -102,7 +102,6 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
 std::optional<KnownHullMotion> HullState::measured(StampNs stamp) const noexcept {
   if (imu_trust_.isLost()) return std::nullopt;
   constexpr std::ptrdiff_t kLeftBehind = 3;  // readings
-  // Guard: HullBehindASlowCrank.MovesAsTheLastReadingSays of kLeftBehind
   if (filter_.waiting(stamp) < kLeftBehind)
     if (const std::optional<KnownHullMotion> known = filter_.at(stamp)) return known;
   const std::optional<HullMotion> read = imu_.at(stamp);

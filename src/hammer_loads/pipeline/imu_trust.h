@@ -61,7 +61,6 @@ class ImuTrust {
  private:
   static constexpr double kMostPart = 0.5;  // of the weight
   static constexpr double kMostRate = 3.0;  // [rad/s]
-  // Guard: SensorBounds.OfAnImusMean of kMostPart, kMostRate
   static constexpr double kFrozen = look_back::kTurn;  // of one reading again and again
 
   RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()},

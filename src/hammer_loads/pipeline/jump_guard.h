@@ -27,7 +27,6 @@ class JumpGuard {
 
  private:
   static constexpr double kFactor = 12.0, kShare = 0.01;
-  // Guard: SensorBounds.OfJumps of kFactor, kShare
 
   double least_;
   double square_{};  ///< mean of the jumps' squares

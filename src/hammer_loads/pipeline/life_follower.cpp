@@ -11,7 +11,6 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kKnown = gate::kRare;  // deviations from the blow: no reading stands for what is counted closer
-// Guard: TurnLoads.ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme of kKnown
 
 }  // namespace
 

@@ -12,7 +12,6 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLag = 0.4;  // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
-// Guard: MeasuredBoom.ReadingsThatDoNotFitMakeTheSwingDoubtful of kLag
 
 /// What seals take between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {

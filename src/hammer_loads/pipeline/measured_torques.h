@@ -19,7 +19,6 @@ class MeasuredTorques {
  public:
   /// ModeIdentifier::oilSurprise() from which on the readings do not follow the boom's motion, as when stamps lag.
   static constexpr double kSurprised = 1.0;
-  // Guard: MeasuredBoom.ReadingsThatDoNotFitMakeTheSwingDoubtful of kSurprised
 
   struct Torque {
     double value{};       ///< of the load on the cylinder's joint [N m]

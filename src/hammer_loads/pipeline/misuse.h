@@ -44,7 +44,6 @@ class MisuseFollower {
   static constexpr double kPatience = 15.0;  // [s]
   /// The hull has moved: two deviations of a tip 6 m away by joint sensors of 0.1 deg.
   static constexpr double kMoved = 0.02;  // [m]
-  // Guard: SensorBounds.OfAHullThatStands of kPatience, kMoved
 
   /// Where the hull's origin is, at a sample [m]; any frame that stands still.
   void hullAt(const Eigen::Vector3d& place) noexcept {

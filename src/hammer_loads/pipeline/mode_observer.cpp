@@ -13,18 +13,16 @@ struct Doubt {
   double noise, offset, walk;
 };
 constexpr Doubt kAcceleration{0.3, 0.3, 0.05};  // [m/s2]
-// Prior: ObservedBoom.OneAccelerationIsBelievedAsFarAsOffsetAndLinksAreKnown of kAcceleration, kLinksInHull
+// Prior: kAcceleration, kLinksInHull
 constexpr Doubt kRate{0.005, 0.02, 0.005};  // [rad/s]
-// Prior: ObservedBoom.OneRateIsBelievedAsFarAsItsOffsetIsKnown of kRate
+// Prior: kRate
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
-// Prior: ObservedBoom.OneAngleIsBelievedAsFarAsItsOffsetIsKnown of kAngle
+// Prior: kAngle
 constexpr Doubt kTorque{0.004, 0.02, 0.002};  // of the torque that the cylinder's relief valve allows
 constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at the mean of their places
-// Prior: ObservedBoom.OneTorqueIsBelievedAsFarAsItsOffsetIsKnown of kTorque
+// Prior: kTorque
 constexpr double kMoved = 0.02;  // [rad]: a jump
-// Guard: ObservedBoom.NorDoAnglesThatJump of kMoved
 constexpr double kOfSample = 0.75;  // of the step between samples: what lies further from one is of another
-// Guard: ObservedBoom.NorDoAnglesOfAnotherSample of kOfSample
 
 void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {
   reading.noise = size * doubt.noise;

@@ -10,7 +10,6 @@ namespace hammer_loads {
 /// For how long more than one reading should have come [s]; below 0: not yet. since: the last one; interval: before it.
 inline double overdue(double since, double interval) noexcept {
   constexpr double kIntervals = 2.0;
-  // Guard: SensorBounds.OfASilentSensor of kIntervals
   return since - kIntervals * interval;
 }
 

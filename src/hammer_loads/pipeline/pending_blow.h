@@ -77,7 +77,6 @@ class PendingBlow {
 
  private:
   static constexpr double kFarEnough = 1.0;  // [rad]: some 50 ms
-  // Guard: SensorBounds.OfABlowThatIsMeasured of kFarEnough
   bool waiting_{};
   double time_{};
   CrankPosition position_;

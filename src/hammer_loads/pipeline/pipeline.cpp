@@ -15,8 +15,6 @@ namespace {
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
-// Guard: ToldCrank.ForcesAreAtMostAHalfAndThenThreeOfTheNominalOne of kMostForce, kMostForceUnproven
-// Guard: ToldCrank.AFirstSampleIsNoFasterThanTwiceAWorkingMachine of kMostSpeedUnproven
 constexpr double kPeakLasts = 60.0;  // [s]
 constexpr double kUncertain = 5.0;   // times withhold_above: half of the peak, beyond it a load says nothing
 constexpr double kLeastPeak = 0.1;   // of that at constant speed: a hammer that idles is judged as one that works

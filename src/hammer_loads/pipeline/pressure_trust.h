@@ -50,12 +50,8 @@ class PressureTrust {
 
  private:
   static constexpr double kAcross = 0.1, kTurning = 0.3;  // of the load along the tool and the weight; with its arm
-  // Guard: SensorBounds.OfPressuresMean of kTurning
-  // Guard: SensorBounds.OfPressuresTimes of kAcross
   static constexpr double kLongestHose = 8e-3;      ///< time constant [s]
   static constexpr double kUntilTriedAgain = 60.0;  ///< [s]
-  // Guard: MistakenSensors.PressuresThatLagAreNamedAndNotUsed of kLongestHose
-  // Guard: FollowerNumbers.PressuresThatWereLateAreTriedAgainAfterAMinute of kUntilTriedAgain
 
   double turning() const noexcept { return mean_.mean()[2]; }
 

@@ -62,7 +62,6 @@ struct SampleCounts {
   /// only: a tenth of them is enough.
   bool contradictSince(const SampleCounts& before) const noexcept {
     constexpr std::uint64_t kUnitTells = 10;
-    // Guard: WarningNumbers.ATenthOfTheSamplesTellsTheUnit of kUnitTells
     const std::uint64_t good = accepted - before.accepted;
     return contradicting() - before.contradicting() > good ||
            kUnitTells * (inOtherUnit() - before.inOtherUnit()) > good;

@@ -18,9 +18,9 @@ namespace {
 constexpr double kLongest = 1e-3;           // [s] in which the lever counts as constant
 constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a measured restitution: 0.03 to 0.08,
                                             // with worn pins to 0.14
-// Prior: RodRing.RestitutionIsCovered of kRestitutionDoubt
+// Prior: kRestitutionDoubt
 constexpr double kMeanRestitution = 0.5, kAnyRestitution = 0.29;  // of one that may be anything from 0 to 1
-// Prior: RodRing.OfLivelyRockARigidLevelKnowsNoRestitution of kMeanRestitution, kAnyRestitution
+// Prior: kMeanRestitution, kAnyRestitution
 constexpr double kPart = 1e-2;       // [rad], as kLongest
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
 // Numerical: kLongest, kPart, kBallistic

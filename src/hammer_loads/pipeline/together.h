@@ -7,7 +7,6 @@ namespace hammer_loads {
 
 /// No sensor of a machine is read more often than this [s].
 constexpr double kSameInstant = 1e-4;
-// Guard: HullImu.NoTwoReadingsThatWaitedForABusMakeAnAcceleration of kSameInstant
 
 /// Of stamps of one sensor, one after the other: their difference is the bus's, and no rate can be found over it.
 inline bool cameTogether(StampNs before, StampNs after) noexcept { return seconds(after - before) < kSameInstant; }

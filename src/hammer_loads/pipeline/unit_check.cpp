@@ -13,15 +13,11 @@ constexpr double kDegrees = 360.0 / kTwoPi;  // in a radian
 constexpr double kRpm = 60.0 / kTwoPi;       // in a radian a second
 constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
 constexpr double kLeastStretch = 0.01;       // [rad] of the shorter one: of the speed's noise as well
-// Guard: FollowerNumbers.AHundredthOfARadianIsEnoughOfTheOtherUnit of kLeastStretch
 constexpr double kStretch = 1.0;       // [rad]: shorter than a turn, so that most stretches see no jump back
 constexpr double kLongestStep = 0.25;  // [s]
 constexpr double kRepeats = 0.2;       // relative change between steps that repeat each other
-// Guard: FollowerNumbers.StepsOfDegreesRepeatThemselves of kRepeats
 constexpr double kMoves = 1.0;  // [rad/s]: a slower angle says nothing of its unit
-// Guard: FollowerNumbers.AUnitIsRightAgainAfterTwoSecondsOfMotion of kMoves
 constexpr int kEnough = 8;  // votes more for another unit than against
-// Guard: SensorBounds.OfUnits of kTolerance, kStretch, kLongestStep, kEnough
 
 constexpr double kWindow = 8e-3;            // [s] over which a rate is taken
 constexpr double kMeanRate = 1.0;           // [s] of its mean

@@ -72,7 +72,6 @@ class UnitCheck {
 
  private:
   static constexpr int kSuspicious = 2;  ///< votes more for another unit than against
-  // Guard: FollowerNumbers.TwoVotesForAnotherUnitAreSuspicious of kSuspicious
 
   void begin(double angle) noexcept;
   void compareWithSpeed(double step, double predicted) noexcept;

@@ -7,9 +7,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongestDecay = 10.0;  // [s]
-// Guard: VibratingBoom.AMotionThatNothingDampsIsOverAfterTenSeconds of kLongestDecay
 constexpr double kMostRate = 1.0;  // [rad/s]: no operator swings a boom as fast, no rock throws it so
-// Guard: VibratingBoom.NoOperatorSwingsItFasterThanARadianASecond of kMostRate
 
 }  // namespace
 

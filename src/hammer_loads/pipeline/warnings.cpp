@@ -71,7 +71,6 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
 void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double speed_at_work,
                   std::vector<Warning>& warnings) {
   constexpr double kJitter = 1e-4;  // [s]: from there on the wrench is some 0.2 % worse
-  // Guard: WarningNumbers.StampsThatJitterByATenthOfAMillisecond of kJitter
   if (crank.stamps().isSteady())
     warnings.push_back({"stamps",
                         format("crank stamps repeat or change places and jitter by %.2g ms: samples are taken at equal "
@@ -90,7 +89,6 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
 /// by 0.2 to 3 deg (rods of 2e8 to 1e10 N/m, play to 0.5 mm, 200 Hz to 1 kHz), more is withheld; the encoder eccentric
 /// by 1 deg.
 constexpr double kRodLooksEccentric = 1.5 * kDegree;
-// Guard: RodWarnings.WhatNoRodMakesIsNamedBesideIt of kRodLooksEccentric
 
 /// How far an amount is beyond what such a rod explains.
 double beyondRod(const Unknown& unknown, double amount) {
@@ -208,7 +206,6 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
 /// What the filter's innovations look like.
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
-  // Guard: WarningNumbers.NothingIsSaidOfASensorBeforeTenBlows of kLearned
   const CrankFilter& filter = pipeline.crank().tracker();
   const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
   if (pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
@@ -237,7 +234,6 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
 /// Of a unit that is not where or what it is said to be. weight: of the hull by the joint angles.
 std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
   constexpr double kAlike = 1.2;  // factor between weights: what blows add to a mean of 2 s is less
-  // Guard: WarningNumbers.AWeightWithinAFifthOfOneIsInG of kAlike
   if (trust.turnsTooFast())
     return format(
         "it turns by %.3g rad/s, root mean square, as no hull does (in degrees per second that is %.2g rad/s)",
