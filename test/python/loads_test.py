@@ -85,19 +85,6 @@ class Loads(unittest.TestCase):
                          "crank_angle_rad: must be a number of size <= 4e8 rad")
         self.assertIn("broadcast", support.message(self.hammer.wrenches, np.ones(3), np.ones(4)))
 
-    def test_writes_over_an_earlier_result(self):
-        out = self.hammer.wrenches(ANGLE, SPEED)
-        first = out["hull_force_z_N"]
-        again = self.hammer.wrenches(ANGLE + 0.1, SPEED, out=out)
-        self.assertIs(again["hull_force_z_N"], first)
-        np.testing.assert_array_equal(first, self.hammer.wrenches(ANGLE + 0.1, SPEED)["hull_force_z_N"])
-        self.assertIn("hull_force_x_N", support.message(self.hammer.wrenches, ANGLE[1:], SPEED[1:], out=out))
-        self.assertIn("R01_x_N", support.message(self.hammer.wrenches, ANGLE, SPEED, out=dict(out), pins=True)
-                      .replace("drive_torque_y_Nm", "R01_x_N"))
-        shared = dict(out, hull_force_x_N=out["hull_force_z_N"])
-        self.assertIn("shares memory", support.message(self.hammer.wrenches, ANGLE, SPEED, out=shared))
-        self.assertIn("shares memory", support.message(self.hammer.wrenches, out["hull_force_x_N"], SPEED, out=out))
-
     def test_others_run_meanwhile(self):
         """While a long call computes, another thread of Python goes on: it counts what the lock would have stopped."""
         angle, ticks, done = np.resize(ANGLE, 4000000), [], threading.Event()

@@ -1,15 +1,34 @@
-/// The module hammer_loads_py with the text of Python's help().
+/// The compiled part of hammer_loads_py: plain arrays in and out. package/__init__.py gives them names and shapes.
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <cmath>
+
+#include "hammer_loads/hammer/batch.h"
 #include "hammer_loads/hammer/blow.h"
-#include "hammer_loads/python/loads.h"
-#include "hammer_loads/python/tables.h"
+#include "hammer_loads/hammer/evaluate.h"
+#include "hammer_loads/life/cycle_counter.h"
+#include "hammer_loads/life/exact_cycles.h"
+#include "hammer_loads/python/hammer.h"
 #include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::python {
 namespace {
+
+namespace py = pybind11;
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Text = std::optional<std::string>;
+
+/// Python's ValueError: the problems as the commands write them, a line each.
+[[noreturn]] void raise(const std::vector<std::string>& problems) {
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  throw py::value_error(text);
+}
 
 /// A hammer, or its problems as an exception.
 Hammer valueOf(Checked<Hammer> made) {
@@ -29,7 +48,11 @@ Hammer fromYaml(const py::args& paths) {
 
 Hammer changed(const Hammer& hammer, const py::kwargs& values) {
   std::map<std::string, double> numbers;
-  for (const auto& [key, value] : values) numbers[key.cast<std::string>()] = numberOf(py::str(key), value);
+  for (const auto& [key, value] : values) {
+    if (!PyNumber_Check(value.ptr()))
+      raise({std::string(py::str(key)) + ": " + py::repr(value).cast<std::string>() + ", must be a number"});
+    numbers[key.cast<std::string>()] = value.cast<double>();
+  }
   return valueOf(hammer.changed(numbers));
 }
 
@@ -40,6 +63,119 @@ std::string textOf(const Hammer& hammer) {
                           "rocker_inertia_about_pivot_kg_m2"})
     text += format("%s %.6g, ", key, hammer.parameters().at(key));
   return text + "level " + nameOf(hammer.level()) + ">";
+}
+
+HullModel modelOf(const Hammer& hammer, const Text& word) {
+  if (!word) return HullModel(hammer.mechanism(), hammer.level());
+  std::string words;
+  for (const auto& [name, level] : kRigidLevelNames) {
+    if (*word == name) return HullModel(hammer.mechanism(), level);
+    words += (words.empty() ? "" : ",") + std::string(name);
+  }
+  raise({"level: " + onOneLine(*word) + " not in {" + words + "}"});
+}
+
+/// A row for each column of the commands: wrench, then with pins those of kPinColumns.
+Array loads(const Hammer& hammer, const Array& angle, const Array& speed, const Array& acceleration,
+            const std::pair<double, double>& gravity, const Text& level, bool pins) {
+  const HullModel model = modelOf(hammer, level);
+  const auto count = static_cast<std::size_t>(angle.size());
+  Array result({pins ? 3 + kPinColumns.size() : std::size_t{3}, count});
+  const auto row = [data = result.mutable_data(), count](std::size_t index) { return data + index * count; };
+  const CrankStates states{angle.data(), speed.data(), acceleration.data(), count};
+  const Gravity g{gravity.first, gravity.second};
+  const WrenchArrays wrench{row(0), row(1), row(2)};
+  const py::gil_scoped_release others_may_run;
+  if (pins) {
+    const PinArrays of_pins{row(4), row(5), row(6), row(7), row(8), row(9), row(10), row(11), row(3)};
+    linkLoads(model, states, g, wrench, of_pins);
+  }
+  // At level pulse the pins are the rocker's, the wrench its own.
+  if (!pins || model.level() == Level::kPulse) hullWrenches(model, states, g, wrench);
+  return result;
+}
+
+/// A row for each column of turn_table.
+Array turn(const Hammer& hammer, double speed, double step, const std::pair<double, double>& gravity,
+           const Text& level, bool pins) {
+  const TurnTable table{modelOf(hammer, level), speed, {gravity.first, gravity.second}, step, pins};
+  const std::vector<TurnRow> rows = turnRows(table, 0, rowCount(table));
+  Array result({pins ? 5 + kPinColumns.size() : std::size_t{5}, rows.size()});
+  auto out = result.mutable_unchecked<2>();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const TurnRow& row = rows[i];
+    const std::array<double, 5> values{row.crank_angle, row.time, row.wrench.force_x, row.wrench.force_z,
+                                       row.wrench.torque_y};
+    const auto at = static_cast<py::ssize_t>(i);
+    for (std::size_t c = 0; c < values.size(); ++c) out(static_cast<py::ssize_t>(c), at) = values[c] + 0.0;
+    if (!pins) continue;
+    const auto of_pins = pinValues(row.pins);
+    for (std::size_t c = 0; c < of_pins.size(); ++c) out(static_cast<py::ssize_t>(5 + c), at) = of_pins[c] + 0.0;
+  }
+  return result;
+}
+
+py::dict pulse(const Hammer& hammer, double speed, const std::pair<double, double>& gravity, const Text& level) {
+  const ConstantSpeedPulse result =
+      pulseOfTurn({modelOf(hammer, level), speed, {gravity.first, gravity.second}, 1.0, false});
+  py::dict values;
+  values["amplitude_N"] = result.pulse.amplitude;
+  values["peak_angle_deg"] = result.peak_angle / kDegree;
+  values["impulse_Ns"] = result.pulse.impulse;
+  values["frequency_rad_s"] = result.pulse.frequency;
+  values["start_s"] = result.pulse.start;
+  values["turn_impulse_x_Ns"] = result.pulse.turn_impulse_x + 0.0;
+  values["turn_impulse_z_Ns"] = result.pulse.turn_impulse_z + 0.0;
+  return values;
+}
+
+py::dict blow(const Hammer& hammer, double before, std::optional<double> after, const Text& level) {
+  const Level at = modelOf(hammer, level).level();
+  const RockerBlow result = after ? blowAtCrankSpeeds(hammer.mechanism(), at, before, *after)
+                                  : blowAtCrankSpeed(hammer.mechanism(), at, before);
+  py::dict values;
+  values["crank_speed_before_rad_s"] = before;
+  values["crank_speed_after_rad_s"] = after.value_or(before);
+  values["rocker_speed_before_rad_s"] = result.rocker_speed_before;
+  values["rocker_speed_after_rad_s"] = result.rocker_speed_after;
+  values["restitution"] = result.restitution;
+  values["energy_J"] = result.energy;
+  values["tool_impulse_x_Ns"] = result.tool_impulse_x;
+  values["tool_impulse_z_Ns"] = result.tool_impulse_z;
+  values["support_impulse_x_Ns"] = result.support_impulse_x;
+  values["support_impulse_z_Ns"] = result.support_impulse_z;
+  return values;
+}
+
+template <typename Counter>
+void countAll(Counter& counter, const Array& series) {
+  for (py::ssize_t i = 0; i < series.size(); ++i) counter.add(series.data()[i]);
+}
+
+/// Rows range, mean and count.
+Array countCycles(const Array& series, const std::optional<std::pair<double, double>>& full_scale,
+                  std::int64_t classes) {
+  std::vector<life::RangeMean> cycles;
+  if (full_scale) {
+    const Checked<life::LoadGrid> grid = life::LoadGrid::make(full_scale->first, full_scale->second, classes);
+    if (!grid.value) raise(grid.problems);
+    life::CycleCounter counter(*grid.value);
+    const py::gil_scoped_release others_may_run;
+    countAll(counter, series);
+    cycles = life::rangesAndMeans(counter.take());
+  } else {
+    life::ExactCycles counter;
+    const py::gil_scoped_release others_may_run;
+    countAll(counter, series);
+    cycles = life::rangesAndMeans(counter);
+  }
+  Array result({std::size_t{3}, cycles.size()});
+  auto out = result.mutable_unchecked<2>();
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    const auto at = static_cast<py::ssize_t>(i);
+    out(0, at) = cycles[i].range, out(1, at) = cycles[i].mean, out(2, at) = cycles[i].count;
+  }
+  return result;
 }
 
 using Point = std::pair<double, double>;
@@ -60,9 +196,6 @@ py::dict supportImpulse(double mass, double inertia, const Point& com, const Poi
   return values;
 }
 
-using Text = std::optional<std::string>;
-using Number = std::optional<double>;
-
 constexpr char kHammerText[] = R"(A hammer whose parameters are possible. It never changes.
 
 Hammer.from_yaml() reads one, changed() makes another one from it.)";
@@ -77,51 +210,6 @@ constexpr char kChanged[] = R"(Returns this hammer with other values of the hamm
 values: by key, in the unit that the key ends with, for instance rod_mass_kg=4.0. The lengths must keep
 crank + rod = pivot distance + rocker to 1e-3 crank lengths; the rod is corrected by the rest.)";
 
-constexpr char kWrenches[] = R"(Returns the loads of many states of the crank, as the command evaluate does.
-
-angle [rad]: crank angle, 0 at the blow, at most 4e8; just below 0 is just before a blow.
-speed [rad/s], acceleration [rad/s2]: of the crank.
-pitch [rad]: of the hull; None leaves the weight out. gravity [m/s2]: of the parameters unless given.
-level: 'pulse', 'rocker' or 'linkage'; that of the parameters unless given.
-Numbers, arrays of one shape, or arrays that NumPy broadcasts to one; a nan gives nan.
-
-The result has arrays hull_force_x_N, hull_force_z_N, hull_torque_y_Nm: wrench by the links on the hull, moment
-about the rocker's pivot, axes of hammer_hull. pins=True adds drive_torque_y_Nm and Rij_x_N, Rij_z_N, the force of
-link i on link j (0 hull, 1 crank, 2 rod, 3 rocker).
-out: an earlier result, whose arrays are overwritten and returned. This saves new memory, which costs more than the
-loads of a million states.)";
-
-constexpr char kTurn[] = R"(Returns one revolution at constant crank speed, as the command turn_table does.
-
-speed [rad/s], step_deg [deg]: of the crank. pitch [rad], gravity [m/s2], level, pins: as in wrenches().
-The result has arrays crank_angle_deg, time_s, force_x_N, force_z_N, torque_y_Nm. The first row is just after a blow,
-the last one just before the next.)";
-
-constexpr char kPulse[] = R"(Returns the force pulse of one revolution at constant crank speed, as turn_table --summary.
-
-speed [rad/s]: of the crank. pitch [rad], gravity [m/s2], level: as in wrenches().
-The result has amplitude_N, peak_angle_deg, impulse_Ns, frequency_rad_s, start_s, turn_impulse_x_Ns,
-turn_impulse_z_Ns.)";
-
-constexpr char kBlow[] = R"(Returns the blow of a crank that passes the dead centre at a speed.
-
-crank_speed, crank_speed_after [rad/s]: before and after the blow; the crank keeps its speed unless the second is given.
-level: as in wrenches().
-The result has the fields of message Blow: speeds [rad/s], restitution [-], energy_J, impulses [N s]. The support
-impulse is by the rocker on the hull at its pivot.)";
-
-constexpr char kCountCycles[] = R"(Counts the load cycles of a series, as the command count_cycles does.
-
-series: loads in their order, in any unit; nan and inf are skipped.
-full_scale: (least, greatest) load of a grid of so many classes; None counts every value as it is.
-The result has arrays range and mean [unit of the series] and count [-] after ASTM E1049, sorted by range, then mean.
-The residue counts as half cycles.)";
-
-constexpr char kReadDatabase[] = R"(Reads every table of a database of process_bag --db, of a ledger or of the fleet.
-
-path: of the file. The result has a dictionary of arrays for each table, by column; names of columns end with the unit.
-Whole numbers are int64, or float64 where one is missing; texts are objects. A missing value is nan or None.)";
-
 constexpr char kSupportImpulse[] = R"(Returns the impulses of a blow of a rocker of any shape (paper P1).
 
 mass, reduced_rod_mass [kg], inertia_about_pivot [kg m2], friction [-]: of the rocker and at the tool.
@@ -129,8 +217,10 @@ com, rod_joint, striking_point [m]: (x, z) from the pivot, axes of hammer_hull.
 speed_before, speed_after [rad/s]: of the rocker; negative before the blow of a rocker that strikes at x < 0.
 The result has tool_impulse_x_Ns, tool_impulse_z_Ns, support_impulse_x_Ns, support_impulse_z_Ns [N s], energy_J [J].)";
 
-void addHammer(py::module_& module) {
-  const py::arg_v speed = py::arg("speed") = 31.416;  // P0's, as of turn_table
+}  // namespace
+
+// NOLINTNEXTLINE: the macro is pybind11's
+PYBIND11_MODULE(_native, module) {
   py::class_<Hammer>(module, "Hammer", kHammerText)
       .def_static("from_yaml", &fromYaml, kFromYaml)
       .def("changed", &changed, kChanged)
@@ -143,47 +233,12 @@ void addHammer(py::module_& module) {
           "level", [](const Hammer& h) { return std::string(nameOf(h.level())); },
           "Level of the model in the parameters; each call may name another.")
       .def_property_readonly("gravity", &Hammer::gravity, "Gravity in the parameters [m/s2].")
-      .def(
-          "wrenches",
-          [](const Hammer& h, const py::object& angle, const py::object& w, const py::object& e,
-             const py::object& pitch, Number gravity, Text level, bool pins, const py::object& out) {
-            return wrenches(h, angle, w, e, {{pitch, gravity}, std::move(level), pins, out});
-          },
-          kWrenches, py::arg("angle"), py::arg("speed"), py::arg("acceleration") = 0.0, py::kw_only(),
-          py::arg("pitch") = py::none(), py::arg("gravity") = py::none(), py::arg("level") = py::none(),
-          py::arg("pins") = false, py::arg("out") = py::none())
-      .def(
-          "turn",
-          [](const Hammer& h, double w, double step, const py::object& pitch, Number gravity, Text level, bool pins) {
-            return turn(h, w, step, {{pitch, gravity}, std::move(level), pins, py::none()});
-          },
-          kTurn, speed, py::kw_only(), py::arg("step_deg") = 1.0, py::arg("pitch") = py::none(),
-          py::arg("gravity") = py::none(), py::arg("level") = py::none(), py::arg("pins") = false)
-      .def(
-          "pulse",
-          [](const Hammer& h, double w, const py::object& pitch, Number gravity, Text level) {
-            return pulse(h, w, {{pitch, gravity}, std::move(level), false, py::none()});
-          },
-          kPulse, speed, py::kw_only(), py::arg("pitch") = py::none(), py::arg("gravity") = py::none(),
-          py::arg("level") = py::none())
-      .def("blow", &blow, kBlow, py::arg("crank_speed"), py::arg("crank_speed_after") = py::none(), py::kw_only(),
-           py::arg("level") = py::none());
-}
-
-}  // namespace
-
-// NOLINTNEXTLINE: the macro is pybind11's
-PYBIND11_MODULE(_native, module) {
-  addHammer(module);
-  module.def("batch", &bareBatch);
-  module.def("count_cycles", &countCycles, kCountCycles, py::arg("series"), py::kw_only(),
-             py::arg("full_scale") = py::none(), py::arg("classes") = 4096);
-  module.def(
-      "read_database",
-      [](const py::object& path) {
-        return readDatabase(py::module_::import("os").attr("fspath")(path).cast<std::string>());
-      },
-      kReadDatabase, py::arg("path"));
+      .def("_loads", &loads)
+      .def("_turn", &turn)
+      .def("_pulse", &pulse)
+      .def("_blow", &blow);
+  module.attr("PIN_COLUMNS") = py::cast(std::vector<std::string>(kPinColumns.begin(), kPinColumns.end()));
+  module.def("count_cycles", &countCycles);
   module.def("support_impulse", &supportImpulse, kSupportImpulse, py::kw_only(), py::arg("mass"),
              py::arg("inertia_about_pivot"), py::arg("com"), py::arg("rod_joint") = Point{},
              py::arg("reduced_rod_mass") = 0.0, py::arg("striking_point"), py::arg("friction") = 0.0,

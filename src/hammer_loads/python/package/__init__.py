@@ -8,6 +8,195 @@ SI units. Results are named as the columns of the commands; help() of each call 
 Wrong input raises ValueError in the words of the commands, one line for each problem. Loops run without Python's
 lock, so that threads share the work.
 """
-from ._native import Hammer, count_cycles, read_database, support_impulse
+import math
+import os
+import sqlite3
+import stat
+import urllib.parse
+
+import numpy as np
+
+from . import _native
+from ._native import Hammer, support_impulse
 
 __all__ = ["Hammer", "count_cycles", "read_database", "support_impulse"]
+
+_WRENCH = ["hull_force_x_N", "hull_force_z_N", "hull_torque_y_Nm"]
+_TURN = ["crank_angle_deg", "time_s", "force_x_N", "force_z_N", "torque_y_Nm"]
+_DATABASES = (0x484C5242, 0x484C4C31, 0x484C5246)  # application_id of process_bag --db, a ledger, the fleet
+_LARGEST_ANGLE = 4e8  # [rad]
+_PATIENCE = 5.0  # [s] until another user of a database gives it back
+
+
+def _array(name, value):
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: {repr(value)[:60]}, must be a number or an array of numbers") from None
+
+
+def _number(name, value, unit, least=-math.inf, most=math.inf):
+    """Above 0 where that is the least."""
+    if _array(name, value).ndim > 0:
+        raise ValueError(f"{name}: {repr(value)[:60]}, must be a number")
+    value = float(value)
+    rule = "a finite number"
+    if least > -math.inf:
+        rule += " > 0" if least == 0.0 else f" >= {least}"
+    if most < math.inf:
+        rule += f" and <= {most}"
+    if not (math.isfinite(value) and (value > 0.0 if least == 0.0 else value >= least) and value <= most):
+        raise ValueError(f"{name}: {value} {unit}, must be {rule}")
+    return value
+
+
+def _gravity(hammer, gravity):
+    g = hammer.gravity if gravity is None else float(gravity)
+    if not (math.isfinite(g) and g >= 0.0):
+        raise ValueError(f"gravity: {g} m/s2, must be a finite number >= 0")
+    return g
+
+
+def _weight(hammer, pitch, gravity):
+    """Of one pitch: components along the hull's axes x and z [m/s2]."""
+    if pitch is None:
+        return 0.0, 0.0
+    g, pitch = _gravity(hammer, gravity), _number("pitch", pitch, "rad")
+    return g * math.sin(pitch), -g * math.cos(pitch)
+
+
+def _wrenches(self, angle, speed, acceleration=0.0, *, pitch=None, gravity=None, level=None, pins=False):
+    """Returns the loads of many states of the crank, as the command evaluate does.
+
+    angle [rad]: crank angle, 0 at the blow, at most 4e8; just below 0 is just before a blow.
+    speed [rad/s], acceleration [rad/s2]: of the crank.
+    pitch [rad]: of the hull; None leaves the weight out. gravity [m/s2]: of the parameters unless given.
+    level: 'pulse', 'rocker' or 'linkage'; that of the parameters unless given.
+    Numbers, arrays of one shape, or arrays that NumPy broadcasts to one; a nan gives nan.
+
+    The result has arrays hull_force_x_N, hull_force_z_N, hull_torque_y_Nm: wrench by the links on the hull, moment
+    about the rocker's pivot, axes of hammer_hull. pins=True adds drive_torque_y_Nm and Rij_x_N, Rij_z_N, the force of
+    link i on link j (0 hull, 1 crank, 2 rod, 3 rocker).
+    """
+    given = [_array(*pair) for pair in (("angle", angle), ("speed", speed), ("acceleration", acceleration),
+                                        ("pitch", 0.0 if pitch is None else pitch))]
+    states = np.broadcast_arrays(*given)
+    shape = states[0].shape
+    angle, speed, acceleration, pitches = (np.ascontiguousarray(state).ravel() for state in states)
+    if (np.abs(angle) > _LARGEST_ANGLE).any():
+        raise ValueError("crank_angle_rad: must be a number of size <= 4e8 rad")
+    if pitch is None or given[3].ndim == 0:
+        loads = self._loads(angle, speed, acceleration, _weight(self, pitch, gravity), level, pins)
+    else:  # loads are linear in gravity: those without it and those of each of its components
+        g, rest = _gravity(self, gravity), np.zeros_like(angle)
+        loads = (self._loads(angle, speed, acceleration, (0.0, 0.0), level, pins) +
+                 g * np.sin(pitches) * self._loads(angle, rest, rest, (1.0, 0.0), level, pins) -
+                 g * np.cos(pitches) * self._loads(angle, rest, rest, (0.0, 1.0), level, pins))
+    return {name: row.reshape(shape) for name, row in zip(_WRENCH + _native.PIN_COLUMNS, loads)}
+
+
+def _turn(self, speed=31.416, *, step_deg=1.0, pitch=None, gravity=None, level=None, pins=False):
+    """Returns one revolution at constant crank speed, as the command turn_table does.
+
+    speed [rad/s], step_deg [deg]: of the crank. pitch [rad], gravity [m/s2], level, pins: as in wrenches().
+    The result has arrays crank_angle_deg, time_s, force_x_N, force_z_N, torque_y_Nm. The first row is just after a blow,
+    the last one just before the next.
+    """
+    rows = self._turn(_number("speed", speed, "rad/s", 0.0), _number("step_deg", step_deg, "deg", 1e-6, 360.0),
+                      _weight(self, pitch, gravity), level, pins)
+    return dict(zip(_TURN + _native.PIN_COLUMNS, rows))
+
+
+def _pulse(self, speed=31.416, *, pitch=None, gravity=None, level=None):
+    """Returns the force pulse of one revolution at constant crank speed, as turn_table --summary.
+
+    speed [rad/s]: of the crank. pitch [rad], gravity [m/s2], level: as in wrenches().
+    The result has amplitude_N, peak_angle_deg, impulse_Ns, frequency_rad_s, start_s, turn_impulse_x_Ns,
+    turn_impulse_z_Ns.
+    """
+    return self._pulse(_number("speed", speed, "rad/s", 0.0), _weight(self, pitch, gravity), level)
+
+
+def _blow(self, crank_speed, crank_speed_after=None, *, level=None):
+    """Returns the blow of a crank that passes the dead centre at a speed.
+
+    crank_speed, crank_speed_after [rad/s]: before and after the blow; the crank keeps its speed unless the second is given.
+    level: as in wrenches().
+    The result has the fields of message Blow: speeds [rad/s], restitution [-], energy_J, impulses [N s]. The support
+    impulse is by the rocker on the hull at its pivot.
+    """
+    before = _number("crank_speed", crank_speed, "rad/s", 0.0)
+    after = crank_speed_after
+    return self._blow(before, None if after is None else _number("crank_speed_after", after, "rad/s"), level)
+
+
+Hammer.wrenches, Hammer.turn, Hammer.pulse, Hammer.blow = _wrenches, _turn, _pulse, _blow
+
+
+def count_cycles(series, *, full_scale=None, classes=4096):
+    """Counts the load cycles of a series, as the command count_cycles does.
+
+    series: loads in their order, in any unit; nan and inf are skipped.
+    full_scale: (least, greatest) load of a grid of so many classes; None counts every value as it is.
+    The result has arrays range and mean [unit of the series] and count [-] after ASTM E1049, sorted by range, then mean.
+    The residue counts as half cycles.
+    """
+    values = _array("series", series)
+    if values.ndim > 1:
+        raise ValueError("series: has more than one dimension, must have one")
+    return dict(zip(("range", "mean", "count"), _native.count_cycles(values.ravel(), full_scale, classes)))
+
+
+def _file_problem(path):
+    """Why it is no SQLite file, as the command report says it; empty for one."""
+    try:
+        if not stat.S_ISREG(os.stat(path).st_mode):
+            return "is no regular file"
+        with open(path, "rb") as file:
+            return "" if file.read(16) == b"SQLite format 3\0" else "is no SQLite file"
+    except OSError as error:
+        return f"cannot be read: {error.strerror}"
+
+
+def _column(declared, values):
+    """As an array, by the type that its table declares."""
+    if "INT" in declared and None not in values:
+        return np.array(values, dtype=np.int64)
+    if "INT" in declared or "REAL" in declared:
+        return np.array([math.nan if value is None else value for value in values], dtype=float)
+    return np.array(values, dtype=object)
+
+
+def read_database(path):
+    """Reads every table of a database of process_bag --db, of a ledger or of the fleet.
+
+    path: of the file. The result has a dictionary of arrays for each table, by column; names of columns end with the unit.
+    Whole numbers are int64, or float64 where one is missing; texts are objects. A missing value is nan or None.
+    """
+    path = os.fspath(path)
+    problem = _file_problem(path)
+    if problem:
+        raise ValueError(f"{path}: {problem}")
+    database = sqlite3.connect(f"file:{urllib.parse.quote(path)}?mode=ro", uri=True, timeout=_PATIENCE,
+                               isolation_level=None)
+    database.text_factory = lambda text: text.decode(errors="replace")
+    tables = {}
+    try:
+        database.execute("BEGIN")  # all of one instant
+        kind, = database.execute("PRAGMA application_id").fetchone()
+        if kind not in _DATABASES:
+            raise ValueError(f"{path}: is another database (application_id {kind}), must be written by "
+                             "process_bag --db, --ledger or the fleet")
+        names = database.execute("SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite_%' "
+                                 "ORDER BY name").fetchall()
+        for name, in names:
+            quoted = '"' + name.replace('"', '""') + '"'
+            columns = [(row[1], row[2]) for row in database.execute(f"PRAGMA table_info({quoted})")]
+            rows = database.execute(f"SELECT * FROM {quoted}").fetchall()
+            tables[name] = {column: _column(declared, [row[i] for row in rows])
+                            for i, (column, declared) in enumerate(columns)}
+    except sqlite3.Error as error:
+        raise ValueError(f"{path}: {error}") from None
+    finally:
+        database.close()
+    return tables
