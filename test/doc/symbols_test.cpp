@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "hammer_loads/ros/grapple_outputs.h"
+#include "hammer_loads/grapple_ros/grapple_outputs.h"
 #include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/settings/load.h"
 
