@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""doc/accuracy.md, its picture and the README's excerpts from what `accuracy` and the recorded sessions' test said."""
+"""doc/accuracy.md, doc/blow.png and the README's excerpts from `accuracy`, the costs and the recorded sessions' test."""
 import argparse
 import json
-import math
 import pathlib
 import platform
 
@@ -11,12 +10,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
 
-NO_DIGITS = 10.0  # where the picture shows errors above 1 and those that are no number
-COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank": "#3a8f5c", "pipeline": "#7a4ca0",
-          "grapple": "#b08a1e"}
-ELASTIC = {"elastic, a rod that gives": ("elastic average: 1e9 N/m, 0.2", "elastic")}  # machine, level of its own
-EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage"),
-           ("crank", "mechanism, linkage"), ("pipeline", "linkage"), ("pipeline", "elastic, a rod that gives")]
+EXCERPT = ("printed/P0 with inverse trigonometry", "scalar/linkage", "batch/linkage", "crank/linkage", "pipeline/linkage",
+           "pipeline/elastic")
 SIDE_BY_SIDE = [("clean", "clean"), ("typical", "typical"), ("typical, after calibrate", "typical, after `calibrate`")]
 SESSION_HEAD = "rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow instant | energy |"
 
@@ -26,79 +21,6 @@ def processor():
         if line.startswith("model name"):
             return line.split(":", 1)[1].strip()
     return platform.machine()
-
-
-def worst(row):
-    """Largest relative error over the cases; NO_DIGITS where none is left."""
-    errors = [case["relative"] for case in row["errors"].values()]
-    return NO_DIGITS if any(error is None or error > 1 for error in errors) else max(errors)
-
-
-def picture_error(row, figures):
-    """What the picture shows: the worst relative error, for pulse its model error, for steps the session's."""
-    if row["name"] in ELASTIC:
-        return next(e["whole"]["rms"][1] for e in figures["elastic"] if (e["machine"], e["level"]) == ELASTIC[row["name"]])
-    if row["group"] in ("crank", "pipeline"):
-        return next(s["rms_z"] for s in figures["sessions"]
-                    if s["rate_hz"] == 1000 and s["encoder_counts"] == 4096 and s["speed_measured"])
-    if row["name"] == "pulse":
-        return row["errors"]["regular turn"]["of_peak"]
-    if row["group"] == "grapple":
-        return max(case["relative"] for name, case in row["errors"].items() if name.endswith("stroke"))
-    return worst(row)
-
-
-def spread(places, distance):
-    """Places in ascending order moved apart to a least distance, about where they were."""
-    groups = []  # [sum of wished starts, count]
-    for i, place in enumerate(places):
-        groups.append([place, 1])
-        while len(groups) > 1 and middle(groups[-2], distance) + distance > first(groups[-1], distance):
-            last = groups.pop()
-            groups[-1] = [groups[-1][0] + last[0], groups[-1][1] + last[1]]
-    moved = []
-    for group in groups:
-        moved += [first(group, distance) + i * distance for i in range(group[1])]
-    return moved
-
-
-def first(group, distance):
-    return group[0] / group[1] - distance * (group[1] - 1) / 2
-
-
-def middle(group, distance):
-    """Last place of a group."""
-    return first(group, distance) + distance * (group[1] - 1)
-
-
-def draw(figures, path):
-    points = sorted((math.log10(row["ns"]), math.log10(picture_error(row, figures)), row)
-                    for row in figures["costs"] if row["errors"] or row["group"] in ("crank", "pipeline"))
-    figure, axes = plt.subplots(figsize=(9.5, 6.5), dpi=110)
-    for x, y, row in points:
-        axes.plot(10**x, 10**y, "o", color=COLORS[row["group"]], markersize=7)
-    for above, band in ((-9.6, [p for p in points if p[1] < -8]), (2.2, [p for p in points if p[1] >= -8])):
-        for place, (x, y, row) in zip(spread([p[0] for p in band], 0.115), band):
-            axes.annotate(row["name"], xy=(10**x, 10**y), xytext=(10**place, 10**above), rotation=60, fontsize=8,
-                          color=COLORS[row["group"]], ha="left", va="bottom", rotation_mode="anchor",
-                          arrowprops={"arrowstyle": "-", "color": "#c8c8c8", "linewidth": 0.6, "shrinkB": 4})
-    axes.set(xscale="log", yscale="log", xlim=(1, 3e4), ylim=(1e-16, 1e7), xlabel="time per evaluation or sample [ns]",
-             ylabel="worst error")
-    decades = range(-16, 1, 2)
-    axes.set_yticks([10.0**e for e in decades] + [NO_DIGITS],
-                    [f"1e{e}" if e else "1" for e in decades] + ["no digit left"])
-    axes.set_xticks([1, 10, 100, 1000, 10000], ["1", "10", "100", "1000", "10 000"])
-    axes.minorticks_off()
-    axes.grid(axis="y", color="#ececec")
-    axes.set_axisbelow(True)
-    axes.spines["left"].set_bounds(1e-16, NO_DIGITS)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
-    for group, color in COLORS.items():
-        axes.plot([], [], "o", color=color, label=group)
-    axes.legend(loc=(0.6, 0.03), frameon=False, fontsize=9)
-    figure.tight_layout()
-    figure.savefig(path)
 
 
 def draw_blow(blow, path):
@@ -124,20 +46,15 @@ def draw_blow(blow, path):
     figure.savefig(path)
 
 
-def cost_line(row):
-    error = "see below" if row["group"] in ("crank", "pipeline") else f"{worst(row):.0e}"
-    if row["name"] == "pulse":
-        error = f"{100 * row['errors']['regular turn']['of_peak']:.0f} % of the peak (model)"
-    elif error == f"{NO_DIGITS:.0e}":
-        error = "no digit left"
-    return f"| {row['group']} | {row['name']} | {row['ns']:.3g} | {row['per_second'] / 1e6:.3g} million | {error} |"
-
-
-def excerpt(figures):
-    costs = {(row["group"], row["name"]): row for row in figures["costs"]}
-    lines = ["Cost on one core, and worst relative error over all hard cases:", "",
-             "| | way to the loads | ns | per second | worst error |", "|---|---|---|---|---|"]
-    lines += [cost_line(costs[key]) for key in EXCERPT if key in costs]
+def cost_table(benchmarks, names=None):
+    """Medians of google-benchmark's repetitions; names: of the rows, else all."""
+    medians = {row["run_name"]: row for row in benchmarks if row.get("aggregate_name") == "median"}
+    spreads = {row["run_name"]: row["cpu_time"] for row in benchmarks if row.get("aggregate_name") == "cv"}
+    lines = ["| | | ns | spread | per second and core |", "|---|---|---|---|---|"]
+    for name in names or medians:
+        per_second = medians[name]["items_per_second"]
+        lines.append(f"| {' | '.join(name.split('/', 1))} | {1e9 / per_second:.3g} | {100 * spreads[name]:.0f} % | "
+                     f"{1e-6 * per_second:.3g} million |")
     return "\n".join(lines) + "\n"
 
 
@@ -222,7 +139,7 @@ def replace(path, marker, text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json) and budget.json, perhaps costs(.json) and recorded")
+    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json) and budget.json, perhaps costs.json and recorded")
     parser.add_argument("root", type=pathlib.Path, help="of the source")
     arguments = parser.parse_args()
     work, root = arguments.work, arguments.root
@@ -235,11 +152,10 @@ def main():
     replace(root / "README.md", "budget", budget_excerpt(machine))
     if not (work / "costs.json").exists():
         return
-    figures.update(json.loads((work / "costs.json").read_text()))
-    draw(figures, root / "doc" / "accuracy.png")
-    tables = f"Measured on: {processor()}, one thread.\n\n" + (work / "costs").read_text()
+    costs = json.loads((work / "costs.json").read_text())["benchmarks"]
+    tables = f"Measured on: {processor()}, one thread.\n\n" + cost_table(costs)
     replace(root / "doc" / "accuracy.md", "tables", tables)
-    replace(root / "README.md", "accuracy", excerpt(figures))
+    replace(root / "README.md", "accuracy", cost_table(costs, EXCERPT))
     replace(root / "doc" / "accuracy.md", "recorded", recorded_table((work / "recorded").read_text()))
 
 

@@ -68,13 +68,6 @@ installMissing() {
     fail "apt-get install failed; needed are the packages of $package_list"
 }
 
-# The test of to_mcap reads with a package of Node's. Debian has npm apart; other builds of Node bring it.
-installNpm() {
-  command -v npm > /dev/null && return 0
-  asRoot env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends nodejs npm ||
-    fail "apt-get install nodejs npm"
-}
-
 # A bare chroot or container may lack /etc/hosts; ROS then cannot reach itself.
 checkLocalhost() {
   getent hosts localhost > /dev/null && return 0
@@ -123,6 +116,5 @@ freePort() {
 prepare() {
   useRos
   installMissing
-  installNpm
   checkLocalhost
 }

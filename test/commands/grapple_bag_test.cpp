@@ -1,4 +1,4 @@
-/// process_bag --grapple, as its user runs it, on bags written here.
+/// process_grapple, as its user runs it, on bags written here.
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
@@ -36,7 +36,7 @@ class GrappleBag : public testing::Test {
     return path(name);
   }
   test::Outcome run(const std::string& arguments) const {
-    return test::runCommand(HAMMER_LOADS_PROCESS_BAG, arguments);
+    return test::runCommand(HAMMER_LOADS_PROCESS_GRAPPLE, arguments);
   }
   static std::map<std::string, std::size_t> counts(const std::string& path) {
     rosbag::Bag bag(path);
@@ -46,7 +46,7 @@ class GrappleBag : public testing::Test {
   }
 
   fs::path directory_;
-  const std::string grapple_ = "--grapple " + test::claimsFile();
+  const std::string grapple_ = "--params " + test::claimsFile();
 };
 
 TEST_F(GrappleBag, WritesBothJawsAtTheRecordTimeOfTheirInput) {
@@ -97,47 +97,21 @@ TEST_F(GrappleBag, TopicAndPrefixCanBeGiven) {
             in + ": no topic /joint_states, is required; topics there: /machine/joints (sensor_msgs/JointState)\n");
   EXPECT_FALSE(fs::exists(path("out.bag")));
   ASSERT_EQ(
-      run(in + " " + path("out.bag") + " " + grapple_ + " --joint-states-topic /machine/joints --grapple-prefix /claw")
+      run(in + " " + path("out.bag") + " " + grapple_ + " --joint-states-topic /machine/joints --output-prefix /claw")
           .exit_code,
       0);
   EXPECT_EQ(counts(path("out.bag")).at("/claw/jaw_edge/right_accel"), kSamples);
 }
 
-TEST_F(GrappleBag, HammerAndGrappleComeFromOneBag) {
-  const std::string in = writeBag("in.bag", "/joint_states");
-  {
-    rosbag::Bag bag(in, rosbag::bagmode::Append);
-    for (int i = 0; i < 100; ++i) {
-      sensor_msgs::JointState m;
-      m.header.stamp = ros::Time(100.0 + 0.001 * i);
-      m.name = {"hammer_crank_joint"};
-      m.position = {0.005 * i};
-      m.velocity = {5.0};
-      bag.write("/hammer/crank", m.header.stamp, m);
-    }
-  }
-  const test::Outcome outcome = run(in + " " + path("both.bag") + " " + grapple_);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const auto both = counts(path("both.bag"));
-  EXPECT_EQ(both.at("/grapple/mechanism"), kSamples);
-  ASSERT_EQ(run(in + " " + path("hammer.bag")).exit_code, 0);
-  const auto hammer = counts(path("hammer.bag"));
-  EXPECT_EQ(both.at("/hammer_loads/hull_wrench"), hammer.at("/hammer_loads/hull_wrench"));
-  EXPECT_EQ(hammer.count("/grapple/mechanism"), 0u);
-}
-
 TEST_F(GrappleBag, BadParametersAreOneLineEachAndNothingIsWritten) {
   const std::string in = writeBag("in.bag", "/joint_states");
   const test::TemporaryFile bad("bd_length_m: -1\nslider_acceleration: guess\nno_such_key: 1\n");
-  const test::Outcome outcome = run(in + " " + path("out.bag") + " " + grapple_ + " --grapple " + bad.path());
+  const test::Outcome outcome = run(in + " " + path("out.bag") + " " + grapple_ + " --params " + bad.path());
   EXPECT_EQ(outcome.exit_code, 1);
   const auto lines = test::linesOf(outcome.err);
   ASSERT_EQ(lines.size(), 3u) << outcome.err;
   for (const char* key : {"bd_length_m", "slider_acceleration", "no_such_key"})
     EXPECT_NE(outcome.err.find(key), std::string::npos) << key;
-  const test::Outcome same = run(in + " " + path("out.bag") + " " + grapple_ + " --grapple-prefix /hammer_loads");
-  EXPECT_EQ(same.exit_code, 1);
-  EXPECT_EQ(test::linesOf(same.err).size(), 1u) << same.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "only the input";
 }
 

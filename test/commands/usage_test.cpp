@@ -9,7 +9,7 @@ namespace hammer_loads {
 namespace {
 
 const std::vector<std::string> kCommands{HAMMER_LOADS_ACCURACY, HAMMER_LOADS_EVALUATE, HAMMER_LOADS_GRAPPLE_TABLE,
-                                         HAMMER_LOADS_PROCESS_BAG, HAMMER_LOADS_TURN_TABLE};
+                                         HAMMER_LOADS_PROCESS_BAG, HAMMER_LOADS_PROCESS_GRAPPLE, HAMMER_LOADS_TURN_TABLE};
 const std::vector<std::string> kNodes{HAMMER_LOADS_HAMMER_LOADS_NODE, HAMMER_LOADS_GRAPPLE_NODE,
                                       HAMMER_LOADS_SIMULATE_HAMMER, HAMMER_LOADS_SIMULATE_GRAPPLE};
 
@@ -32,6 +32,14 @@ TEST(Usage, IsPrintedOnRequestAndNothingElseIsDone) {
       for (const std::string& line : test::linesOf(outcome.out)) EXPECT_LE(line.size(), 140U) << line;
     }
   }
+}
+
+/// The ledger's library, and SQLite with it, is loaded when a ledger is asked for (ros/ledger.test).
+TEST(HammerLoadsNode, LinksNeitherGrappleNorSqliteNorOpenssl) {
+  const test::Outcome linked = test::runCommand("ldd", HAMMER_LOADS_HAMMER_LOADS_NODE);
+  ASSERT_NE(linked.out.find("libhammer_loads_pipeline.so"), std::string::npos) << linked.out;
+  for (const char* library : {"grapple", "libsqlite3", "libcrypto", "libssl", "hammer_loads_ledger", "not found"})
+    EXPECT_EQ(linked.out.find(library), std::string::npos) << linked.out;
 }
 
 TEST(Usage, VersionIsThatOfThePackage) {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "grapple/grapples.h"
-#include "hammer_loads/settings/read_grapple.h"
+#include "hammer_loads/grapple/read_grapple.h"
 #include "settings/temporary_file.h"
 
 namespace hammer_loads {

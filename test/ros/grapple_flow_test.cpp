@@ -1,4 +1,4 @@
-#include "hammer_loads/ros/grapple_flow.h"
+#include "hammer_loads/grapple_ros/grapple_flow.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "hammer_loads/ros/grapple_flow.h"
+#include "hammer_loads/grapple_ros/grapple_flow.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::test {

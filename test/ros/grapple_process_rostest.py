@@ -89,7 +89,7 @@ class GrappleProcessTest(unittest.TestCase):
         return sorted(glob.glob(self.directory + '/grapple_*.bag'), key=os.path.getmtime)
 
     def expect_same_again(self, name, path):
-        """process_bag over a log gives its outputs bit for bit."""
+        """process_grapple over a log gives its outputs bit for bit."""
         again = os.path.join(self.directory, 'again.bag')
         parameters = os.path.join(self.directory, 'in_force.yaml')
         with rosbag.Bag(path) as bag:
@@ -97,8 +97,8 @@ class GrappleProcessTest(unittest.TestCase):
         self.assertEqual(len(infos), 1, path)
         with open(parameters, 'w') as file:
             file.write(infos[0].parameters_yaml)
-        subprocess.run([command('process_bag'), path, again, '--grapple', parameters,
-                        '--joint-states-topic', '/%s/joints' % name, '--grapple-prefix', '/' + name], check=True)
+        subprocess.run([command('process_grapple'), path, again, '--params', parameters,
+                        '--joint-states-topic', '/%s/joints' % name, '--output-prefix', '/' + name], check=True)
 
         def outputs(bag_path):
             with rosbag.Bag(bag_path) as bag:
@@ -110,7 +110,7 @@ class GrappleProcessTest(unittest.TestCase):
         self.assertTrue(logged == outputs(again))
         os.remove(again)
 
-    def test_process_bag_over_the_log_gives_the_logged_outputs_bit_for_bit(self):
+    def test_process_grapple_over_the_log_gives_the_logged_outputs_bit_for_bit(self):
         node, work = self.node_at_work('log_again')
         work()
         code, _, err = node.end(signal.SIGTERM)

@@ -1,10 +1,9 @@
-/// accuracy: what each way to the loads costs and how far it is off.
+/// accuracy: errors of the loads over simulated working sessions.
 #include <fstream>
 #include <iostream>
 
 #include "hammer_loads/bench/blow_trace.h"
 #include "hammer_loads/bench/boom_table.h"
-#include "hammer_loads/bench/cost_table.h"
 #include "hammer_loads/bench/drawing_table.h"
 #include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/kdl_observer.h"
@@ -18,7 +17,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
+constexpr char kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
                kBoom[] = "\"boom\": ", kElastic[] = "\"elastic\": ", kDrawn[] = "\"drawings\": ",
                kBlow[] = "\"blow\": ", kScene[] = "\"scene\": ";
 
@@ -29,7 +28,7 @@ std::string whyFileMustStay(const std::string& name) {
   std::string line;
   std::getline(std::ifstream(name), line);
   const auto begins = [&](const char* part) { return line.rfind(std::string("{") + part, 0) == 0; };
-  return begins(kCosts) || begins(kSessions) || begins(kElastic) ? "" : "it holds no figures of this command";
+  return begins(kSessions) || begins(kElastic) ? "" : "it holds no figures of this command";
 }
 
 /// The file for the figures, taken before the computing, which takes a minute.
@@ -58,7 +57,6 @@ class JsonFile {
 
 /// Prints the tables; the same as the members of a JSON object.
 std::string printTables(const Settings& settings, const std::string& only) {
-  std::string json;
   if (only == "drawings") {
     const auto drawings = accuracy::summary(accuracy::drawingTable(settings, kDrawings));
     std::cout << accuracy::markdown(drawings);
@@ -80,37 +78,27 @@ std::string printTables(const Settings& settings, const std::string& only) {
     return kElastic + accuracy::json(elastic) + ",\n" + kScene + accuracy::json(scene) + ",\n" + kBlow +
            accuracy::json(accuracy::blowTrace(settings));
   }
-  if (only != "sessions") {
-    const std::vector<accuracy::CostRow> costs = accuracy::costTable(settings);
-    std::cout << accuracy::markdown(costs) << std::flush;
-    json = kCosts + accuracy::json(costs);
-  }
-  if (only != "costs") {
-    const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
-    const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
-    std::cout << "\n### Machines as they are\n\n" << accuracy::markdown(machines);
-    const auto drawings = accuracy::summary(accuracy::drawingTable(settings, kDrawings));
-    std::cout << "\n### Machines of a drawing\n\n" << accuracy::markdown(drawings);
-    const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
-    std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
-    const std::vector<accuracy::SceneRow> scene = accuracy::sceneTable(settings, elastic);
-    std::cout << "\n### What a scene needs\n\n" << accuracy::markdown(scene);
-    const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
-    std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
-    std::cout << "\n### Beside KDL's momentum observer\n\n" << accuracy::markdown(accuracy::observerTable());
-    std::cout << "\n### Damage-equivalent ranges\n\n" << accuracy::lifeMarkdown(boom, elastic);
-    std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
-    json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
-            (kMachines + accuracy::json(machines)) + ",\n" + (kDrawn + accuracy::json(drawings)) + ",\n" +
-            (kBoom + accuracy::json(boom)) + ",\n" + (kElastic + accuracy::json(elastic)) + ",\n" +
-            (kScene + accuracy::json(scene)) + ",\n" + (kBlow + accuracy::json(accuracy::blowTrace(settings)));
-  }
-  return json;
+  const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
+  const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
+  std::cout << "### Machines as they are\n\n" << accuracy::markdown(machines);
+  const auto drawings = accuracy::summary(accuracy::drawingTable(settings, kDrawings));
+  std::cout << "\n### Machines of a drawing\n\n" << accuracy::markdown(drawings);
+  const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
+  std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
+  const std::vector<accuracy::SceneRow> scene = accuracy::sceneTable(settings, elastic);
+  std::cout << "\n### What a scene needs\n\n" << accuracy::markdown(scene);
+  const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
+  std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
+  std::cout << "\n### Beside KDL's momentum observer\n\n" << accuracy::markdown(accuracy::observerTable());
+  std::cout << "\n### Damage-equivalent ranges\n\n" << accuracy::lifeMarkdown(boom, elastic);
+  std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
+  return kSessions + accuracy::json(sessions) + ",\n" + kMachines + accuracy::json(machines) + ",\n" + kDrawn +
+         accuracy::json(drawings) + ",\n" + kBoom + accuracy::json(boom) + ",\n" + kElastic + accuracy::json(elastic) +
+         ",\n" + kScene + accuracy::json(scene) + ",\n" + kBlow + accuracy::json(accuracy::blowTrace(settings));
 }
 
 int run(int argc, const char* const* argv) {
-  CommandLine line("Cost table: cost and error of every way to the loads, errors over simulated working sessions",
-                   "accuracy");
+  CommandLine line("Errors of the loads over simulated working sessions", "accuracy");
   std::vector<std::string> files;
   std::string json_file, only;
   bool force = false;
@@ -118,9 +106,8 @@ int run(int argc, const char* const* argv) {
   line.option("--json", json_file, "also write the figures to this file, which must not exist");
   line.flag("--force", force, "replace that file if this command wrote it");
   line.option("--only", only,
-              "one of the two parts, or drawings, elastic machines, KDL's observer or damage-equivalent ranges (life) "
-              "alone")
-      .oneOf({"costs", "sessions", "drawings", "elastic", "observer", "life"});
+              "drawings, elastic machines, KDL's observer or damage-equivalent ranges (life) alone")
+      .oneOf({"drawings", "elastic", "observer", "life"});
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   std::optional<Settings> settings = loadOrReport(files);

@@ -13,7 +13,7 @@
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/ros/bag_runs.h"
-#include "hammer_loads/ros/crank_recording_bag.h"
+#include "hammer_loads/commands/crank_recording_bag.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/constants.h"
 

@@ -1,4 +1,4 @@
-/// process_bag: a recording in, the hammer's loads or the grapple's motion out.
+/// process_bag: a recording in, the hammer's loads out.
 #include <console_bridge/console.h>
 
 #include <csignal>
@@ -19,7 +19,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> bags;  ///< inputs, then the output unless there is none
-  std::vector<std::string> params, grapple;
+  std::vector<std::string> params;
   std::string urdf, tables, ledger;
   bool force{}, no_bag{}, replace_run{}, recordings{};
 };
@@ -45,27 +45,11 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
   line.flag("--pins", job.pins, "pin forces as well").excludes({"--no-bag"});
-  line.option("--grapple", given.grapple, "the grapple as well, from --joint-states-topic; may be repeated")
-      .oneEachTime()
-      .type("FILE.yaml")
-      .excludes({"--no-bag"});
-  line.option("--grapple-prefix", job.grapple_prefix, "of the grapple's topics").showDefault();
 }
 
 int fail(const std::vector<std::string>& problems) {
   for (const std::string& problem : problems) std::cerr << problem << '\n';
   return kExitFailure;
-}
-
-/// Parameters, robot description and grapple of the job; what is wrong with their files, one line each.
-std::vector<std::string> readFiles(const Arguments& given, BagJob& job) {
-  std::vector<std::string> problems = readParameterFiles(given.params, given.urdf, job);
-  if (!given.grapple.empty()) {
-    Checked<GrappleSettings> grapple = loadGrappleSettings(configDirectory(), given.grapple);
-    problems.insert(problems.end(), grapple.problems.begin(), grapple.problems.end());
-    job.grapple = std::move(grapple.value);
-  }
-  return problems;
 }
 
 int printRecordings(const std::vector<std::string>& bags) {
@@ -168,7 +152,7 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
 
 int run(int argc, const char* const* argv) {
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);  // rosbag formats a line for every message
-  CommandLine line("Loads of the hammer, motion of the grapple from a recorded bag", "process_bag");
+  CommandLine line("Loads of the hammer from a recorded bag", "process_bag");
   Arguments given;
   BagJob job;
   addOptions(line, given, job);
@@ -181,7 +165,7 @@ int run(int argc, const char* const* argv) {
   if (given.recordings) return printRecordings(given.bags);
   endCleanlyOnSignals();
   job.inputs.assign(given.bags.begin(), given.bags.end() - (given.no_bag ? 0 : 1));
-  const std::vector<std::string> bad_files = readFiles(given, job);
+  const std::vector<std::string> bad_files = readParameterFiles(given.params, given.urdf, job);
   if (!bad_files.empty()) return fail(bad_files);
 
   BagReport report;

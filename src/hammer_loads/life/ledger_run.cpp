@@ -19,14 +19,6 @@ bool isEmpty(const LifePiece& piece) {
 
 }  // namespace
 
-LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& identity) {
-  LedgerMachine machine{identity, {}, settings.equivalent_cycles_per_hour};
-  for (const CountedChannel& c : settings.channels) machine.channels.push_back({c.name, c.grid, {}, {}});
-  for (const HotSpot& spot : settings.hot_spots)
-    machine.channels.push_back({hotSpotChannel(spot), spot.grid, spot.curve, spot.mean_stress});
-  return machine;
-}
-
 LedgerRun::LedgerRun(std::string path, LedgerMachine machine, RunId run)
     : path_(std::move(path)), machine_(std::move(machine)), id_(std::move(run)) {}
 

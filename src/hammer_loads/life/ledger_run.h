@@ -6,38 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/life/ledger_machine.h"
 #include "hammer_loads/life/life_recorder.h"
-#include "hammer_loads/life/life_settings.h"
 
 namespace hammer_loads::life {
-
-struct LedgerChannel {
-  std::string name;
-  LoadGrid grid;
-  std::optional<SnCurve> curve;
-  std::optional<FkmMeanStress> mean_stress;
-};
-
-/// The machine of the counts. Another identity or other channels or grids begin a new epoch: counts of different
-/// machines never mix. Curves and equivalent cycles only judge them: those of the last run hold.
-struct LedgerMachine {
-  std::string identity;  ///< of hammer and boom, such as a hash of their parameters; no path, host or time
-  std::vector<LedgerChannel> channels;
-  double equivalent_cycles_per_hour{};
-};
-
-/// Channels in the order of LifeRecorder::channels().
-LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& identity);
-
-/// One recording of one machine with one set of sensor parameters.
-struct RunId {
-  std::string name;          ///< the same whenever this recording is counted, with whatever sensor parameters
-  std::string parameters{};  ///< a digest of those of sensors; empty: not known
-  std::string refusal{};     ///< why it is not to be counted, one line; empty: it is
-
-  RunId(const char* of) : name(of) {}
-  RunId(std::string of) : name(std::move(of)) {}
-};
 
 class Database;
 struct RunRow;

@@ -105,3 +105,7 @@ void LedgerThread::write() {
 }
 
 }  // namespace hammer_loads::life
+
+extern "C" hammer_loads::life::LiveLedger* hammerLoadsMakeLedger(const std::string& path) {
+  return new hammer_loads::life::LedgerThread(path);
+}

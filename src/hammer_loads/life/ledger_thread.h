@@ -12,13 +12,14 @@
 #include <thread>
 #include <vector>
 
-#include "hammer_loads/life/piece_sink.h"
+#include "hammer_loads/life/ledger_run.h"
+#include "hammer_loads/life/live_ledger.h"
 
 namespace hammer_loads::life {
 
 /// Has a thread of its own, which alone touches the file; begin(), add() and end() only put down what is to be done.
 /// A piece that cannot be written is kept and tried again each second; runs are written in their order.
-class LedgerThread final : public PieceSink {
+class LedgerThread final : public LiveLedger {
  public:
   explicit LedgerThread(std::string path);
   ~LedgerThread() override;
@@ -29,17 +30,10 @@ class LedgerThread final : public PieceSink {
   void add(const LifePiece& piece) override;
   void refuse(const std::string& reason) override;
   void end(const LifePiece& last) override;
-  /// A last attempt; then the thread is at its end and nothing more is taken. Nothing when all is written, else one
-  /// line.
-  std::optional<std::string> close();
-
-  struct State {
-    /// Of the last attempt, else why the last run that was refused is not in the ledger; one line, empty: all is well.
-    std::string problem;
-    std::size_t waiting{};  ///< pieces given but not written, those of one day added up
-  };
-  State state() const;
-  const std::string& path() const { return path_; }
+  /// The thread is then at its end.
+  std::optional<std::string> close() override;
+  State state() const override;
+  const std::string& path() const override { return path_; }
 
  private:
   struct Run {

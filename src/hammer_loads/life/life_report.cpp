@@ -1,6 +1,5 @@
 #include "hammer_loads/life/life_report.h"
 
-#include <limits>
 #include <utility>
 
 namespace hammer_loads::life {
@@ -36,25 +35,6 @@ ChannelReport channelReport(LedgerReader& reader, const LedgerEpoch& epoch, std:
 }
 
 }  // namespace
-
-ChannelFigures figuresOf(const CycleCount& count, const LedgerChannel& channel, double hours,
-                         double equivalent_cycles_per_hour) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<RangeMean> cycles = rangesAndMeans(count);
-  const RangeDeviation deviation = rangeDeviation(count);
-  ChannelFigures figures;
-  for (std::size_t i = 0; i < kSlopeCount; ++i) {
-    figures.equivalent_range[i] =
-        hours > 0.0 ? equivalentLoad(cycles, kSlopes[i], hours * equivalent_cycles_per_hour, deviation)
-                    : Figure{kNone, kNone, kNone};
-  }
-  if (!cycles.empty()) figures.largest_range = cycles.back().range;
-  for (const RangeMean& c : cycles) figures.cycles += c.count;
-  if (!channel.curve) return figures;
-  figures.damage = damage(cycles, *channel.curve, channel.mean_stress, deviation);
-  if (hours > 0.0) figures.remaining_hours = remainingHours(*figures.damage, hours);
-  return figures;
-}
 
 Checked<std::vector<EpochReport>> lifeReport(LedgerReader& reader) {
   Checked<std::vector<EpochReport>> result;

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "hammer_loads/life/ledger_run.h"
+#include "hammer_loads/life/ledger_machine.h"
+#include "hammer_loads/life/life_recorder.h"
 
 namespace hammer_loads::life {
 

@@ -1,5 +1,6 @@
 #include "hammer_loads/ros/bag_processing.h"
 
+#include <algorithm>
 #include <system_error>
 
 #include "hammer_loads/ros/attach.h"
@@ -8,7 +9,6 @@
 #include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/bag_warnings.h"
 #include "hammer_loads/ros/bag_writer.h"
-#include "hammer_loads/ros/grapple_bag_processing.h"
 #include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/yaml_value.h"
 
@@ -82,10 +82,8 @@ class HammerRuns {
   std::vector<std::function<void(HammerBridge&)>> latched_;  ///< messages that are the same in every run
 };
 
-Wanted wantedTopics(const std::vector<BagRun>& runs, bool hammer, const std::string& slider_topic) {
+Wanted wantedTopics(const std::vector<BagRun>& runs) {
   Wanted wanted;
-  if (!slider_topic.empty()) wanted[slider_topic] = typeOf<sensor_msgs::JointState>();
-  if (!hammer) return wanted;
   for (const BagRun& run : runs) {
     HammerInputs(run.settings).forEach([&wanted](const auto& input) {
       using Message = typename std::decay_t<decltype(input)>::Message;
@@ -112,8 +110,6 @@ struct Work {
   const BagInputs& inputs;
   const BagJob& job;
   const std::vector<BagRun>& runs;
-  bool hammer{};             ///< the crank's topic is there
-  std::string slider_topic;  ///< empty: no grapple
 };
 
 void warnOfInputs(const Work& work, const std::set<std::string>& topics,
@@ -123,41 +119,26 @@ void warnOfInputs(const Work& work, const std::set<std::string>& topics,
   warnOfPublishers(work.inputs, topics, warnings);
   warnOfDefinitions(work.inputs, warnings);
   warnOfLostMessages(work.inputs, warnings);
-  if (work.hammer) warnOfMissing(work.inputs, work.runs, heard, warnings);
+  warnOfMissing(work.inputs, work.runs, heard, warnings);
 }
 
 void process(const Work& work, const Sinks& sinks, const std::function<void(double)>& progress, BagReport& report) {
-  const Wanted wanted = wantedTopics(work.runs, work.hammer, work.slider_topic);
+  const Wanted wanted = wantedTopics(work.runs);
   std::set<std::string> topics;
   for (const auto& [name, type] : wanted) topics.insert(name);
-  std::optional<HammerRuns> hammer;
-  std::optional<GrappleFlow> grapple;
-  if (work.hammer) hammer.emplace(work.runs, work.job, sinks, report);
-  if (work.job.grapple) {
-    grapple.emplace(*work.job.grapple);
-    if (sinks.bag != nullptr) attachToBag(grapple->outputs(), *sinks.bag, work.job.grapple_prefix, false);
-  }
-
+  HammerRuns hammer(work.runs, work.job, sinks, report);
   std::set<const BagConnection*> heard;
   BagMessages messages = work.inputs.messagesOn(topics);
   const auto count = static_cast<double>(messages.size());
   double done = 0.0;
-  sensor_msgs::JointState slider;
   while (const BagMessage* item = messages.next()) {
     progress(++done / count);
     heard.insert(item->connection);
-    if (hammer) hammer->take(*item);
-    if (grapple && item->connection->topic == work.slider_topic) {
-      item->to(slider);
-      grapple->jointStates(slider, item->time);
-    }
+    hammer.take(*item);
     if (sinks.tables != nullptr && !sinks.tables->problem().empty()) return;
   }
-  if (hammer) hammer->end();
+  hammer.end();
   warnOfInputs(work, topics, heard, report.warnings);
-  if (!grapple) return;
-  report.grapple = refusalReport(*grapple);
-  report.jaw_edges = grapple->accepted();
 }
 
 /// Into the tables alone, or beside a bag; what went wrong in one line, empty if nothing did.
@@ -187,8 +168,6 @@ std::string write(const Work& work, const std::function<void(double)>& progress,
 }  // namespace
 
 std::vector<std::string> processBag(const BagJob& job, const std::function<void(double)>& progress, BagReport& report) {
-  if (job.grapple && job.grapple_prefix == job.output_prefix)
-    return {"--grapple-prefix: " + job.grapple_prefix + ", must differ from --output-prefix"};
   const Checked<BagInputs> inputs = BagInputs::open(job.inputs);
   if (!inputs.value) return inputs.problems;
   const std::string& names = inputs.value->names();
@@ -196,30 +175,21 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     const Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
     if (!runs.value) return runs.problems;
     report.notes = runs.notes;
-    if (!job.output.empty()) report.hammer_prefix = job.output_prefix, report.grapple_prefix = job.grapple_prefix;
-    Work work{*inputs.value, job, *runs.value, false, ""};
-    const InputTopics& first = runs.value->front().settings.input_topics;
-    for (const BagRun& run : *runs.value)
-      work.hammer = work.hammer || inputs.value->has(run.settings.input_topics.crank);
-    if (!work.hammer) report.notes = {}, report.warnings = {};
-    if (job.grapple) work.slider_topic = first.joint_states;
-    const bool hammer_required = !job.grapple || !job.tables.empty() || job.pieces != nullptr;
-    const std::string& required = hammer_required ? first.crank : first.joint_states;
-    if (hammer_required ? !work.hammer : !inputs.value->has(required))
-      return {names + ": no topic " + required + ", is required; topics there: " + inputs.value->topicList()};
-    const std::string problem = typeProblem(*inputs.value, wantedTopics(work.runs, work.hammer, work.slider_topic));
+    if (!job.output.empty()) report.prefix = job.output_prefix;
+    const Work work{*inputs.value, job, *runs.value};
+    const bool crank = std::any_of(runs.value->begin(), runs.value->end(), [&](const BagRun& run) {
+      return inputs.value->has(run.settings.input_topics.crank);
+    });
+    if (!crank)
+      return {names + ": no topic " + runs.value->front().settings.input_topics.crank +
+              ", is required; topics there: " + inputs.value->topicList()};
+    const std::string problem = typeProblem(*inputs.value, wantedTopics(work.runs));
     if (!problem.empty()) return {names + ": " + problem};
     const std::string failure = write(work, progress, report);
     if (!failure.empty()) return {failure};
-    const bool useless = isUseless(report);
-    if (useless && (report.jaw_edges == 0 || hammer_required))
-      return {names + ": " +
-              (work.hammer ? noWrench(*inputs.value, runs.value->back(), report)
-                           : "no jaw edge; " + onOneLine(report.grapple))};
+    if (isUseless(report)) return {names + ": " + noWrench(*inputs.value, runs.value->back(), report)};
     if (!job.tables.empty() && report.crank.contradictSince({}))
       return {names + ": no tables, for some of their figures would be wrong: " + contradictionsOf(report.warnings)};
-    if (work.hammer && useless)
-      addOnce(report.warnings, {"no wrench", noWrench(*inputs.value, runs.value->back(), report)});
     return {};
   } catch (const std::exception& error) {
     return {names + ": cannot be read: " + onOneLine(error.what())};

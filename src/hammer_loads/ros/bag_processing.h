@@ -8,7 +8,6 @@
 
 #include "hammer_loads/life/piece_sink.h"
 #include "hammer_loads/ros/bag_report.h"
-#include "hammer_loads/settings/grapple_settings.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -25,9 +24,7 @@ struct BagJob {
   /// Names of the topics; what is empty comes from the parameters (`input_topic_crank` ...), else it is the default.
   InputTopics topics;
   std::string output_prefix{"/hammer_loads"};
-  bool pins{};                             ///< pin forces as well
-  std::optional<GrappleSettings> grapple;  ///< the grapple as well; then a bag without the crank topic will do
-  std::string grapple_prefix{"/grapple"};
+  bool pins{};  ///< pin forces as well
 };
 
 /// Reads the inputs' messages in record order and writes every output at the record time of the input that caused it.

@@ -43,20 +43,14 @@ std::string textOf(const BagReport& report) {
   if (report.crank.beside_blow > 0)
     text += "crank samples closer to the blow than the angle is known, not published: " +
             std::to_string(report.crank.beside_blow) + "\n";
-  return text + report.grapple;
+  return text;
 }
 
 std::string summaryOf(const BagReport& report) {
-  std::string text;
-  if (report.samples > 0) {
-    text = std::to_string(report.samples) + " crank samples, " + std::to_string(report.wrenches) + " wrenches, " +
-           std::to_string(report.turns) + " turns";
-    if (report.runs > 1) text += " in " + std::to_string(report.runs) + " runs";
-    if (!report.hammer_prefix.empty()) text += ", written under " + report.hammer_prefix;
-  }
-  if (report.jaw_edges > 0)
-    text += (text.empty() ? "" : "; ") + std::to_string(report.jaw_edges) +
-            " slider samples with jaw edges, written under " + report.grapple_prefix;
+  std::string text = std::to_string(report.samples) + " crank samples, " + std::to_string(report.wrenches) +
+                     " wrenches, " + std::to_string(report.turns) + " turns";
+  if (report.runs > 1) text += " in " + std::to_string(report.runs) + " runs";
+  if (!report.prefix.empty()) text += ", written under " + report.prefix;
   return text;
 }
 

@@ -16,16 +16,14 @@ struct BagWarning {
 };
 
 struct BagReport {
-  SampleCounts crank;         ///< of all runs
-  std::uint64_t samples{};    ///< messages with crank samples
-  std::uint64_t wrenches{};   ///< written
-  std::uint64_t turns{};      ///< blows written
-  std::uint64_t jaw_edges{};  ///< slider samples with a jaw edge
+  SampleCounts crank;        ///< of all runs
+  std::uint64_t samples{};   ///< messages with crank samples
+  std::uint64_t wrenches{};  ///< written
+  std::uint64_t turns{};     ///< blows written
   std::uint64_t runs{};
-  std::string hammer_prefix, grapple_prefix;  ///< of the topics written; empty: no bag
-  std::string grapple;                        ///< refusalReport of the grapple, if there was one
-  std::vector<std::string> notes;             ///< what was used, one line each
-  std::vector<BagWarning> warnings;           ///< none twice for the same run
+  std::string prefix;                ///< of the topics written; empty: no bag
+  std::vector<std::string> notes;    ///< what was used, one line each
+  std::vector<BagWarning> warnings;  ///< none twice for the same run
 };
 
 /// Adds a line unless it is there already.

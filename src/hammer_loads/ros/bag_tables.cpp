@@ -11,6 +11,7 @@
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_texts.h"
 #include "hammer_loads/tables/sha256.h"
+#include "hammer_loads/util/digest.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -44,7 +45,7 @@ RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
   const std::vector<ParameterText> parameters = parameterTexts(configDirectory(), yaml);
   record.input_sha256 = input_sha256;
   record.parameters_sha256 = sha256Of({yaml, settings.robot_description});
-  record.machine = sha256Of({settings.machine});
+  record.machine = digestOf(settings.machine);
   record.version = packageVersion();
   record.revision = packageRevision();
   record.parameters_yaml = yaml;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "hammer_loads/life/life_report.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/util/constants.h"
 

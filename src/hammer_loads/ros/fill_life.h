@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/life/ledger_run.h"
+#include "hammer_loads/life/ledger_machine.h"
 #include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/life/turn_loads.h"
 #include "hammer_loads/pipeline/sample_result.h"

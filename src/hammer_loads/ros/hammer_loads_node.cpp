@@ -10,9 +10,9 @@
 namespace hammer_loads {
 
 HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
-                                 std::unique_ptr<BagLog> log)
+                                 std::unique_ptr<BagLog> log, std::unique_ptr<life::LiveLedger> ledger)
     : log_(std::move(log)),
-      ledger_(settings.life.ledger.empty() ? nullptr : std::make_unique<life::LedgerThread>(settings.life.ledger)),
+      ledger_(std::move(ledger)),
       bridge_(settings),
       inputs_(settings),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
@@ -162,9 +162,16 @@ std::unique_ptr<LiveNode> makeHammerNode(const ros::NodeHandle& node, const ros:
   if (!settings.value) return nullptr;
   auto log = makeNodeLog(settings.value->log, private_node.getNamespace(), problems);
   if (!log) return nullptr;
+  std::unique_ptr<life::LiveLedger> ledger;
+  if (!settings.value->life.ledger.empty()) {
+    Checked<std::unique_ptr<life::LiveLedger>> loaded = life::loadLedger(settings.value->life.ledger);
+    problems = loaded.problems;
+    if (!loaded.value) return nullptr;
+    ledger = *std::move(loaded.value);
+  }
   const InputTopics topics = inputTopics([&node](const InputName& input) { return node.resolveName(input.name); });
   return std::make_unique<HammerLoadsNode>(node, private_node, withInputTopics(*settings.value, topics),
-                                           std::move(log));
+                                           std::move(log), std::move(ledger));
 }
 
 }  // namespace hammer_loads

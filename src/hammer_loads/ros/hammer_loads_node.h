@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/life/ledger_thread.h"
+#include "hammer_loads/life/live_ledger.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/hammer_inputs.h"
@@ -27,9 +27,9 @@ namespace hammer_loads {
 /// dynamic_reconfigure change what may safely change; each change begins a new run.
 class HammerLoadsNode final : public LiveNode {
  public:
-  /// log: started already where settings.log.enabled.
+  /// log: started already where settings.log.enabled. ledger: null where none is kept.
   HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
-                  std::unique_ptr<BagLog> log);
+                  std::unique_ptr<BagLog> log, std::unique_ptr<life::LiveLedger> ledger);
   /// Ends the run, and writes to log and ledger what is not there yet.
   ~HammerLoadsNode() override;
 
@@ -52,7 +52,7 @@ class HammerLoadsNode final : public LiveNode {
 
   // A member stands before those that use it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
-  std::unique_ptr<life::LedgerThread> ledger_;  ///< null: none is kept
+  std::unique_ptr<life::LiveLedger> ledger_;  ///< null: none is kept
   HammerBridge bridge_;
   HammerInputs inputs_;
   RecordClock clock_;

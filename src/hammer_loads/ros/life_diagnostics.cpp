@@ -6,14 +6,14 @@ namespace hammer_loads {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-std::optional<Warning> ledgerWarning(const life::LedgerThread* ledger) {
+std::optional<Warning> ledgerWarning(const life::LiveLedger* ledger) {
   if (ledger == nullptr) return std::nullopt;
   const std::string problem = ledger->state().problem;
   if (problem.empty()) return std::nullopt;
   return Warning{"ledger", "life_ledger: " + problem, true};
 }
 
-void describeLife(const LifeFlow& life, const life::LedgerThread* ledger,
+void describeLife(const LifeFlow& life, const life::LiveLedger* ledger,
                   diagnostic_updater::DiagnosticStatusWrapper& status) {
   const LifeFollower& follower = life.follower();
   status.summary(DiagnosticStatus::OK, follower.since() ? "counting" : "waits for loads");

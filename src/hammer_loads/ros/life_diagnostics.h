@@ -5,17 +5,17 @@
 
 #include <optional>
 
-#include "hammer_loads/life/ledger_thread.h"
+#include "hammer_loads/life/live_ledger.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/ros/life_flow.h"
 
 namespace hammer_loads {
 
 /// Since when, how often, saturation, state of the ledger (null: none is kept).
-void describeLife(const LifeFlow& life, const life::LedgerThread* ledger,
+void describeLife(const LifeFlow& life, const life::LiveLedger* ledger,
                   diagnostic_updater::DiagnosticStatusWrapper& status);
 
 /// What the ledger cannot take at present, if it is so.
-std::optional<Warning> ledgerWarning(const life::LedgerThread* ledger);
+std::optional<Warning> ledgerWarning(const life::LiveLedger* ledger);
 
 }  // namespace hammer_loads

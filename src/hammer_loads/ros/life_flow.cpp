@@ -1,12 +1,11 @@
 #include "hammer_loads/ros/life_flow.h"
 
-#include <cstring>
 #include <sstream>
 #include <utility>
 
 #include "hammer_loads/ros/fill_life.h"
 #include "hammer_loads/ros/stamp.h"
-#include "hammer_loads/tables/sha256.h"
+#include "hammer_loads/util/digest.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -15,27 +14,8 @@ namespace {
 constexpr std::uint64_t kNamingMessages = 64;             ///< whose readings distinguish runs with one first stamp
 constexpr StampNs kMarkEvery = 4LL * 1000 * 1000 * 1000;  ///< [ns]: a split is longer; a working day gives 7200 marks
 
-/// FNV-1a, 64 bit.
-class Digest {
- public:
-  explicit Digest(std::uint64_t from) : hash_(from) {}
-  template <typename T>
-  void add(const T& value) {
-    unsigned char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211ULL;
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_;
-};
-
-constexpr std::uint64_t kDigestStart = 14695981039346656037ULL;
-
 /// The sensor's reading, whatever the parameters make of it.
-std::uint64_t digestOf(const sensor_msgs::JointState& message, std::uint64_t from) {
-  Digest digest(from);
+std::uint64_t readingDigest(const sensor_msgs::JointState& message, Digest digest = Digest()) {
   digest.add(stampOf(message.header.stamp));
   for (const double position : message.position) digest.add(position);
   for (const double velocity : message.velocity) digest.add(velocity);
@@ -51,7 +31,7 @@ std::string sensorParameters(const std::string& yaml) {
         line.rfind("base_", 0) == 0 || line.rfind("joint_", 0) == 0)
       kept += line + '\n';
   }
-  return sha256Of({kept}).substr(0, 16);
+  return digestOf(kept);
 }
 
 void addBeyond(std::uint64_t samples, const std::string& channel, const std::string& key, std::string& text) {
@@ -76,7 +56,7 @@ LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOut
       follower_(pipeline, settings.life),
       outputs_(outputs),
       pieces_(pieces),
-      machine_(life::ledgerMachine(settings.life, sha256Of({settings.machine}))),
+      machine_(life::ledgerMachine(settings.life, digestOf(settings.machine))),
       parameters_(sensorParameters(settings.yaml)),
       counts_before_(pipeline.counts()),
       scale_keys_(scaleKeys(settings.life)),
@@ -86,7 +66,7 @@ LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOut
 }
 
 void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& record_time) {
-  if (!begun_) first_ = stampOf(message.header.stamp), digest_ = kDigestStart;
+  if (!begun_) first_ = stampOf(message.header.stamp), digest_ = Digest().value();
   begun_ = true;
   record_time_ = record_time;
   if (follower_.due()) {
@@ -100,17 +80,17 @@ void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& r
 /// One message of each stretch of time, the first after the one before: wherever a part of the recording begins, it has
 /// the same ones. The run begins as soon as it has its name: trouble with its ledger shows before the first piece.
 void LifeFlow::mark(const sensor_msgs::JointState& message) {
-  if (messages_ < kNamingMessages) digest_ = digestOf(message, digest_);
+  if (messages_ < kNamingMessages) digest_ = readingDigest(message, Digest(digest_));
   if (++messages_ == kNamingMessages) name();
   const StampNs slot = stampOf(message.header.stamp) / kMarkEvery;
-  if (slot_ && slot > *slot_) marks_.push_back(static_cast<std::int64_t>(digestOf(message, kDigestStart)));
+  if (slot_ && slot > *slot_) marks_.push_back(static_cast<std::int64_t>(readingDigest(message)));
   slot_ = slot;
 }
 
 void LifeFlow::name() {
   if (named_) return;
   named_ = true;
-  life::RunId id(format("%lld-%.16s-%016llx", static_cast<long long>(first_), machine_.identity.c_str(),
+  life::RunId id(format("%lld-%s-%016llx", static_cast<long long>(first_), machine_.identity.c_str(),
                         static_cast<unsigned long long>(digest_)));
   id.parameters = parameters_;
   pieces_->begin(machine_, id);

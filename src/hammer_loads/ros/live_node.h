@@ -15,11 +15,8 @@ class LiveNode {
   virtual ~LiveNode() = default;
 };
 
-/// A hammer's or a grapple's node from its private parameters; every problem is reported on one line each and gives no
-/// node.
+/// The hammer's node from its private parameters; every problem is reported on one line each and gives no node.
 std::unique_ptr<LiveNode> makeHammerNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                          std::vector<std::string>& problems);
-std::unique_ptr<LiveNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-                                          std::vector<std::string>& problems);
 
 }  // namespace hammer_loads

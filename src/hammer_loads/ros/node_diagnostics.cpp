@@ -15,7 +15,7 @@ using diagnostic_msgs::DiagnosticStatus;
 }  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                                 const HammerInputs& inputs, const BagLog& log, const life::LedgerThread* ledger)
+                                 const HammerInputs& inputs, const BagLog& log, const life::LiveLedger* ledger)
     : bridge_(bridge), inputs_(inputs), log_(log), ledger_(ledger), publisher_(node, private_node) {
   publisher_.add("inputs", this, &NodeDiagnostics::describeInputs);
   publisher_.add("crank", this, &NodeDiagnostics::describeCrank);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/life/ledger_thread.h"
+#include "hammer_loads/life/live_ledger.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/ros/diagnostics_publisher.h"
@@ -27,7 +27,7 @@ class NodeDiagnostics {
   /// inputs: each of a sensor should have one publisher; the age of the crank's decides whether the node is stale.
   /// ledger: null where none is kept.
   NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                  const HammerInputs& inputs, const BagLog& log, const life::LedgerThread* ledger);
+                  const HammerInputs& inputs, const BagLog& log, const life::LiveLedger* ledger);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -47,7 +47,7 @@ class NodeDiagnostics {
   const HammerBridge& bridge_;
   const HammerInputs& inputs_;
   const BagLog& log_;
-  const life::LedgerThread* ledger_;
+  const life::LiveLedger* ledger_;
   Clock::time_point last_report_{Clock::now()};
   SampleCounts last_counts_;
   ImuCounts last_imu_counts_;

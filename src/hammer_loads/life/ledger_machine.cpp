@@ -1,0 +1,34 @@
+#include "hammer_loads/life/ledger_machine.h"
+
+#include <limits>
+
+namespace hammer_loads::life {
+
+LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& identity) {
+  LedgerMachine machine{identity, {}, settings.equivalent_cycles_per_hour};
+  for (const CountedChannel& c : settings.channels) machine.channels.push_back({c.name, c.grid, {}, {}});
+  for (const HotSpot& spot : settings.hot_spots)
+    machine.channels.push_back({hotSpotChannel(spot), spot.grid, spot.curve, spot.mean_stress});
+  return machine;
+}
+
+ChannelFigures figuresOf(const CycleCount& count, const LedgerChannel& channel, double hours,
+                         double equivalent_cycles_per_hour) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<RangeMean> cycles = rangesAndMeans(count);
+  const RangeDeviation deviation = rangeDeviation(count);
+  ChannelFigures figures;
+  for (std::size_t i = 0; i < kSlopeCount; ++i) {
+    figures.equivalent_range[i] =
+        hours > 0.0 ? equivalentLoad(cycles, kSlopes[i], hours * equivalent_cycles_per_hour, deviation)
+                    : Figure{kNone, kNone, kNone};
+  }
+  if (!cycles.empty()) figures.largest_range = cycles.back().range;
+  for (const RangeMean& c : cycles) figures.cycles += c.count;
+  if (!channel.curve) return figures;
+  figures.damage = damage(cycles, *channel.curve, channel.mean_stress, deviation);
+  if (hours > 0.0) figures.remaining_hours = remainingHours(*figures.damage, hours);
+  return figures;
+}
+
+}  // namespace hammer_loads::life

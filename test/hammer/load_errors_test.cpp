@@ -1,0 +1,112 @@
+// Digits that each way to the loads keeps, against Newton and Euler in 100 digits.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "hammer/load_ways.h"
+
+namespace hammer_loads::test {
+namespace {
+
+const HammerParameters kHammer = mo100LinkageParameters();
+
+HardCase caseNamed(const std::string& name) {
+  for (const HardCase& c : hardCases(kHammer)) {
+    if (c.name == name) return c;
+  }
+  throw std::invalid_argument(name);
+}
+
+LoadWay wayNamed(const std::string& name) {
+  for (const LoadWay& way : loadWays()) {
+    if (way.name == name) return way;
+  }
+  throw std::invalid_argument(name);
+}
+
+TEST(LoadErrors, OfEveryLevelStayBelowTheBoundOnEveryHardCase) {
+  for (const HardCase& hard_case : hardCases(kHammer)) {
+    for (const Level level : {Level::kRocker, Level::kLinkage}) {
+      const ExactCase exact(hard_case, level);
+      for (const LoadWay& way : loadWays()) {
+        if (way.level != level || way.group == "printed") continue;
+        const Error error = errorOf(way.loads(hard_case), exact, way.parts);
+        EXPECT_LE(error.relative, 1e-13) << way.group << ' ' << way.name << ", " << hard_case.name;
+        EXPECT_LE(error.of_peak, 1e-14) << way.group << ' ' << way.name << ", " << hard_case.name;
+      }
+    }
+  }
+}
+
+TEST(LoadErrors, SeeAWrongDigit) {
+  const HardCase regular = caseNamed("regular turn");
+  const ExactCase exact(regular, Level::kLinkage);
+  std::vector<LinkLoads> loads = wayNamed("linkage with pins").loads(regular);
+  double peak = 0.0;
+  for (const LinkLoads& l : loads) peak = std::max(peak, std::hypot(l.wrench.force_x, l.wrench.force_z));
+  loads[7].wrench.force_z += 1e-6 * peak;
+  EXPECT_NEAR(errorOf(loads, exact, Parts::kWrench).of_peak, 1e-6, 1e-8);  // the peak lies between the states
+  EXPECT_GT(errorOf(loads, exact, Parts::kWrench).relative, 1e-6);
+  EXPECT_GT(errorOf(loads, exact, Parts::kForceZ).of_peak, 1e-6);  // of the peak of Fz alone
+  loads = wayNamed("linkage with pins").loads(regular);
+  loads[3].pins.crank_on_rod.x *= 1.0 + 1e-9;
+  EXPECT_LT(errorOf(loads, exact, Parts::kWrench).relative, 1e-13);
+  EXPECT_NEAR(errorOf(loads, exact, Parts::kPins).relative, 1e-9, 1e-9);
+  loads[3].pins.hull_on_crank.z = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isinf(errorOf(loads, exact, Parts::kPins).relative));
+}
+
+HardCase atOffset(double offset) {
+  HardCase one = caseNamed("regular turn");
+  one.angles = {offset > 0.0 ? offset : kTwoPi + offset};
+  return one;
+}
+
+TEST(PrintedFormulas, HoldInMidTurn) {
+  HardCase middle = caseNamed("regular turn");
+  middle.acceleration = -300.0;  // P0 without, here with acceleration and weight
+  middle.angles.erase(std::remove_if(middle.angles.begin(), middle.angles.end(),
+                                     [](double phi) { return phi < 0.5 || phi > kTwoPi - 0.5; }),
+                      middle.angles.end());
+  const ExactCase exact(middle, Level::kRocker);
+  for (const char* name : {"P0 with inverse trigonometry", "P0 with sines and cosines"}) {
+    const LoadWay way = wayNamed(name);
+    EXPECT_LE(errorOf(way.loads(middle), exact, way.parts).relative, 1e-11) << name;
+  }
+}
+
+TEST(PrintedFormulas, LoseTheirDigitsTowardsTheBlowWhereOursKeepThem) {
+  for (const double side : {-1.0, 1.0}) {
+    for (const auto& [offset, lost] : {std::pair{1e-3, 1e-11}, std::pair{1e-6, 1e-5}, std::pair{1e-9, 0.1}}) {
+      const HardCase near_blow = atOffset(side * offset);
+      const ExactCase exact(near_blow, Level::kRocker);
+      for (const char* name : {"P0 with inverse trigonometry", "P0 with sines and cosines"}) {
+        const LoadWay way = wayNamed(name);
+        EXPECT_GE(errorOf(way.loads(near_blow), exact, way.parts).relative, lost) << name << ' ' << side * offset;
+      }
+      EXPECT_LE(errorOf(wayNamed("rocker with pins").loads(near_blow), exact, Parts::kPins).relative, 1e-14);
+    }
+  }
+}
+
+TEST(PrintedFormulas, SecondTransferFunctionLosesThreeDigitsBesideZero) {
+  const PrintedFormulas printed(kHammer, Positions::kTrigonometry);
+  const Mechanism mechanism = mechanismOf(kHammer);
+  const NewtonEuler exact(kHammer, Level::kRocker);
+  double worst_printed = 0.0, worst_ours = 0.0;
+  for (int decade = 1; decade <= 12; ++decade) {
+    for (const double digit : {1.0, 1.9, 2.7, 4.4, 6.1, 8.3}) {
+      const double phi = digit * std::pow(10.0, -decade);
+      const Real right = exact.at(Real(phi), 1, 0, {}).psi_accel;
+      const auto error = [&](double du) { return static_cast<double>(abs(Real(du) / right - 1)); };
+      worst_printed = std::max(worst_printed, error(printed.transfer(phi).du));
+      worst_ours = std::max(worst_ours, error(motion(mechanism.linkage(), CrankAngle::fromAngle(phi)).du));
+    }
+  }
+  std::printf("u' beside 0: printed %.1e, half-angle form %.1e\n", worst_printed, worst_ours);
+  EXPECT_GE(worst_printed, 1e-13);
+  EXPECT_LE(worst_ours, 5e-15);
+}
+
+}  // namespace
+}  // namespace hammer_loads::test
