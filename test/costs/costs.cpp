@@ -1,4 +1,5 @@
-// Costs of one state, one sample and one pose by google-benchmark; scripts/update_accuracy writes them to doc/accuracy.md.
+// Costs of one state, one sample and one pose by google-benchmark; scripts/update_accuracy writes them to
+// doc/accuracy.md.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -9,12 +10,12 @@
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple_tracker.h"
+#include "hammer_loads/grapple/read_grapple.h"
 #include "hammer_loads/hammer/batch.h"
 #include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/pipeline/filter_settings.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/settings/load.h"
-#include "hammer_loads/grapple/read_grapple.h"
 #include "support/printed_formulas.h"
 
 namespace hammer_loads {
@@ -47,8 +48,7 @@ void addScalarLoads(const Mechanism& mechanism) {
   add("printed/P0 with inverse trigonometry", kStates,
       [formulas = test::PrintedFormulas(mechanism.parameters(), test::Positions::kInverseTrigonometry),
        angles = turn()] {
-        for (const double angle : angles)
-          benchmark::DoNotOptimize(formulas(angle, kSpeed, kAcceleration, kGravity));
+        for (const double angle : angles) benchmark::DoNotOptimize(formulas(angle, kSpeed, kAcceleration, kGravity));
       });
   for (const auto& [name, level] :
        {std::pair{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}) {

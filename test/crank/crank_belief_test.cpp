@@ -1,7 +1,7 @@
 // Bounds of the crank's belief.
-#include <gtest/gtest.h>
-
 #include "hammer_loads/crank/crank_belief.h"
+
+#include <gtest/gtest.h>
 
 namespace hammer_loads {
 namespace {

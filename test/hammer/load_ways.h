@@ -54,7 +54,7 @@ inline double missOf(double value, const Real& exact) { return sizeOf(Real(value
 /// One load: how to read it from the computed and from the exact loads.
 template <typename Computed, typename Exact>
 inline Error errorOfOne(const std::vector<LinkLoads>& computed, const ExactCase& exact_case, const Computed& value,
-                 const Exact& exact, bool own_size) {
+                        const Exact& exact, bool own_size) {
   double peak = 0.0, miss = 0.0;
   Error worst;
   for (const auto* states : {&exact_case.states, &exact_case.turn}) {
@@ -132,7 +132,8 @@ inline LoadWay printed(const char* name, Positions positions) {
 
 /// Mechanism, model and states of a case as the calls want them.
 struct Prepared {
-  Prepared(const HardCase& c, Level level) : mechanism(mechanismOf(c.hammer)), model(mechanism, level), gravity(c.gravity) {
+  Prepared(const HardCase& c, Level level)
+      : mechanism(mechanismOf(c.hammer)), model(mechanism, level), gravity(c.gravity) {
     for (const double angle : c.angles) cranks.push_back({CrankAngle::fromAngle(angle), c.speed, c.acceleration});
   }
   Prepared(const Prepared&) = delete;

@@ -1,7 +1,8 @@
 // The reference of loads against tables of another origin.
+#include "support/newton_euler.h"
+
 #include <gtest/gtest.h>
 
-#include "support/newton_euler.h"
 #include "support/csv.h"
 #include "support/mo100.h"
 

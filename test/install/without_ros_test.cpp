@@ -25,7 +25,8 @@ class WithoutRos : public ::testing::Test {
         "-DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON -DCMAKE_DISABLE_FIND_PACKAGE_roscpp=ON -DCMAKE_BUILD_TYPE=Release");
     if (configured_.exit_code != 0) return;
     std::string copies = "mkdir -p " + build() + "/lib " + build() + "/bin";
-    for (const char* name : {"core", "boom", "life", "ledger", "settings", "grapple", "calibration", "pipeline", "tables"})
+    for (const char* name :
+         {"core", "boom", "life", "ledger", "settings", "grapple", "calibration", "pipeline", "tables"})
       copies += " && cp " HAMMER_LOADS_LIBRARIES "/libhammer_loads_" + std::string(name) + ".so " + build() + "/lib";
     for (const char* name : {"turn_table", "evaluate", "accuracy", "grapple_table", "count_cycles", "life"})
       copies += " && cp " HAMMER_LOADS_PROGRAMS "/" + std::string(name) + " " + build() + "/bin";

@@ -17,9 +17,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr char kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
-               kBoom[] = "\"boom\": ", kElastic[] = "\"elastic\": ", kDrawn[] = "\"drawings\": ",
-               kBlow[] = "\"blow\": ", kScene[] = "\"scene\": ";
+constexpr char kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ", kBoom[] = "\"boom\": ",
+               kElastic[] = "\"elastic\": ", kDrawn[] = "\"drawings\": ", kBlow[] = "\"blow\": ",
+               kScene[] = "\"scene\": ";
 
 constexpr int kDrawings = 50;
 
@@ -105,8 +105,7 @@ int run(int argc, const char* const* argv) {
   addParamsOption(line, files);
   line.option("--json", json_file, "also write the figures to this file, which must not exist");
   line.flag("--force", force, "replace that file if this command wrote it");
-  line.option("--only", only,
-              "drawings, elastic machines, KDL's observer or damage-equivalent ranges (life) alone")
+  line.option("--only", only, "drawings, elastic machines, KDL's observer or damage-equivalent ranges (life) alone")
       .oneOf({"drawings", "elastic", "observer", "life"});
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();

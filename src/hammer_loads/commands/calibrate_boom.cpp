@@ -4,8 +4,8 @@
 
 #include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/calibration/boom_report.h"
-#include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/commands/boom_recording_bag.h"
+#include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/settings/read_boom.h"
 
 namespace hammer_loads {

@@ -10,10 +10,10 @@
 #include "hammer_loads/calibration/report.h"
 #include "hammer_loads/commands/bag_options.h"
 #include "hammer_loads/commands/calibrate_boom.h"
+#include "hammer_loads/commands/crank_recording_bag.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/ros/bag_runs.h"
-#include "hammer_loads/commands/crank_recording_bag.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/constants.h"
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/grapple/read_grapple.h"
+#include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/read_log.h"
 
 namespace hammer_loads {

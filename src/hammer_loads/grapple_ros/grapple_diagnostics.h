@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cstdint>
 
+#include "hammer_loads/grapple_ros/grapple_flow.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/ros/diagnostics_publisher.h"
-#include "hammer_loads/grapple_ros/grapple_flow.h"
 
 namespace hammer_loads {
 

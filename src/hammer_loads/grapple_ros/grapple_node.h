@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/log/bag_log.h"
-#include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/grapple_ros/grapple_diagnostics.h"
 #include "hammer_loads/grapple_ros/grapple_flow.h"
 #include "hammer_loads/grapple_ros/live_grapple.h"
+#include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/log_services.h"
 
 namespace hammer_loads {

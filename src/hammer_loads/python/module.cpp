@@ -96,8 +96,8 @@ Array loads(const Hammer& hammer, const Array& angle, const Array& speed, const 
 }
 
 /// A row for each column of turn_table.
-Array turn(const Hammer& hammer, double speed, double step, const std::pair<double, double>& gravity,
-           const Text& level, bool pins) {
+Array turn(const Hammer& hammer, double speed, double step, const std::pair<double, double>& gravity, const Text& level,
+           bool pins) {
   const TurnTable table{modelOf(hammer, level), speed, {gravity.first, gravity.second}, step, pins};
   const std::vector<TurnRow> rows = turnRows(table, 0, rowCount(table));
   Array result({pins ? 5 + kPinColumns.size() : std::size_t{5}, rows.size()});

@@ -170,8 +170,8 @@ std::unique_ptr<LiveNode> makeHammerNode(const ros::NodeHandle& node, const ros:
     ledger = *std::move(loaded.value);
   }
   const InputTopics topics = inputTopics([&node](const InputName& input) { return node.resolveName(input.name); });
-  return std::make_unique<HammerLoadsNode>(node, private_node, withInputTopics(*settings.value, topics),
-                                           std::move(log), std::move(ledger));
+  return std::make_unique<HammerLoadsNode>(node, private_node, withInputTopics(*settings.value, topics), std::move(log),
+                                           std::move(ledger));
 }
 
 }  // namespace hammer_loads
