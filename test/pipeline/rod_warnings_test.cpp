@@ -46,7 +46,7 @@ bool names(const std::string& text, const char* what) { return text.find(what) !
 
 TEST(RodWarnings, ARightSensorIsNotBlamedForARodThatGives) {
   std::mt19937_64 random(4301);
-  for (std::uint64_t i = 0; i < 20; ++i) {
+  for (std::uint64_t i = 0; i < 12; ++i) {
     const simulation::MachineSettings machine = drawnMachine(random, 4300 + i);
     const std::string text = heardOf(machine, i % 2 == 0 ? Level::kLinkage : Level::kElastic);
     SCOPED_TRACE(testing::Message() << machine.rod.stiffness << " N/m, " << machine.rod.damping_ratio << ", "
