@@ -99,7 +99,7 @@ inline double between(const NumberKey& key, std::uint16_t place) {
   return std::clamp(least * std::pow(key.most / least, part), key.least, key.most);
 }
 
-/// What keys demand of each other: the change-point condition, the inertia about the pivot, the lever of the blow.
+/// What keys demand of each other: the change-point condition, the inertia about the pivot, the levers of the blow.
 inline void makePossible(Numbers& n) {
   const YAML::Node shipped = YAML::Load(shippedSettings().yaml);
   const auto value = [&](const char* key) { return n.count(key) != 0 ? n[key] : shipped[key].as<double>(); };
@@ -110,6 +110,8 @@ inline void makePossible(Numbers& n) {
   n["rocker_inertia_about_pivot_kg_m2"] = std::max(value("rocker_inertia_about_pivot_kg_m2"), 1.01 * mass * com * com);
   const double gyration = std::sqrt(n["rocker_inertia_about_pivot_kg_m2"] / mass);
   n["striking_distance_m"] = std::clamp(value("striking_distance_m"), 0.11 * gyration, 9.0 * gyration);
+  const double most = 0.9 * n["striking_distance_m"] / std::max(value("striking_friction"), 0.01);
+  n["striking_offset_m"] = std::clamp(value("striking_offset_m"), -std::min(most, 10.0), std::min(most, 10.0));
 }
 
 /// Nothing where the reader refuses the mixture. Takes the words, how many numbers, and each of them.

@@ -27,6 +27,7 @@ std::vector<Violation> violations() {
           {"rocker_inertia_about_pivot_kg_m2", &P::rocker_inertia_about_pivot, 0.0, "> 0"},
           {"rocker_inertia_about_pivot_kg_m2", &P::rocker_inertia_about_pivot, 0.3415, ">= rocker mass"},
           {"striking_distance_m", &P::striking_distance, -1.0, "> 0"},
+          {"striking_offset_m", &P::striking_offset, kNan, "finite"},
           {"striking_friction", &P::striking_friction, -0.1, ">= 0"},
           {"crank_mass_kg", &P::crank_mass, -1.0, ">= 0"},
           {"crank_com_along_m", &P::crank_com_along, kNan, "finite"},

@@ -64,6 +64,7 @@ constexpr Field kFields[] = {
     [](HammerParameters& p) -> double& { return p.rocker_mass; },
     [](HammerParameters& p) -> double& { return p.rocker_inertia_about_pivot; },
     [](HammerParameters& p) -> double& { return p.striking_distance; },
+    [](HammerParameters& p) -> double& { return p.striking_offset; },
     [](HammerParameters& p) -> double& { return p.striking_friction; },
     [](HammerParameters& p) -> double& { return p.crank_mass; },
     [](HammerParameters& p) -> double& { return p.crank_com_along; },

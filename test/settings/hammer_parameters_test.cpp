@@ -106,12 +106,34 @@ TEST(HammerParameters, ShippedFileIsTheMo100) {
 }
 
 TEST(HammerParameters, KeysAreTheContracts) {
-  EXPECT_EQ(hammerKeys(),
-            (Lines{"crank_length_m", "rod_length_m", "rocker_length_m", "pivot_distance_m", "rocker_com_distance_m",
-                   "rocker_com_angle_deg", "rocker_mass_kg", "rocker_inertia_about_pivot_kg_m2", "striking_distance_m",
-                   "striking_friction", "crank_mass_kg", "crank_com_along_m", "crank_com_across_m",
-                   "crank_inertia_about_com_kg_m2", "rod_mass_kg", "rod_com_along_m", "rod_com_across_m",
-                   "rod_inertia_about_com_kg_m2", "drive_inertia_kg_m2"}));
+  EXPECT_EQ(
+      hammerKeys(),
+      (Lines{"crank_length_m", "rod_length_m", "rocker_length_m", "pivot_distance_m", "rocker_com_distance_m",
+             "rocker_com_angle_deg", "rocker_mass_kg", "rocker_inertia_about_pivot_kg_m2", "striking_distance_m",
+             "crank_mass_kg", "crank_com_along_m", "crank_com_across_m", "crank_inertia_about_com_kg_m2", "rod_mass_kg",
+             "rod_com_along_m", "rod_com_across_m", "rod_inertia_about_com_kg_m2", "drive_inertia_kg_m2"}));
+}
+
+TEST(HammerParameters, StrikingOffsetAndFrictionAreOptional) {
+  const auto parametersWith = [](const std::string& added) {
+    const TemporaryFile file(hammerYaml() + added);
+    return loadFiles(configDirectory(), {file.path()}).value->mechanism.parameters();
+  };
+  const HammerParameters absent = parametersWith("");
+  EXPECT_EQ(absent.striking_offset, 0.0);
+  EXPECT_EQ(absent.striking_friction, 0.0);
+  const HammerParameters given =
+      parametersWith("striking_offset_m: -0.012\nstriking_friction: 0.2\nstriking_offset_deviation_m: 0.0005\n");
+  EXPECT_EQ(given.striking_offset, -0.012);
+  EXPECT_EQ(given.striking_friction, 0.2);
+  EXPECT_EQ(given.deviations[*indexOfConstant("striking_offset_m")], 5e-4);
+  for (const char* wrong : {"word", ".nan", "~", "20.0"})
+    EXPECT_EQ(problemsWith({}, std::string("striking_offset_m: ") + wrong + "\n").size(), 1U) << wrong;
+  for (const char* wrong : {"-0.1", "word", "3.0"})
+    EXPECT_EQ(problemsWith({}, std::string("striking_friction: ") + wrong + "\n").size(), 1U) << wrong;
+  const Lines jammed = problemsWith({}, "striking_offset_m: 0.2\nstriking_friction: 1.5\n");
+  ASSERT_EQ(jammed.size(), 1U);
+  EXPECT_TRUE(beginsWith(jammed[0], "striking_offset_m: 0.2 m, times striking_friction")) << jammed[0];
 }
 
 TEST(HammerParameters, DeviationsNotGivenAreTheUsualOnesWithANote) {

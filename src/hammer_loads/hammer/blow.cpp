@@ -20,21 +20,50 @@ double strikingInertia(const StrikingRocker& rocker) noexcept {
   return rocker.inertia_about_pivot + rocker.reduced_rod_mass * squaredDistance(rocker.rod_joint);
 }
 
-/// Tool impulse along z per w-(1 + R), where w- = -psi' before is counter-clockwise in (x, z) [kg m]; P1 (4).
-double impulsePerSpeed(const StrikingRocker& rocker, double w) noexcept {
+/// What the tool gives to a rocker; P1's w = -psi' is counter-clockwise in (x, z).
+struct ToolImpulse {
+  double x{}, z{};         ///< BY the tool ON the rocker [N s]
+  double energy{};         ///< given to the tool along z [J]
+  double friction_work{};  ///< [J]
+};
+
+/// Both phases of Coulomb's friction. While the rocker approaches, the moment about D of an impulse I along z is
+/// (|x_K| + f |z_K|) I; in the rebound K slides back, and it is (|x_K| - f |z_K|) I. The velocity of K is w (-z, x),
+/// and an impulse works with the mean of the velocities before and after its phase.
+ToolImpulse toolImpulse(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
   const HullPoint k = rocker.striking_point;
-  return strikingInertia(rocker) / (-k.x + rocker.friction * std::abs(k.z) * sign(w));
+  const double w = -speed_before, friction_arm = rocker.friction * std::abs(k.z);
+  const double sliding = sign(w * k.z), mean = -0.5 * (speed_before + speed_after);
+  ToolImpulse tool;
+  tool.z = strikingInertia(rocker) / (-k.x + friction_arm * sign(w)) * (speed_after - speed_before);  // P1 (4)
+  tool.x = rocker.friction * tool.z * sliding;
+  tool.energy = -tool.z * k.x * mean;
+  tool.friction_work = tool.x * k.z * mean;
+  const double rebound = speed_after * -sign(speed_before);
+  if (!(rebound > 0.0) || !(friction_arm > 0.0)) return tool;
+  // Deviates: P1 has the friction of the approach in the rebound as well.
+  const double arm = std::abs(k.x), back = strikingInertia(rocker) * rebound / (arm - friction_arm);
+  const double more = 2.0 * friction_arm / (arm + friction_arm) * back;  // than by the arm of the approach
+  tool.z += more;
+  tool.x += rocker.friction * sliding * (more - 2.0 * back);
+  tool.energy -= 0.5 * arm * more * rebound;
+  tool.friction_work += 0.5 * arm * more * rebound;
+  return tool;
 }
 
-/// Of a tool that was met before the dead centre, as close to it as matters.
+/// Of a tool that was met before the dead centre, as close to it as matters. The rocker goes on in its direction.
 RockerBlow earlyBlow(const StrikingRocker& rocker, const BlowInertia& inertia, double speed, double factor) noexcept {
   RockerBlow blow;
   blow.rocker_speed_before = inertia.u_before * speed;
   blow.rocker_speed_after = factor * blow.rocker_speed_before;
   blow.restitution = std::numeric_limits<double>::quiet_NaN();
-  blow.energy = 0.5 * inertia.before() * (1.0 - factor * factor) * speed * speed;
-  blow.tool_impulse_z =
-      2.0 * blow.energy / (rocker.striking_point.x * (blow.rocker_speed_before + blow.rocker_speed_after));
+  const HullPoint k = rocker.striking_point;
+  const double lost = 0.5 * inertia.before() * (1.0 - factor * factor) * speed * speed;
+  const double sum = blow.rocker_speed_before + blow.rocker_speed_after;  // < 0, as is k.x
+  blow.tool_impulse_z = 2.0 * lost / ((k.x - rocker.friction * std::abs(k.z)) * sum);
+  blow.tool_impulse_x = rocker.friction * blow.tool_impulse_z * sign(k.z);
+  blow.friction_work = -0.5 * blow.tool_impulse_x * k.z * sum;
+  blow.energy = lost - blow.friction_work;
   return blow;
 }
 
@@ -49,25 +78,22 @@ StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept 
   rocker.com = {-p.rocker_com_distance, 0.0};
   rocker.rod_joint = {-l3 * mechanism.cosComAngle(), -l3 * mechanism.sinComAngle()};
   rocker.reduced_rod_mass = level == Level::kLinkage ? mechanism.moments().rod_inertia / (l2 * l2) : 0.0;
-  rocker.striking_point = {-p.striking_distance, 0.0};
+  rocker.striking_point = {-p.striking_distance, p.striking_offset};
   rocker.friction = p.striking_friction;
   return rocker;
 }
 
 RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
-  const HullPoint k = rocker.striking_point;
-  const double w = -speed_before;                    // w-, counter-clockwise in (x, z)
-  const double change = speed_after - speed_before;  // w-(1 + R)
-  const double mean = -0.5 * (speed_before + speed_after);
+  const double change = speed_after - speed_before;  // P1's w-(1 + R)
+  const ToolImpulse tool = toolImpulse(rocker, speed_before, speed_after);
   RockerBlow blow;
   blow.rocker_speed_before = speed_before;
   blow.rocker_speed_after = speed_after;
   blow.restitution = -speed_after / speed_before;
-  blow.tool_impulse_z = impulsePerSpeed(rocker, w) * change;
-  blow.tool_impulse_x = rocker.friction * blow.tool_impulse_z * sign(w * k.z);
-  // Velocity of K is w (-z, x); an impulse works with the mean of the velocities before and after.
-  blow.energy = -blow.tool_impulse_z * k.x * mean;
-  blow.friction_work = blow.tool_impulse_x * k.z * mean;
+  blow.tool_impulse_x = tool.x;
+  blow.tool_impulse_z = tool.z;
+  blow.energy = tool.energy;
+  blow.friction_work = tool.friction_work;
   // The hull gets the opposite of the support impulse on the rocker, P1 (8), (9).
   const double moment_x = rocker.mass * rocker.com.x + rocker.reduced_rod_mass * rocker.rod_joint.x;
   const double moment_z = rocker.mass * rocker.com.z + rocker.reduced_rod_mass * rocker.rod_joint.z;
@@ -76,10 +102,10 @@ RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, doub
   return blow;
 }
 
-HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) noexcept {
-  const double w = -speed_before;
-  const double per_speed_z = impulsePerSpeed(rocker, w);
-  const double per_speed_x = rocker.friction * per_speed_z * sign(w * rocker.striking_point.z);
+HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
+  const ToolImpulse tool = toolImpulse(rocker, speed_before, speed_after);
+  const double change = speed_after - speed_before;
+  const double per_speed_z = tool.z / change, per_speed_x = tool.x / change;
   return {-(per_speed_z + rocker.reduced_rod_mass * rocker.rod_joint.x) / rocker.mass,
           (per_speed_x - rocker.reduced_rod_mass * rocker.rod_joint.z) / rocker.mass};
 }

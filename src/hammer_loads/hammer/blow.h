@@ -16,7 +16,7 @@ struct RockerBlow {
   double rocker_speed_after{};   ///< [rad/s]
   double restitution{};          ///< R = -after/before [-]
   double energy{};               ///< given to the tool along z: the links' loss less the work of friction [J]
-  double friction_work{};        ///< of the sliding at the striking face [J]
+  double friction_work{};        ///< of the sliding at the striking face, before and after the reversal [J], >= 0
   double tool_impulse_x{};       ///< BY the tool ON the rocker [N s]
   double tool_impulse_z{};       ///< BY the tool ON the rocker [N s], > 0 for a real blow
   double support_impulse_x{};    ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
@@ -57,20 +57,22 @@ struct StrikingRocker {
   double friction{};             ///< f between rocker and tool [-], >= 0
 };
 
-/// The mechanism's rocker at psi = 0: S and K on the line D - S along -x, joint C at the angle a.
+/// The mechanism's rocker at psi = 0: S on -x, K at the striking offset over that line, joint C at the angle C-D-S.
 /// Level linkage: m_n = J2/l2^2 (J2: rod about B): crank and B keep their speed, C's jumps. Else the rod is massless.
 /// Neglects the impulse along rod and rocker that a rod's centre of mass off its line needs (A and D share it).
 StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept;
 
-/// P1 (1)-(9) for given rocker speeds psi' before and after [rad/s]; -x_K + f |z_K| sgn(w-) > 0 with w- = -psi' before.
-/// Friction opposes the sliding of K before the blow; a face that does not slide (z_K = 0) transmits no impulse along
-/// x. Deviates: P1 (3)-(5), (8), (9) lose the sign of sliding (model.md 5, 7); (10) is the limit z_K -> 0 from one
-/// side.
+/// P1 (1)-(9) for given rocker speeds psi' before and after [rad/s], x_K of the sign of the speed before and
+/// f |z_K| < |x_K| (else the tool jams the rocker). Coulomb's friction opposes the sliding of K, which ends together
+/// with the approach and runs back in the rebound; a face that does not slide (z_K = 0) transmits no impulse along x.
+/// Deviates: P1 keeps the direction of friction in the rebound (equal for R = 0), loses its sign in (3)-(5), (8), (9),
+/// and keeps friction in (10), where nothing slides (model.md 5, 7).
 RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
 
-/// Centre of mass for which the support gets no impulse [m]; only the sign of the speed before [rad/s] matters.
-/// Deviates: P1 (12), (13) print brackets and a sign wrong; (18) is the special case f = 0, z_K = 0, m_n = 0.
-HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) noexcept;
+/// Centre of mass for which the support gets no impulse [m], by the speeds before and after [rad/s]; with f z_K = 0
+/// they do not matter. Deviates: P1 (12), (13) print brackets and a sign wrong and hold for R = 0; (18) is the special
+/// case f = 0, z_K = 0, m_n = 0.
+HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
 
 /// Blow of a crank that passes the blow forward at a speed w > 0 [rad/s]: the crank keeps its speed, the rocker's jumps
 /// from u(2 pi -) w to u(0 +) w (model.md 1).

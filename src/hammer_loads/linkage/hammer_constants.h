@@ -25,6 +25,7 @@ struct HammerConstant {
     kLearned,  ///< nothing: the crank's filter knows it better
     kFollows,  ///< nothing of its own: it follows from others
   } enters;
+  bool optional{};  ///< a hammer file may leave it out; then the default of HammerParameters counts
 };
 
 namespace usual {
@@ -62,8 +63,10 @@ inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstan
      HammerConstant::Enters::kLoads},
     {"striking_distance_m", "m", [](HammerParameters& p) -> double& { return p.striking_distance; }, usual::length, 1.0,
      HammerConstant::Enters::kBlow},
+    {"striking_offset_m", "m", [](HammerParameters& p) -> double& { return p.striking_offset; }, usual::exact, 1.0,
+     HammerConstant::Enters::kBlow, true},
     {"striking_friction", "", [](HammerParameters& p) -> double& { return p.striking_friction; }, usual::exact, 1.0,
-     HammerConstant::Enters::kBlow},
+     HammerConstant::Enters::kBlow, true},
     {"crank_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.crank_mass; },
      [](const HammerParameters& p) { return usual::kGuessed * p.crank_mass; }, 1.0, HammerConstant::Enters::kLoads},
     {"crank_com_along_m", "m", [](HammerParameters& p) -> double& { return p.crank_com_along; },
@@ -89,7 +92,7 @@ inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstan
     {"drive_inertia_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.drive_inertia; }, usual::exact, 1.0,
      HammerConstant::Enters::kLearned},
     {"drive_reaction_ratio", "", [](HammerParameters& p) -> double& { return p.drive_reaction_ratio; }, usual::exact,
-     1.0, HammerConstant::Enters::kLoads},
+     1.0, HammerConstant::Enters::kLoads, true},
 }};
 
 /// Place of a key in kHammerConstants, if it is there.

@@ -65,6 +65,7 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
         Rule{"rocker_mass_kg", p.rocker_mass, "kg", Sign::kPositive},
         Rule{"rocker_inertia_about_pivot_kg_m2", p.rocker_inertia_about_pivot, "kg m2", Sign::kPositive},
         Rule{"striking_distance_m", p.striking_distance, "m", Sign::kPositive},
+        Rule{"striking_offset_m", p.striking_offset, "m", Sign::kAny},
         Rule{"striking_friction", p.striking_friction, "", Sign::kNotNegative},
         Rule{"crank_mass_kg", p.crank_mass, "kg", Sign::kNotNegative},
         Rule{"crank_com_along_m", p.crank_com_along, "m", Sign::kAny},
@@ -86,6 +87,12 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
         "rocker_inertia_about_pivot_kg_m2: %.9g kg m2, must be >= rocker mass x centre-of-mass distance^2 = %.9g "
         "kg m2 (about the pivot D, not about the centre of mass)",
         p.rocker_inertia_about_pivot, least_inertia));
+  }
+  if (p.striking_friction * std::abs(p.striking_offset) >= p.striking_distance && p.striking_distance > 0.0) {
+    result.problems.push_back(format(
+        "striking_offset_m: %.9g m, times striking_friction must be < striking_distance_m = %.9g m (the tool would jam "
+        "the rocker)",
+        p.striking_offset, p.striking_distance));
   }
   if (!result.problems.empty()) return result;
 

@@ -12,7 +12,7 @@
 namespace hammer_loads {
 
 /// Standard deviations of the constants of a hammer, in the order and the units of kHammerConstants; 0: exact.
-using HammerDeviations = std::array<double, 20>;
+using HammerDeviations = std::array<double, 21>;
 
 /// The hammer file (contract): keys of the same names with the unit appended.
 struct HammerParameters {
@@ -21,8 +21,9 @@ struct HammerParameters {
   double rocker_com_angle{};            ///< a = angle C-D-S [rad]
   double rocker_mass{};                 ///< m3 [kg], > 0
   double rocker_inertia_about_pivot{};  ///< I about D [kg m2], >= m3 ls^2
-  double striking_distance{};           ///< lK = DK, K on line DS [m], > 0
-  double striking_friction{};           ///< f between rocker and tool [-], >= 0
+  double striking_distance{};           ///< lK: distance of the striking point K from D along D-S [m], > 0
+  double striking_offset{};             ///< zK: height of K over the line D-S, towards +z at the blow [m]
+  double striking_friction{};           ///< f between rocker and tool [-], >= 0; no effect while zK is 0
   double crank_mass{};                  ///< [kg], >= 0
   double crank_com_along{};             ///< from A towards B [m]
   double crank_com_across{};            ///< along turned by +90 deg in (xi, eta) [m]

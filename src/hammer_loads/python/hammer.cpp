@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/settings/parameter_reader.h"
@@ -10,8 +11,6 @@
 namespace hammer_loads::python {
 namespace {
 
-constexpr const char* kRatio = "drive_reaction_ratio";  // the only key that a hammer file may leave out
-
 /// The hammer's numbers among all parameters in force, with the rod as the mechanism corrected it.
 std::map<std::string, double> hammerParameters(const std::string& yaml, const Mechanism& mechanism) {
   std::map<std::string, double> values;
@@ -19,8 +18,10 @@ std::map<std::string, double> hammerParameters(const std::string& yaml, const Me
   for (const std::string& key : hammerKeys()) {
     if (all[key]) values[key] = all[key].as<double>();
   }
-  values["rod_length_m"] = mechanism.parameters().lengths.rod;
-  values[kRatio] = mechanism.parameters().drive_reaction_ratio;
+  HammerParameters parameters = mechanism.parameters();
+  values["rod_length_m"] = parameters.lengths.rod;
+  for (const HammerConstant& constant : kHammerConstants)
+    if (constant.optional) values[constant.key] = constant.field(parameters);
   return values;
 }
 

@@ -17,23 +17,19 @@ constexpr NumberRule kLength = NumberRule::within(1e-3, 10.0), kOffset = NumberR
 constexpr NumberRule kMass = NumberRule::within(1e-3, 1e5), kMassOrNone = NumberRule::zeroOrWithin(1e-6, 1e5);
 constexpr NumberRule kInertia = NumberRule::within(1e-9, 1e6), kInertiaOrNone = NumberRule::zeroOrWithin(1e-12, 1e6);
 constexpr NumberRule kStiffness = NumberRule::zeroOrWithin(1e6, 1e12), kDampingRatio = NumberRule::within(0.0, 100.0);
-constexpr NumberRule kPlay = NumberRule::within(0.0, 0.01);
+constexpr NumberRule kPlay = NumberRule::within(0.0, 0.01), kFriction = NumberRule::within(0.0, 2.0);
 // Matter lies some radii of gyration from the pivot; a lever of less would make any blow's impulse endless.
 constexpr double kLeastLever = 0.1, kMostLever = 10.0;
 
 /// In the order of kHammerConstants.
-constexpr NumberRule kRules[kHammerConstantCount] = {kLength,     kLength,
-                                                     kLength,     kLength,
-                                                     kLength,     NumberRule::within(-360.0, 360.0),
-                                                     kMass,       kInertia,
-                                                     kLength,     NumberRule::within(0.0, 2.0),
-                                                     kMassOrNone, kOffset,
-                                                     kOffset,     kInertiaOrNone,
-                                                     kMassOrNone, kOffset,
-                                                     kOffset,     kInertiaOrNone,
-                                                     kInertia,    NumberRule::within(-10.0, 10.0)};
-constexpr std::size_t kRatio = kHammerConstantCount - 1;
-static_assert(kHammerConstants[kRatio].key[0] == 'd' && kHammerConstants[kRatio].unit[0] == '\0', "the optional key");
+constexpr NumberRule kRules[kHammerConstantCount] = {kLength,        kLength,   kLength,
+                                                     kLength,        kLength,   NumberRule::within(-360.0, 360.0),
+                                                     kMass,          kInertia,  kLength,
+                                                     kOffset,        kFriction, kMassOrNone,
+                                                     kOffset,        kOffset,   kInertiaOrNone,
+                                                     kMassOrNone,    kOffset,   kOffset,
+                                                     kInertiaOrNone, kInertia,  NumberRule::within(-10.0, 10.0)};
+constexpr const char* kRatio = "drive_reaction_ratio";
 
 double inFile(const HammerConstant& constant, double value) {
   return std::string(constant.unit) == "deg" ? value / kDegree : value;
@@ -112,12 +108,10 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   const std::size_t problems_before = reader.problems().size();
   HammerParameters parameters;
   // Signs and what keys demand of each other are the mechanism's to judge.
-  for (std::size_t i = 0; i < kRatio; ++i) {
-    const HammerConstant& constant = kHammerConstants[i];
+  for (const HammerConstant& constant : kHammerConstants) {
+    if (constant.optional && !reader.given(constant.key)) continue;
     constant.field(parameters) = reader.number(constant.key, constant.unit, NumberRule::any()) / inFile(constant, 1.0);
   }
-  const char* ratio = kHammerConstants[kRatio].key;
-  if (reader.given(ratio)) parameters.drive_reaction_ratio = reader.number(ratio, "", kRules[kRatio]);
 
   std::string usual;
   readDeviations(reader, parameters, usual);  // known keys, whatever else is wrong
@@ -125,7 +119,7 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   readHullMass(reader, parameters);
   const Checked<Mechanism> mechanism = Mechanism::make(parameters);
   for (const std::string& problem : mechanism.problems) reader.addProblem(problem);
-  for (std::size_t i = 0; i < kRatio; ++i) {
+  for (std::size_t i = 0; i < kHammerConstantCount; ++i) {
     const HammerConstant& constant = kHammerConstants[i];
     const double value = inFile(constant, constant.field(parameters));
     if (std::isfinite(value)) reader.demand(constant.key, constant.unit, value, kRules[i]);
@@ -137,8 +131,8 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   if (reader.problems().size() == problems_before) checkDeviations(reader, parameters);
   notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
   if (!usual.empty()) notes.push_back("standard deviations not given, the usual ones count: " + usual);
-  if (!reader.given(ratio))
-    notes.push_back(std::string(ratio) +
+  if (!reader.given(kRatio))
+    notes.push_back(std::string(kRatio) +
                     ": not given, counts as 1: the hull feels the drive's reaction as of a flywheel on the crank's "
                     "shaft");
   if (reader.problems().size() != problems_before) return std::nullopt;
@@ -147,7 +141,8 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
 
 std::vector<std::string> hammerKeys() {
   std::vector<std::string> keys;
-  for (std::size_t i = 0; i < kRatio; ++i) keys.emplace_back(kHammerConstants[i].key);
+  for (const HammerConstant& constant : kHammerConstants)
+    if (!constant.optional) keys.emplace_back(constant.key);
   return keys;
 }
 
@@ -162,8 +157,9 @@ std::vector<std::pair<std::string, double>> deviationsInForce(const HammerParame
 /// The drive's inertia is a first guess, which a calibration replaces in any hammer; how it turns is no part of the
 /// mechanism.
 bool hasHammerKey(const ParameterMap& parameters) {
-  return std::any_of(kHammerConstants.begin(), kHammerConstants.begin() + kRatio, [&](const HammerConstant& constant) {
-    return constant.enters != HammerConstant::Enters::kLearned && parameters.count(constant.key) != 0;
+  return std::any_of(kHammerConstants.begin(), kHammerConstants.end(), [&](const HammerConstant& constant) {
+    const bool of_drive = constant.enters == HammerConstant::Enters::kLearned || std::string(constant.key) == kRatio;
+    return !of_drive && parameters.count(constant.key) != 0;
   });
 }
 

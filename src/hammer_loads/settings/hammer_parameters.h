@@ -1,4 +1,4 @@
-/// The hammer file: one mechanism, every key required but `drive_reaction_ratio`.
+/// The hammer file: one mechanism, every key required but those that kHammerConstants names optional.
 #pragma once
 
 #include <optional>
