@@ -5,12 +5,15 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "hammer_loads/hammer/batch.h"
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/hammer/evaluate.h"
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/exact_cycles.h"
+#include "hammer_loads/python/boom.h"
 #include "hammer_loads/python/hammer.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
@@ -30,16 +33,33 @@ using Text = std::optional<std::string>;
   throw py::value_error(text);
 }
 
-/// A hammer, or its problems as an exception.
-Hammer valueOf(Checked<Hammer> made) {
+/// A hammer or boom, or its problems as an exception.
+template <typename Model>
+Model valueOf(Checked<Model> made) {
   if (!made.value) raise(made.problems);
   return *std::move(made.value);
 }
 
-Hammer fromYaml(const py::args& paths) {
+std::string pathOf(const py::handle& path) {
+  return py::module_::import("os").attr("fspath")(path).cast<std::string>();
+}
+
+std::vector<std::string> pathsOf(const py::args& paths) {
   std::vector<std::string> files;
-  const py::object text_of = py::module_::import("os").attr("fspath");
-  for (const py::handle& path : paths) files.push_back(text_of(path).cast<std::string>());
+  for (const py::handle& path : paths) files.push_back(pathOf(path));
+  return files;
+}
+
+BoomModel boomFromYaml(const py::object& urdf, const py::args& paths) {
+  const std::string path = pathOf(urdf);
+  std::ifstream file(path);
+  if (!file) raise({path + ": cannot be read"});
+  const std::string description{std::istreambuf_iterator<char>(file), {}};
+  return valueOf(BoomModel::fromFiles(description, pathsOf(paths)));
+}
+
+Hammer fromYaml(const py::args& paths) {
+  const std::vector<std::string> files = pathsOf(paths);
   const py::gil_scoped_release others_may_run;
   Checked<Hammer> made = Hammer::fromFiles(files);
   const py::gil_scoped_acquire again;
@@ -210,6 +230,13 @@ constexpr char kChanged[] = R"(Returns this hammer with other values of the hamm
 values: by key, in the unit that the key ends with, for instance rod_mass_kg=4.0. The lengths must keep
 crank + rod = pivot distance + rocker to 1e-3 crank lengths; the rod is corrected by the rest.)";
 
+constexpr char kBoomText[] = "A boom with the hammer on its tip. It never changes.";
+
+constexpr char kBoomFromYaml[] = R"(Reads a robot description (URDF) and parameter files, as --urdf and --params do.
+
+paths: a boom file, for instance config/boom_eo2621.yaml; without one the boom is rigid and has no sections.
+Raises ValueError with one line for each problem.)";
+
 constexpr char kSupportImpulse[] = R"(Returns the impulses of a blow of a rocker of any shape (paper P1).
 
 mass, reduced_rod_mass [kg], inertia_about_pivot [kg m2], friction [-]: of the rocker and at the tool.
@@ -237,6 +264,13 @@ PYBIND11_MODULE(_native, module) {
       .def("_turn", &turn)
       .def("_pulse", &pulse)
       .def("_blow", &blow);
+  py::class_<BoomModel>(module, "Boom", kBoomText)
+      .def_static("from_yaml", &boomFromYaml, kBoomFromYaml, py::arg("urdf"))
+      .def_property_readonly("joints", &BoomModel::joints, "Names of the joints, from the machine to the hammer.")
+      .def_property_readonly("sections", &BoomModel::sections, "Names of the sections in the boom file.")
+      .def("frequencies", &BoomModel::frequencies, "Returns the natural frequencies [Hz] at a position by joint name.",
+           py::arg("joints"))
+      .def("_loads", &BoomModel::loads);
   module.attr("PIN_COLUMNS") = py::cast(std::vector<std::string>(kPinColumns.begin(), kPinColumns.end()));
   module.def("count_cycles", &countCycles);
   module.def("support_impulse", &supportImpulse, kSupportImpulse, py::kw_only(), py::arg("mass"),

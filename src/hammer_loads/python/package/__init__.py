@@ -17,9 +17,9 @@ import urllib.parse
 import numpy as np
 
 from . import _native
-from ._native import Hammer, support_impulse
+from ._native import Boom, Hammer, support_impulse
 
-__all__ = ["Hammer", "count_cycles", "read_database", "support_impulse"]
+__all__ = ["Boom", "Hammer", "count_cycles", "read_database", "support_impulse"]
 
 _WRENCH = ["hull_force_x_N", "hull_force_z_N", "hull_torque_y_Nm"]
 _TURN = ["crank_angle_deg", "time_s", "force_x_N", "force_z_N", "torque_y_Nm"]
@@ -131,6 +131,32 @@ def _blow(self, crank_speed, crank_speed_after=None, *, level=None):
 
 
 Hammer.wrenches, Hammer.turn, Hammer.pulse, Hammer.blow = _wrenches, _turn, _pulse, _blow
+
+
+def _boom_loads(self, joints, time, force_x, force_z, torque_y, *, compliant=True):
+    """Returns what a load of the hammer does to the boom, without the weight of both.
+
+    joints [rad]: position by joint name; a joint that is missing is at 0. The pose does not change.
+    time [s], force_x, force_z [N], torque_y [N m]: load by the hammer on the hull at the origin of hammer_hull, axes of
+    that frame. Time never falls; two rows of one time are both sides of a jump. The impulse of a blow is not among them.
+    compliant: the joints vibrate on the oil of their cylinders, from rest at the first time; False: a rigid boom.
+
+    The result has JOINT_torque_Nm for each joint, about its axis, positive where it drives the joint forward; and
+    SECTION_force_x_N, SECTION_force_z_N, SECTION_moment_y_Nm for each section, by what is beyond the cut on what is
+    before it, axes of the cut.
+    """
+    names = ("time", "force_x", "force_z", "torque_y")
+    rows = np.broadcast_arrays(*(_array(*pair) for pair in zip(names, (time, force_x, force_z, torque_y))))
+    shape = rows[0].shape
+    rows = np.array([row.ravel() for row in rows])
+    if not (np.isfinite(rows).all() and (np.diff(rows[0]) >= 0.0).all()):
+        raise ValueError("time: must never fall; force_x, force_z, torque_y: must be finite")
+    keys = [joint + "_torque_Nm" for joint in self.joints] + [
+        section + ending for section in self.sections for ending in ("_force_x_N", "_force_z_N", "_moment_y_Nm")]
+    return {key: row.reshape(shape) for key, row in zip(keys, self._loads(joints, rows, compliant))}
+
+
+Boom.loads = _boom_loads
 
 
 def count_cycles(series, *, full_scale=None, classes=4096):
