@@ -1,13 +1,7 @@
-// README.md and doc/model.md against what they speak of: parameter files, topics, messages, commands, C++ names.
-#include <gtest/gtest.h>
-
+// README.md and doc/parameters.md against what they speak of: parameter files, topics, messages, commands.
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <regex>
-#include <set>
-#include <sstream>
 
+#include "doc/pages.h"
 #include "hammer_loads/grapple_ros/grapple_outputs.h"
 #include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/settings/load.h"
@@ -15,45 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-namespace fs = std::filesystem;
-using Names = std::set<std::string>;
-
-const fs::path kRoot = fs::path(HAMMER_LOADS_TEST_DATA) / ".." / "..";
-
-std::string textOf(const fs::path& path) {
-  std::ifstream file(kRoot / path);
-  EXPECT_TRUE(file) << path;
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-/// All texts of files with an ending below a folder.
-std::string textBelow(const fs::path& folder, const std::string& ending) {
-  std::string text;
-  for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
-    if (entry.path().extension() == ending) text += textOf(fs::relative(entry.path(), kRoot));
-  }
-  return text;
-}
-
-/// First groups of all matches.
-Names matches(const std::string& text, const std::string& pattern) {
-  const std::regex expression(pattern);
-  Names found;
-  for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) found.insert((*i)[1]);
-  return found;
-}
-
-/// From a heading that begins so to the next heading.
-std::string section(const std::string& text, const std::string& heading) {
-  const std::size_t begin = text.find("\n" + heading);
-  EXPECT_NE(begin, std::string::npos) << heading;
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find("\n#", begin + heading.size()) - begin);
-}
-
-using Cells = std::vector<std::string>;
+using namespace test;  // pages.h
 
 /// Rows of a section's tables whose first cell is in backquotes, the cells without spaces around them.
 std::vector<Cells> tableRows(const std::string& text) {
@@ -186,77 +142,6 @@ TEST(Readme, EveryFileItNamesExists) {
     EXPECT_TRUE(fs::exists(kRoot / "src" / path)) << path;
   for (const std::string& path : matches(readme, "hammer_loads (\\w+\\.launch)"))
     EXPECT_TRUE(fs::exists(kRoot / "launch" / path)) << path;
-}
-
-/// The symbol table of doc/model.md: C++, YAML, and message or CSV names.
-struct SymbolNames {
-  Names cpp, yaml, messages, columns;
-};
-
-SymbolNames symbolNames() {
-  SymbolNames names;
-  std::istringstream stream(section(textOf("doc/model.md"), "## 8. Symbols"));
-  for (std::string line; std::getline(stream, line);) {
-    if (line.rfind("| ", 0) != 0) continue;
-    Cells cells;
-    std::istringstream parts(line.substr(1));
-    for (std::string cell; std::getline(parts, cell, '|');) cells.push_back(cell);
-    if (cells.size() < 5) continue;
-    names.cpp.merge(matches(cells[3], "`([^`]+)`"));
-    names.yaml.merge(matches(cells[4], "`([^`]+)`"));
-    if (cells.size() < 6) continue;
-    names.messages.merge(matches(cells[5], "`(\\w+\\.\\w+)`"));
-    names.columns.merge(matches(cells[5], "`evaluate: (\\w+)`"));
-  }
-  return names;
-}
-
-TEST(SymbolTable, EveryCppNameExists) {
-  const Names words = matches(textBelow("src/hammer_loads", ".h"), "(\\w+)");
-  const Names names = symbolNames().cpp;
-  EXPECT_GT(names.size(), 50U);
-  for (const std::string& name : names) {
-    for (const std::string& part : matches(name, "(\\w+)")) EXPECT_EQ(words.count(part), 1U) << name;
-  }
-}
-
-TEST(SymbolTable, EveryKeyExistsAndNoHammerKeyIsMissing) {
-  const Names names = symbolNames().yaml;
-  std::vector<std::string> problems;
-  ParameterMap parameters = readParameterFile((kRoot / "config/hammer_mo100.yaml").string(), problems).value();
-  for (const auto& [key, parameter] : parameters) {
-    const bool is_deviation = key.find("_deviation") != std::string::npos;  // of a symbol that has its row
-    EXPECT_TRUE(is_deviation || names.count(key) == 1U) << key;
-  }
-  merge(readParameterFile((kRoot / "config/pipeline.yaml").string(), problems).value(), parameters);
-  for (const std::string& name : names) EXPECT_EQ(parameters.count(name), 1U) << name;
-}
-
-TEST(SymbolTable, HoldsEveryNumberOfTheMessagesItSpeaksOf) {
-  const Names names = symbolNames().messages;
-  Names messages, fields;
-  for (const std::string& name : names) messages.insert(name.substr(0, name.find('.')));
-  for (const char* message : {"Blow", "PinForces", "Pulse"}) EXPECT_EQ(messages.count(message), 1U) << message;
-  for (const std::string& message : messages) {
-    for (const std::string& field : matches(textOf("msg/" + message + ".msg"), "float64 (\\w+)")) {
-      const bool is_deviation = field.find("_deviation") != std::string::npos;  // of a number that has its row
-      if (!is_deviation || names.count(message + "." + field) == 1U) fields.insert(message + "." + field);
-    }
-  }
-  EXPECT_EQ(names, fields);
-}
-
-TEST(SymbolTable, HoldsEveryColumnOfEvaluate) {
-  const std::string sources =
-      textOf("src/hammer_loads/hammer/evaluate.h") + textOf("src/hammer_loads/hammer/evaluate.cpp");
-  const Names columns = matches(sources, "\"(\\w+_(?:rad|rad_s|rad_s2|m_s2|N|Nm))\"");
-  EXPECT_EQ(columns.size(), 21U);
-  EXPECT_EQ(symbolNames().columns, columns);
-}
-
-TEST(Model, EverySourceFileItNamesExists) {
-  for (const std::string& path : matches(textOf("doc/model.md"), "`((?:linkage|hammer|crank)/\\w+\\.h)`"))
-    EXPECT_TRUE(fs::exists(kRoot / "src/hammer_loads" / path)) << path;
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ inline double angleToBlow(CrankAngle angle) noexcept {
 
 /// Level pulse: half-sine in crank angle, amplitude in proportion to w^2, and the rocker's weight along the tool.
 /// Neglects: Fx and the moment; crank acceleration; Fz before the last lobe (MO-100: -3 % of H) and the lobe's skewness
-/// (MO-100: 6 % of H rms over the turn); turning of the hull. Keeps H and the impulse S of the last lobe at constant
-/// speed exactly.
+/// (MO-100: 6 % of H rms over the turn); turning of the hull. Keeps H and the impulse Q of the last lobe at constant
+/// speed exactly. At work (MO-100, blows of 1000 J): Fx 33 %, Fz 24 %, moment 19 % of the peak off, rms (model.md 3).
 inline HullWrench hullWrenchPulse(const Mechanism& mechanism, const NominalPulse& pulse, const CrankMotion& crank,
                                   Gravity gravity) noexcept {
   const double left = angleToBlow(crank.angle);

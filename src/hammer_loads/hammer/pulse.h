@@ -15,14 +15,14 @@ constexpr double kLeastLobe = 0.1;
 /// Deviates: P0 (15) prints sin(mu t); (16) needs the shift (model.md 7).
 ///
 /// The lobe begins with the last rise through zero that counts, without one with the turn. Without a positive lobe (H
-/// or S not positive) mu = 0, t1 = T.
+/// or Q not positive) mu = 0, t1 = T.
 struct HalfSinePulse {
   double period{};               ///< T [s]
   double amplitude{};            ///< H, peak of Fz [N]
   double peak_time{};            ///< of H [s] after the turn's start
-  double frequency{};            ///< mu = 2 H/S [rad/s]
+  double frequency{};            ///< mu = 2 H/Q [rad/s]
   double start{};                ///< t1 = T - pi/mu [s]; negative when the lobe is longer than half a period of mu
-  double impulse{};              ///< S, from Fz's last rise through zero to the blow [N s]
+  double impulse{};              ///< Q (P0: S), from Fz's last rise through zero to the blow [N s]
   double turn_impulse_x{};       ///< [N s]
   double turn_impulse_z{};       ///< [N s]
   double half_sine_rms_error{};  ///< rms over the turn of (Fz - half sine)/H [-]
@@ -39,7 +39,7 @@ struct TurnPoint {
 /// Pulse from the points of one whole turn, in order of strictly growing time, first at time 0 and last at the blow;
 /// the distances between them may differ. Fewer than 3 points give an empty pulse (all zero).
 /// Peak between points by parabola (error of H some (mu dt)^3/16 of H), zero by a line, impulse there by the cubic that
-/// has the force as its slope; the impulse is stationary at the zero, so S keeps the exactness of the points' impulses.
+/// has the force as its slope; the impulse is stationary at the zero, so Q keeps the exactness of the points' impulses.
 HalfSinePulse pulseOfTurn(const TurnPoint* points, std::size_t count) noexcept;
 
 /// Pulse of a turn at constant crank speed (as P0 assumes), peak and zero found to rounding (1e-12 of the angle for a
