@@ -8,7 +8,7 @@ QUANTITIES = [
     Quantity("blow_rate_Hz", "Blow rate", "turns", "1.0 / period_s", "Hz", 1.0, None,
              "one over the time from blow to blow"),
     Quantity("energy_J", "Blow energy", "blows", "energy_J", "J", 1.0, "energy_deviation_J",
-             "given to the tool by a blow"),
+             "lost by rocker and rod at the blow. Not the tool energy of AEM, which is measured in the tool's steel"),
     Quantity("restitution", "Restitution", "blows", "restitution", "", 1.0, "restitution_deviation",
              "rocker's speed after the blow over that before"),
     Quantity("amplitude_N", "Peak force", "turns", "amplitude_N", "kN", 1e-3, "amplitude_deviation_N",
