@@ -95,9 +95,10 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
   return row;
 }
 
-std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings) {
+std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings, std::uint64_t first_seed) {
   std::vector<DrawingRow> rows;
-  for (int i = 1; i <= drawings; ++i) rows.push_back(drawingRow(settings, static_cast<std::uint64_t>(i), 1.0));
+  for (int i = 0; i < drawings; ++i)
+    rows.push_back(drawingRow(settings, first_seed + static_cast<std::uint64_t>(i), 1.0));
   return rows;
 }
 

@@ -23,7 +23,7 @@ struct DrawingRow {
 /// off: times the deviations that the machine is drawn with; the pipeline has the file's.
 DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off);
 
-std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings);
+std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings, std::uint64_t first_seed = 1);
 
 /// A figure over all drawings.
 struct DrawingSummary {

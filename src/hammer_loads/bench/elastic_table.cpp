@@ -130,11 +130,11 @@ double sinceBlow(const std::vector<simulation::BlowTruth>& blows, double time) {
   return next == blows.begin() ? kInfinity : time - std::prev(next)->time;
 }
 
-std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer) {
+std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer, std::uint64_t seed) {
   MachineSettings base = simulation::workingMo100();
   base.hammer = hammer;
   base.level = Level::kLinkage;
-  base.seed = 77;
+  base.seed = seed;
   const auto rod = [&](double stiffness, double damping_ratio, double play) {
     MachineSettings s = base;
     s.rod = {stiffness, damping_ratio, play};
@@ -163,11 +163,11 @@ ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, L
   return errors;
 }
 
-std::vector<ElasticRow> elasticTable(const Settings& settings) {
+std::vector<ElasticRow> elasticTable(const Settings& settings, const MachineChoice& choice) {
   std::vector<ElasticRow> rows;
-  for (const ElasticKind& kind : elasticKinds(settings.mechanism.parameters())) {
+  for (const ElasticKind& kind : elasticKinds(settings.mechanism.parameters(), choice.seed)) {
     for (const Level level : {Level::kRocker, Level::kLinkage, Level::kElastic})
-      rows.push_back({kind.name, level, elasticErrors(settings, kind, level)});
+      if (choice.has(kind.name + ' ' + nameOf(level))) rows.push_back({kind.name, level, elasticErrors(settings, kind, level)});
   }
   return rows;
 }

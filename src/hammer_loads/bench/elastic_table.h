@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hammer_loads/bench/life_error.h"
+#include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/machine_settings.h"
@@ -47,11 +48,11 @@ struct ElasticKind {
 };
 
 /// The given hammer with crank and rod as it has them, 1 kHz, 4096 counts and speeds unless the name says otherwise.
-std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer);
+std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer, std::uint64_t seed = MachineChoice::kSeed);
 /// Of one session through the pipeline at a level (seeded: the same on every run).
 ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, Level level);
 /// Every machine at levels rocker, linkage and elastic, some twenty seconds of computing.
-std::vector<ElasticRow> elasticTable(const Settings& settings);
+std::vector<ElasticRow> elasticTable(const Settings& settings, const MachineChoice& choice = {});
 
 /// As a table in Markdown.
 std::string markdown(const std::vector<ElasticRow>& rows);

@@ -1,6 +1,7 @@
 /// Cost table, third part: error of a whole session on machines as they are, one flaw each or the usual ones together.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,15 @@ namespace hammer_loads::accuracy {
 /// differ.
 void makeTypical(simulation::MachineSettings& machine);
 
+/// Machines of a table.
+struct MachineChoice {
+  std::string rows;           ///< regular expression that name and rate of a machine contain; empty: all of them
+  std::uint64_t seed{kSeed};  ///< of the machines' random numbers
+  static constexpr std::uint64_t kSeed = 77;
+
+  bool has(const std::string& name) const;
+};
+
 struct MachineRow {
   std::string machine;
   double rate{};  ///< of crank samples [Hz]
@@ -23,7 +33,7 @@ struct MachineRow {
 
 /// Simulated working sessions with the mechanism's filter as shipped (seeded: the same on every run), some minute of
 /// computing.
-std::vector<MachineRow> machineTable(const Settings& settings);
+std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoice& choice = {});
 
 /// As a table in Markdown.
 std::string markdown(const std::vector<MachineRow>& rows);

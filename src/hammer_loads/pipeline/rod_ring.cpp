@@ -9,6 +9,7 @@
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/linkage/rod_spring.h"
 #include "hammer_loads/linkage/shaft_load.h"
+#include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
 
@@ -76,7 +77,7 @@ Rods rodsOf(const RodPrior& prior) noexcept {
 RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   const HammerParameters& p = model.mechanism().parameters();
   const RodPrior prior = priorOf(p.rod, p.rod_deviation);
-  gives_ = prior.gives;
+  gives_ = !HAMMER_LOADS_ABLATE(rod_ring) && prior.gives;
   rods_ = rodsOf(prior);
 }
 
@@ -108,12 +109,13 @@ void RodRing::moveThrough(const CrankAngle& angle, double speed, double accelera
   const double rigid = links.rocker.du * square(speed) + links.rocker.u * acceleration;
   double sum = 0.0;
   for (std::size_t k = 0; k < rods_.size(); ++k) {
+    if (HAMMER_LOADS_ABLATE(three_rods) && k < 2) continue;
     State& s = states_[k];
     if (settles_) s = {settled(rods_[k], lever, p.rocker_inertia_about_pivot, rigid), 0.0};
     sum += square(moved(rods_[k], lever, p.rocker_inertia_about_pivot, rigid, time, s.x, s.speed));
   }
   settles_ = false;
-  acceleration_ = std::sqrt(sum / static_cast<double>(rods_.size()));
+  acceleration_ = std::sqrt(sum / (HAMMER_LOADS_ABLATE(three_rods) ? 1.0 : static_cast<double>(rods_.size())));
 }
 
 void RodRing::move(const CrankStep& step, double from, double to) noexcept {
@@ -216,6 +218,7 @@ double RodRing::restitutionDoubt(double restitution) const noexcept {
 double RodRing::speed() const noexcept {
   double sum = 0.0;
   for (const State& state : states_) sum += square(state.speed);
+  if (HAMMER_LOADS_ABLATE(three_rods)) sum = static_cast<double>(states_.size()) * square(states_.back().speed);
   return moves_ ? share_ * std::sqrt(sum / static_cast<double>(states_.size())) : 0.0;
 }
 
