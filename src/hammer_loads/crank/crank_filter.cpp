@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -103,7 +104,8 @@ int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noe
 /// (6)
 void CrankFilter::correctAngle(Innovation innovation) noexcept {
   const double squared = square(innovation.value);
-  const int side = innovation.exceeds(gate::kImpossible) ? (innovation.value > 0.0 ? 1 : -1) : 0;
+  const int side =
+      !HAMMER_LOADS_ABLATE(surprises) && innovation.exceeds(gate::kImpossible) ? (innovation.value > 0.0 ? 1 : -1) : 0;
   if (side != 0) unexplained_ = side * unexplained_ < 0 ? side : unexplained_ + side;
   countSurprise(side != 0);
   const bool one_sided = std::abs(unexplained_) >= (isLost() ? kOneSidedLost : kOneSided);
@@ -115,7 +117,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
     now_.forgetInertiaCoupling();
     // What does not fit may be the inertia itself: leave it room to be learned again.
     double& inertia = now_.covariance(Belief::kInertia, Belief::kInertia);
-    inertia = std::max(inertia, square(kRelearn));
+    if (!HAMMER_LOADS_ABLATE(relearn)) inertia = std::max(inertia, square(kRelearn));
   }
   if (surprises_ > kManySurprises) now_.forgetInertiaCoupling();  // they would teach it nonsense
   now_.correct(Belief::kAngle, innovation.value, innovation.variance, innovation.by_error);
@@ -132,12 +134,7 @@ bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const
 
 /// What lies before this sample is not known any more; a speed that was kept from there and is contradicted again is
 /// wrong itself.
-Tracking CrankFilter::begin(WeighedSample sample) noexcept {
-  if (slip_.isFresh()) {  // readings that were damaged for a while
-    encoder_.slip(-slip_.last());
-    sample.angle = CrankAngle::wrapToPi(sample.angle + slip_.last());
-    slip_.takeBack();
-  }
+Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
   restart_load_ += 1.0;
   speeds_wait_ = speeds_wait_ || (has_speed_ && sample.isUnsureOfTime(now_.state.speed));
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
@@ -220,7 +217,7 @@ void CrankFilter::takeLoad() noexcept {
 /// follows is as good a sign of a rod as one that contradicts it.
 void CrankFilter::considerRod(double angle, double speed) noexcept {
   double& of_speed = now_.covariance(Belief::kSpeed, Belief::kSpeed);
-  if (!exceeds(speed, of_speed, gate::kImpossible)) return;
+  if (HAMMER_LOADS_ABLATE(rod_considered) || !exceeds(speed, of_speed, gate::kImpossible)) return;
   rod_evidence_.add(now_.state.position.angle, square(speed) / of_speed);
   of_speed += square(speed);
   now_.covariance(Belief::kAngle, Belief::kAngle) += square(angle);

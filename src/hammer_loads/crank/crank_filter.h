@@ -194,7 +194,6 @@ class CrankFilter {
   ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }
   WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
-  bool isSpeedOfOtherSide(const WeighedSample& sample) const noexcept;
   bool isAtTool(double dt) const noexcept;
   bool meetsOtherBlow(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
@@ -232,7 +231,7 @@ class CrankFilter {
   void doubtInertia(double dt) noexcept;
   void forgetInertia() noexcept;
   void takeLoad() noexcept;
-  Tracking begin(WeighedSample sample) noexcept;
+  Tracking begin(const WeighedSample& sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
   double mostTorque() const noexcept;
 

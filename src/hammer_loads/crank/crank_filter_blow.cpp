@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -19,18 +20,6 @@ constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamp
 
 }  // namespace
 
-/// Read after the blow and stamped before it; or the reverse, if it is the speed before the blow: the tool may be met
-/// before the count of the dead centre. Nearer to the other dead centre an angle of the other sign is none of the other
-/// side.
-bool CrankFilter::isSpeedOfOtherSide(const WeighedSample& sample) const noexcept {
-  const CrankAngle& angle = now_.state.position.angle;
-  const bool stays = mirrored_ || now_.tool_met || std::abs(angle.offset) > 0.25 * kTwoPi;
-  if (stays || !sample.speed || !(sample.timing_variance > 0.0)) return false;
-  if (angle.side == Side::kBeforeBlow) return sample.angle > 0.0;
-  const double off = *sample.speed - now_.state.speed / now_.factor;
-  return sample.angle < 0.0 && !exceeds(off, 2.0 * sample.speed_variance, gate::kRare);
-}
-
 bool CrankFilter::isAtTool(double dt) const noexcept {
   return isNearTool(now_.state, dt) && now_.state.speed > kCreeping && !mirrored_;
 }
@@ -38,7 +27,7 @@ bool CrankFilter::isAtTool(double dt) const noexcept {
 /// (4) A crank that is suddenly slower near the dead centre: the tool. True where the belief has taken it up.
 bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
-  if (!before || !(angle.value < 0.0) || !isAtTool(dt)) return false;
+  if (HAMMER_LOADS_ABLATE(tool_met) || !before || !(angle.value < 0.0) || !isAtTool(dt)) return false;
   const bool jitters = sample.timing_variance > 0.0;
   bool seen = angle.exceeds(jitters ? kToolSeenByStamps : kToolSeen);
   if (sample.speed) {
@@ -55,7 +44,7 @@ bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSam
 /// (4) A crank that is slower or faster just after the blow than was expected: a blow unlike those before.
 bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
   const bool after = now_.state.position.angle.side == Side::kAfterBlow && sample.angle > 0.0;
-  if (!after || !isAtTool(dt)) return false;
+  if (HAMMER_LOADS_ABLATE(other_blow) || !after || !isAtTool(dt)) return false;
   const double least = sample.timing_variance > 0.0 ? kToolSeenByStamps : kToolSeen;
   bool by_angle = angle.exceeds(least) && !isContradiction(dt, angle);
   if (sample.speed) {
@@ -109,7 +98,8 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
 /// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
 /// exact.
 std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
-  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || angle_lag_.isThere()) return std::nullopt;
+  if (HAMMER_LOADS_ABLATE(encoder_edge) || encoder_.isFiner() || settings_.angle_noise > 0.0 || angle_lag_.isThere())
+    return std::nullopt;
   constexpr double kEdge = 1e-6;  // of a count
   // Numerical: kEdge
   const double count = encoder_.resolution(), edge_tolerance = kEdge * count;
@@ -140,7 +130,8 @@ void CrankFilter::respectCount(const CrankBelief& last, double dt, bool struck, 
 
 /// A belief is about to pass the blow with contact; the rival goes on without. A crank that rests there passes nothing.
 void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
-  if (!mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed) rival_.begin(belief);
+  if (!HAMMER_LOADS_ABLATE(contact_rival) && !mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed)
+    rival_.begin(belief);
 }
 
 /// (9) What the estimate cannot explain, the rival can.
@@ -154,7 +145,7 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
 /// (9) Half a turn on a wrong branch, and no sample contradicts it: the torque makes up for what the blow did to the
 /// crank, or did not. Where the supply never has such a torque, the other branch is looked at, with one that it has.
 void CrankFilter::doubtContact() noexcept {
-  if (!(now_.state.position.angle.offset > kRingOver)) return;
+  if (HAMMER_LOADS_ABLATE(contact_by_torque) || !(now_.state.position.angle.offset > kRingOver)) return;
   supply_.feel(now_.state.torque);
   if (rival_.isThere()) return;
   const double doubt = consistency_.doubt();

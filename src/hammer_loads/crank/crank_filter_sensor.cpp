@@ -5,6 +5,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/look_back.h"
+#include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -58,7 +59,8 @@ void CrankFilter::considerSensor() noexcept {
 /// and of its speeds was of others.
 bool CrankFilter::findLag() noexcept {
   const double more = -speed_trust_.lag();
-  if (!speed_trust_.lags() || !(angle_lag_.isThere() || more > kLagTakenOff)) return false;
+  if (HAMMER_LOADS_ABLATE(angle_lag) || !speed_trust_.lags() || !(angle_lag_.isThere() || more > kLagTakenOff))
+    return false;
   angle_lag_.take(more, speed_trust_.lagDeviation());
   angle_lag_.begin(now_.encoderSpeed());
   speed_trust_ = {};
@@ -91,7 +93,8 @@ double CrankFilter::takeOffLag(const CrankBelief& last, double dt, bool struck, 
 /// come to judge them.
 bool CrankFilter::takesSpeeds() noexcept {
   speeds_wait_ = speeds_wait_ && !speed_trust_.knows();
-  return speed_trust_.isTrusted() && !speeds_wait_;
+  if (HAMMER_LOADS_ABLATE(speed_trust)) return true;
+  return speed_trust_.isTrusted() && (HAMMER_LOADS_ABLATE(speeds_wait) || !speeds_wait_);
 }
 
 /// Of the speed by the blow that was struck within the step [rad/s].
@@ -111,7 +114,7 @@ void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
 /// (8)
 void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept {
   Innovation innovation = sample.ofSpeed(now_, model_);
-  if (sample.of_speed) {
+  if (sample.of_speed && !HAMMER_LOADS_ABLATE(late_by)) {
     double& by = innovation.by_error[ConstantErrors::kSpeedLag];
     const double of_state = now_.encoderByError(Belief::kSpeed)[ConstantErrors::kSpeedLag], before = by;
     by = -speed_trust_.lateBy(dt, -before, speedJump(struck));
@@ -124,7 +127,8 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
   const double squared = std::min(square(innovation.value), square(gate::kImpossible) * known);
   if (!innovation.exceeds(gate::kImpossible))
     now_.correct(Belief::kSpeed, innovation.value, innovation.variance, innovation.by_error, sample.of_speed);
-  if (restart_load_ > kBeganOfLate) return;  // angles that make no sense say nothing of speeds
+  if (HAMMER_LOADS_ABLATE(speed_noise) || restart_load_ > kBeganOfLate)
+    return;  // angles that make no sense say nothing of speeds
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - known), floor);
 }
@@ -133,7 +137,9 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
 /// ahead.
 double CrankFilter::timeLost(double dt, const Innovation& innovation) const noexcept {
   const double speed = now_.encoderSpeed();
-  if (!(interval_ > 0.0) || std::abs(speed) < kLearnSpeed || !innovation.exceeds(gate::kImpossible)) return 0.0;
+  if (HAMMER_LOADS_ABLATE(lost_samples) || !(interval_ > 0.0) || std::abs(speed) < kLearnSpeed ||
+      !innovation.exceeds(gate::kImpossible))
+    return 0.0;
   if (mayBeRod(innovation)) return 0.0;
   const double intervals = innovation.value / (speed * interval_), whole = std::nearbyint(intervals);
   const bool counted_before = whole < 0.0 && dt + whole * interval_ > 0.5 * interval_;
@@ -146,14 +152,15 @@ double CrankFilter::timeLost(double dt, const Innovation& innovation) const noex
 bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
   const CrankAngle& at = now_.state.position.angle;
   const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
-  return rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
+  return !HAMMER_LOADS_ABLATE(rod_excuse) && rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
 }
 
 /// (5) Whether a step of the reading would differ from the crank's own and from what a rod that rings moves.
 bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
-  return lost_time_ == 0.0 && !mayBeRod(innovation) && at_work && !mirrored_ && !rival_.isOpen() && nearest > kNotSlip;
+  return !HAMMER_LOADS_ABLATE(slip) && lost_time_ == 0.0 && !mayBeRod(innovation) && at_work && !mirrored_ &&
+         !rival_.isOpen() && nearest > kNotSlip;
 }
 
 /// (5) A slip that has shown itself is taken off the reading.

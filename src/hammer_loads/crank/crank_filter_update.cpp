@@ -6,6 +6,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/look_back.h"
+#include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -77,12 +78,8 @@ std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
   const double ratio = innovation.ratio();
   if (!takesSpeeds()) sample.speed.reset();
   fit_ = innovation.logLikelihood();
-  timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
+  if (!HAMMER_LOADS_ABLATE(jitter)) timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
   sample.timing_variance = timing_.variance();
-  if (isSpeedOfOtherSide(sample)) {
-    sample.speed.reset();
-    witness_.reset();
-  }
   const bool without_contact = ratio > square(kToolSeen) && rivalExplains(to.dt, sample);
   if (without_contact) return std::nullopt;
   if (meetsTool(to.dt, innovation, sample) || meetsOtherBlow(to.dt, innovation, sample))
@@ -135,8 +132,9 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   if (!had_contact) return;
   considerSensor();
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
-  learnSupply();
-  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_constant.row(Belief::kFactor));
+  if (!HAMMER_LOADS_ABLATE(supply_law)) learnSupply();
+  if (!HAMMER_LOADS_ABLATE(blow_history))
+    blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_constant.row(Belief::kFactor));
 }
 
 /// (10) Other than the sensor's errors, that of the supply's stiffness is corrected.
@@ -156,14 +154,17 @@ void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept
   else
     strike_consistency_.endHalfTurn();
   const double jitter = square(now_.state.speed) * timing_.variance();
-  roughness_.learn(innovation.value, innovation.total, jitter / innovation.total);
-  errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.encoderByError(Belief::kAngle));
+  if (!HAMMER_LOADS_ABLATE(supply_roughness))
+    roughness_.learn(innovation.value, innovation.total, jitter / innovation.total);
+  if (!HAMMER_LOADS_ABLATE(sensor_errors))
+    errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.encoderByError(Belief::kAngle));
 }
 
 /// (10) A machine that is not explained for seconds may have been learned wrong while the stamps' jitter was not known.
 void CrankFilter::doubtInertia(double dt) noexcept {
   unlearn_after_ -= dt;
-  if (!(consistency_.growth() > mismatch::kUnexplained) || unlearn_after_ > 0.0) return;
+  if (HAMMER_LOADS_ABLATE(doubt_inertia) || !(consistency_.growth() > mismatch::kUnexplained) || unlearn_after_ > 0.0)
+    return;
   unlearn_after_ = kUnlearnEvery;
   doubt_load_ += 1.0;
   forgetInertia();

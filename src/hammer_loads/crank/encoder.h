@@ -172,18 +172,14 @@ class EncoderSlip {
     return Step::kPerhaps;
   }
   void endTurn() noexcept { ++quiet_turns_, ++turns_since_; }
-  /// The last one is some turns old at most: a step back belongs to it, and a restart says that it was none.
-  bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < look_back::kTurnsToKnow; }
-  /// The last one was none.
-  void takeBack() noexcept {
-    --count_;
-    last_ = 0.0;
-  }
   int count() const noexcept { return count_; }             ///< since the beginning
   double last() const noexcept { return last_; }            ///< of the crank's angle [rad]
   double deviation() const noexcept { return deviation_; }  ///< of that [rad]
 
  private:
+  /// The last one is some turns old at most: a step back belongs to it.
+  bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < look_back::kTurnsToKnow; }
+
   static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
   double before_{};  ///< innovation of the sample before [rad]

@@ -98,7 +98,7 @@ void ZeroSearch::endTurn() noexcept {
     times_[i] = turns_ == 1 ? turn_[i] : times_[i] + weight * (turn_[i] - times_[i]);
   if (turns_ < due_) return;
   due_ = turns_ < kEvery ? turns_ + 1 : turns_ + kEvery;
-  evaluate();
+  if (wanted_) evaluate();
 }
 
 ZeroSearch::Table ZeroSearch::tableAt(double zero) const noexcept {
@@ -112,30 +112,39 @@ ZeroSearch::Table ZeroSearch::tableAt(double zero) const noexcept {
   return table;
 }
 
+/// Calls use(Stretch) for the stretches between places that are compared, in order; blow: the place where it is.
+template <typename Use>
+void ZeroSearch::forEachStretch(int blow, const Table& table, const Use& use) const noexcept {
+  double all = 0.0;
+  for (int k = kFrom; k < to_; ++k) all += time(blow, k);
+  const double mean_speed = (to_ - kFrom) * kWidth / all;
+  Stretch s;
+  double ahead = 0.0, elapsed = 0.0;
+  for (int k = kFrom; k < to_; ++k) {
+    s.place = static_cast<std::size_t>(k);
+    s.took = time(blow, k), s.angle = (k - kFrom) * kWidth;
+    if (k > kFrom) {
+      s.work += 0.5 * (table.weight[s.place - 1] + table.weight[s.place]) * kWidth;
+      elapsed += 0.5 * (time(blow, k - 1) + s.took);
+      const double next = mean_speed * elapsed - s.angle;
+      s.by_supply += 0.5 * (ahead + next) * kWidth;
+      ahead = next;
+    }
+    use(s);
+  }
+}
+
 /// Linear least squares of the energy halfway between places; blow: the place where it is.
 ZeroSearch::Vector ZeroSearch::guess(int blow, const Table& table) const noexcept {
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   Eigen::Vector4d score = Eigen::Vector4d::Zero();
-  double all = 0.0;
-  for (int k = kFrom; k < to_; ++k) all += time(blow, k);
-  const double mean_speed = (to_ - kFrom) * kWidth / all;
-  double work = 0.0, by_supply = 0.0, ahead = 0.0, elapsed = 0.0;
-  for (int k = kFrom; k < to_; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double took = time(blow, k), speed = kWidth / took, angle = (k - kFrom) * kWidth;
-    if (k > kFrom) {
-      work += 0.5 * (table.weight[i - 1] + table.weight[i]) * kWidth;
-      elapsed += 0.5 * (time(blow, k - 1) + took);
-      const double next = mean_speed * elapsed - angle;
-      by_supply += 0.5 * (ahead + next) * kWidth;
-      ahead = next;
-    }
-    const double inertia = table.inertia[2 * i + 1], half_square = 0.5 * speed * speed;
+  forEachStretch(blow, table, [&](const Stretch& s) {
+    const double speed = kWidth / s.took, inertia = table.inertia[2 * s.place + 1], half_square = 0.5 * speed * speed;
     const double weight = 1.0 / ((inertia + drive_inertia_) * half_square * speed);
-    const Eigen::Vector4d row(-half_square * drive_inertia_, 1.0, angle, by_supply);
+    const Eigen::Vector4d row(-half_square * drive_inertia_, 1.0, s.angle, s.by_supply);
     information += square(weight) * row * row.transpose();
-    score += square(weight) * (inertia * half_square - work) * row;
-  }
+    score += square(weight) * (inertia * half_square - s.work) * row;
+  });
   const Eigen::Vector4d x = information.ldlt().solve(score);
   Vector unknowns = Vector::Zero();
   unknowns[kInertia] = std::log(std::clamp(x[0], 0.2, 5.0));
@@ -145,42 +154,33 @@ ZeroSearch::Vector ZeroSearch::guess(int blow, const Table& table) const noexcep
 
 /// One step of Gauss and Newton; what it returns has the squares before the step.
 ZeroSearch::Fit ZeroSearch::step(int blow, const Table& table, const Vector& x, bool with_zero) const noexcept {
-  double all = 0.0;
-  for (int k = kFrom; k < to_; ++k) all += time(blow, k);
-  const double mean_speed = (to_ - kFrom) * kWidth / all, drive = drive_inertia_ * std::exp(x[kInertia]);
+  const double drive = drive_inertia_ * std::exp(x[kInertia]);
   Fit fit;
   Vector row = Vector::Zero(), score = Vector::Zero();
   row[kStart] = 1.0;
-  double rest = -x[kStart], work = 0.0, by_supply = 0.0, ahead = 0.0, elapsed = 0.0;
+  double rest = -x[kStart];
   const auto add = [&] {
     fit.information += row * row.transpose();
     score += rest * row;
     fit.squares += square(rest);
   };
   add();
-  for (int k = kFrom; k < to_; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double took = time(blow, k), angle = (k - kFrom) * kWidth;
-    if (k > kFrom) {
-      work += 0.5 * (table.weight[i - 1] + table.weight[i]) * kWidth;
-      elapsed += 0.5 * (time(blow, k - 1) + took);
-      const double next = mean_speed * elapsed - angle;
-      by_supply += 0.5 * (ahead + next) * kWidth;
-      ahead = next;
-    }
-    const double begin = std::sqrt(table.inertia[2 * i] + drive), middle = std::sqrt(table.inertia[2 * i + 1] + drive),
-                 end = std::sqrt(table.inertia[2 * i + 2] + drive);
-    const double energy = std::max(kLeastEnergy, x[kEnergy] + x[kTorque] * angle + x[kStiffness] * by_supply + work);
+  forEachStretch(blow, table, [&](const Stretch& s) {
+    const std::size_t i = 2 * s.place;
+    const double begin = std::sqrt(table.inertia[i] + drive), middle = std::sqrt(table.inertia[i + 1] + drive),
+                 end = std::sqrt(table.inertia[i + 2] + drive);
+    const double energy =
+        std::max(kLeastEnergy, x[kEnergy] + x[kTorque] * s.angle + x[kStiffness] * s.by_supply + s.work);
     const double root = 1.0 / std::sqrt(2.0 * energy), expected = kWidth * root * (begin + 4.0 * middle + end) / 6.0;
     const double by_energy = -0.5 * expected / energy;
     row[kInertia] += kWidth * root * drive * (1.0 / begin + 4.0 / middle + 1.0 / end) / 12.0;
     row[kEnergy] += by_energy;
-    row[kTorque] += by_energy * angle;
-    row[kStiffness] += by_energy * by_supply;
+    row[kTorque] += by_energy * s.angle;
+    row[kStiffness] += by_energy * s.by_supply;
     if (with_zero) row[kZero] -= root * (end - begin);
-    rest += took - expected;
+    rest += s.took - expected;
     add();
-  }
+  });
   const double variance = std::max(fit.squares / (to_ - kFrom - kUnknowns), 1e-12);
   fit.information /= variance;
   score /= variance;

@@ -28,6 +28,8 @@ class ZeroSearch {
   /// The crank's angle by the zero in force [rad], and the time since the sample before [s]; 0: that is not known.
   /// hull: its motion, for the weight. Allocates nothing; 0.2 ms in a turn that is evaluated.
   void add(double angle, double step, const HullMotion& hull) noexcept;
+  /// Whether the fit is computed where it is due; the times are gathered all the same.
+  void setWanted(bool wanted) noexcept { wanted_ = wanted; }
   /// The present turn does not count: its times are not those of a blow.
   void skipTurn() noexcept { skips_ = true; }
   /// The encoder sits elsewhere from now on; turns are collected again.
@@ -64,12 +66,23 @@ class ZeroSearch {
     std::array<double, kPlaces> weight;           ///< halfway [N m]
   };
 
+  /// Between two places of a turn; angle, work of the weight and the lead's integral since the first place.
+  struct Stretch {
+    std::size_t place{};
+    double took{};       ///< [s]
+    double angle{};      ///< [rad]
+    double work{};       ///< [J]
+    double by_supply{};  ///< integral of W t - phi over the angle [rad2]
+  };
+
   void pass(double place_time, std::int64_t place) noexcept;
   double timeAt(double angle) const noexcept;
   void endTurn() noexcept;
   void evaluate() noexcept;
   Table tableAt(double zero) const noexcept;
   double time(int blow, int place) const noexcept { return times_[static_cast<std::size_t>((blow + place) % kPlaces)]; }
+  template <typename Use>
+  void forEachStretch(int blow, const Table& table, const Use& use) const noexcept;
   Vector guess(int blow, const Table& table) const noexcept;
   Fit step(int blow, const Table& table, const Vector& unknowns, bool with_zero) const noexcept;
   double deviationOfZero(const Fit& fit, int blow) const noexcept;
@@ -81,7 +94,7 @@ class ZeroSearch {
   std::int64_t place_{};       ///< the last one that was passed
   std::optional<double> place_time_;
   std::array<double, kPlaces> turn_{}, times_{};  ///< from place to place [s]: of this turn, mean of the last ones
-  bool skips_{};
+  bool skips_{}, wanted_{true};
   int passed_{};                     ///< places of this turn
   double turn_time_{};               ///< mean of the turns [s]
   double step_{};                    ///< mean of the samples [s]
