@@ -9,20 +9,18 @@
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
+#include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kFrom = -0.30, kFromLatest = -0.05;  // [rad] where it begins: some 15 ms before the blow
-constexpr double kTo = 2.2;  // [rad]: by then no rod rings
-constexpr double kContact = 5e-4;  // [s]
-
+constexpr double kFrom = -0.30, kFromLatest = -0.05;    // [rad] where it begins: some 15 ms before the blow
+constexpr double kTo = 2.2;                             // [rad]: by then no rod rings
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
-constexpr std::int64_t kOthersTurn = 4;  // [blows]
+constexpr std::int64_t kOthersTurn = 4;                 // [blows]
 // Numerical: kOthersTurn
-
-constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
+constexpr double kContact = 5e-4, kContactsShare = 0.01;  // [s]; of a restitution: what that makes of it
 
 /// x'' [rad/s2]: of the rocker beside a rigid rod's at the crank's acceleration.
 double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
@@ -76,7 +74,8 @@ void ElasticFollower::begin(const CrankFollower& crank, const CrankFilter& filte
   rigid_fit_ = 0.0;
   alone_ = runsAlone(blow_);
   for (RodFilter& rod : filters_)
-    if (!alone_ || &rod == best_) rod.begin(filter, gravity);
+    if ((!alone_ || &rod == best_) && !(HAMMER_LOADS_ABLATE(tight_pins) && &rod == filters_.data()))
+      rod.begin(filter, gravity);
 }
 
 void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) noexcept {

@@ -59,12 +59,6 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
   result_.outputs.reserve(std::min(sampler_.mostOutputs(), kMostOutputs));
 }
 
-bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
-                          const std::vector<double>& velocities) noexcept {
-  const bool of_boom = boom_ && boom_->jointStates(stamp, names, positions, velocities);
-  return hull_.joints(names, positions) || of_boom;
-}
-
 const SampleResult& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>& names,
                                          const std::vector<double>& positions,
                                          const std::vector<double>& velocities) noexcept {
@@ -273,43 +267,6 @@ bool Pipeline::isKnown() const noexcept {
 void Pipeline::followPeak() noexcept {
   if (crank_.step().known()) seen_peak_ *= std::max(0.0, 1.0 - crank_.step().length() / kPeakLasts);
   seen_peak_ = std::max({seen_peak_, std::abs(result_.wrench.force_x), std::abs(result_.wrench.force_z)});
-}
-
-/// The boom does not rest because a sample gives nothing.
-void Pipeline::swingOn(const WrenchHistory& step) noexcept {
-  if (boom_follows_) {
-    boom_->swing(result_.stamp, step);
-    hull_.vibrates(&*boom_);
-  } else {
-    hull_.rest();
-  }
-  hullMovedAtBlow();
-}
-
-/// Vibration by the IMU where it knows, else by the boom's model; with what the operator does, which no IMU sees.
-void Pipeline::hullMovedAtBlow() noexcept {
-  if (!turn_.blowWaits()) return;
-  std::optional<TipVelocity> speed = hull_.speedAtBlow();
-  if (!speed && boom_) speed = boom_->state().at_blow;
-  if (!speed) return;
-  const TipVelocity driven = boom_ ? boom_->drivenTip() : TipVelocity{};
-  turn_.hullMovedAtBlow({speed->z + driven.z, speed->rate + driven.rate});
-}
-
-/// Measured accelerations of the hull jump at a blow.
-void Pipeline::passBlows() noexcept {
-  for (const CrankStep::Passage& passage : crank_.step())
-    if (passage.strikes) hull_.struck(crank_.step().stampAt(passage.time));
-}
-
-/// The load of links and drive over the step drives the hull that its IMU sees.
-void Pipeline::followHull() noexcept {
-  if (!hull_.followsLoad()) return;
-  const CrankMotion crank = motionOf(result_.crank);
-  const HullWrench displaced = displaced_links_.wrench(crank_.step().links().links, crank.speed, hull_.motion().motion);
-  hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced);
-  crank_.hullMoved(hull_.motion().motion);
-  result_.crank = crank_.estimate();
 }
 
 /// revised: the blow that is being measured stays; whether it was one shows later.

@@ -1,4 +1,4 @@
-// What the crank's motion is to the boom, and what the boom shows of how the machine is used.
+// The crank's motion as it drives hull and boom, and what the boom shows of how the machine is used.
 #include <cmath>
 
 #include "hammer_loads/pipeline/pipeline.h"
@@ -10,6 +10,12 @@ constexpr double kAtWork = 0.3;  // of the nominal speed: blows are struck
 constexpr double kLeadOfZero = 0.6;  // of the time that the crank needs at the blow: what a zero makes of the vibration
 
 }  // namespace
+
+bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
+                          const std::vector<double>& velocities) noexcept {
+  const bool of_boom = boom_ && boom_->jointStates(stamp, names, positions, velocities);
+  return hull_.joints(names, positions) || of_boom;
+}
 
 double Pipeline::stampNoise() const noexcept { return crank_.tracker().timingNoise(); }
 
@@ -40,6 +46,43 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
     boom_->expectCrankLead(crankLead(result_.ends[i].blow.crank_speed_before));
   }
+}
+
+/// The boom does not rest because a sample gives nothing.
+void Pipeline::swingOn(const WrenchHistory& step) noexcept {
+  if (boom_follows_) {
+    boom_->swing(result_.stamp, step);
+    hull_.vibrates(&*boom_);
+  } else {
+    hull_.rest();
+  }
+  hullMovedAtBlow();
+}
+
+/// Vibration by the IMU where it knows, else by the boom's model; with what the operator does, which no IMU sees.
+void Pipeline::hullMovedAtBlow() noexcept {
+  if (!turn_.blowWaits()) return;
+  std::optional<TipVelocity> speed = hull_.speedAtBlow();
+  if (!speed && boom_) speed = boom_->state().at_blow;
+  if (!speed) return;
+  const TipVelocity driven = boom_ ? boom_->drivenTip() : TipVelocity{};
+  turn_.hullMovedAtBlow({speed->z + driven.z, speed->rate + driven.rate});
+}
+
+/// Measured accelerations of the hull jump at a blow.
+void Pipeline::passBlows() noexcept {
+  for (const CrankStep::Passage& passage : crank_.step())
+    if (passage.strikes) hull_.struck(crank_.step().stampAt(passage.time));
+}
+
+/// The load of links and drive over the step drives the hull that its IMU sees.
+void Pipeline::followHull() noexcept {
+  if (!hull_.followsLoad()) return;
+  const CrankMotion crank = motionOf(result_.crank);
+  const HullWrench displaced = displaced_links_.wrench(crank_.step().links().links, crank.speed, hull_.motion().motion);
+  hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced);
+  crank_.hullMoved(hull_.motion().motion);
+  result_.crank = crank_.estimate();
 }
 
 void Pipeline::followMisuse() noexcept {

@@ -1,5 +1,6 @@
 #include "hammer_loads/pipeline/reading_warnings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/util/constants.h"
@@ -37,6 +38,24 @@ void warnOfSpeeds(const SpeedTrust& speeds, const AngleLag& taken_off, std::vect
                         true});
 }
 
+/// Of a unit that is not where or what it is said to be. weight: of the hull by the joint angles.
+std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
+  constexpr double kAlike = 1.2;  // factor between weights: what blows add to a mean of 2 s is less
+  if (trust.turnsTooFast())
+    return format(
+        "it turns by %.3g rad/s, root mean square, as no hull does (in degrees per second that is %.2g rad/s)",
+        trust.rate(), trust.rate() * kDegree);
+  const double size = trust.mean().norm(), expected = std::hypot(weight.x, weight.z);
+  const auto isAlike = [&](double other) { return size < kAlike * other && other < kAlike * size; };
+  const std::string mean = format("on the mean it shows (%.3g, %.3g, %.3g) m/s2 along x, y, z of the hull",
+                                  trust.mean().x(), trust.mean().y(), trust.mean().z());
+  if (isAlike(1.0)) return mean + ": its weight is in g, must be in m/s2";
+  if (!isAlike(expected)) return mean + format(", by the joint angles (%.3g, 0, %.3g)", -weight.x, -weight.z);
+  const double along = -(trust.mean().x() * weight.x + trust.mean().z() * weight.z) / (size * expected);
+  return mean + format(": turned by %.0f degrees from where imu_roll_rad, imu_pitch_rad and imu_yaw_rad put it",
+                       std::acos(std::clamp(along, -1.0, 1.0)) / kDegree);
+}
+
 }  // namespace
 
 void warnOfReadings(const CrankFollower& crank, const CrankFilter& filter, std::vector<Warning>& warnings) {
@@ -57,6 +76,34 @@ void warnOfReadings(const CrankFollower& crank, const CrankFilter& filter, std::
                 filter.encoder().place().place().zero,
                 slip.count() > 1 ? format(", slips so far: %d", slip.count()).c_str() : ""),
          true});
+}
+
+void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
+  if (counts.accepted == 0) return;
+  const HullState& hull = pipeline.hull();
+  const std::vector<std::string> unheard = hull.pitch().unheard();
+  if (!unheard.empty())
+    warnings.push_back(
+        {"pitch joints", "no angle of " + joined(unheard) + " (pitch_joints): weight by hull_pitch_rad", true, true});
+  constexpr double kMostPitch = 1.2;  // [rad]: a hammer that works strikes downward
+  const double pitch = hull.pitch().pitch();
+  if (hull.pitch().known() && std::abs(pitch) > kMostPitch && counts.blows > 0 && !hull.anglesLookLikeDegrees())
+    warnings.push_back({"pitch",
+                        format("hull pitch is %.0f deg at work: its weight is wrong if the tool points down. "
+                               "Check pitch_signs and pitch_offset_rad.",
+                               pitch / kDegree),
+                        true});
+  const bool imu = pipeline.settings().hull_motion == HullMotionSource::kImu;
+  if (imu && hull.imuCounts().accepted == 0)
+    warnings.push_back(
+        {"imu", "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead", true, true});
+  const ImuTrust& trust = hull.imuTrust();
+  const auto& weight = hull.gravity();
+  if (trust.isFrozen()) {
+    warnings.push_back({"imu", "hull_imu: not used, its readings stand still", true});
+  } else if (trust.isLost()) {
+    warnings.push_back({"imu", "hull_imu: not used, " + faultOf(trust, weight), true});
+  }
 }
 
 }  // namespace hammer_loads

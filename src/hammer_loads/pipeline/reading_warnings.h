@@ -1,4 +1,4 @@
-/// Warnings of what the crank's readings show of their sensor at once: speeds that are filtered, a zero that slipped.
+/// Warnings of sensors that their own readings show to be wrong: speeds that are filtered, a zero that slipped, an IMU.
 #pragma once
 
 #include <vector>
@@ -10,5 +10,7 @@
 namespace hammer_loads {
 
 void warnOfReadings(const CrankFollower& crank, const CrankFilter& filter, std::vector<Warning>& warnings);
+/// Hull pitch and hull_imu.
+void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings);
 
 }  // namespace hammer_loads

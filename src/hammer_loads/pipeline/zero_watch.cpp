@@ -31,9 +31,17 @@ double ZeroWatch::follow(const CrankFilter& filter, double reading, double step,
   slips_ = filter.slips();
   // A turn without a tool has other times. A zero that is far off may look like one, but not without a contradiction.
   if (filter.state().position.isMirrored() && !(filter.consistency() > kAgrees)) search_.skipTurn();
+  search_.setWanted(!agrees(filter));
   const double half_count = encoder.isFiner() ? 0.0 : 0.5 * encoder.resolution();
   search_.add(encoder.place().angle(reading + half_count), step, hull);
   return toMove(filter);
+}
+
+/// A filter that explains the readings and shows no error is right: a turn without a tool misleads the search.
+bool ZeroWatch::agrees(const CrankFilter& filter) noexcept {
+  const ConstantErrors& errors = filter.constantErrors();
+  const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];
+  return errors.knows() && filter.consistency() < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
 }
 
 double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
@@ -44,10 +52,7 @@ double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
     const auto& found = search_.found();
     const double readings = std::hypot(filter.timingNoise() * filter.state().speed, kOfStep * search_.stepAngle());
     const double least = found && found->error > 0.0 ? kSearchShowsAhead : kSearchShows;
-    // A filter that explains the readings and shows no error is right: a turn without a tool misleads the search.
-    const bool agrees =
-        errors.knows() && filter.consistency() < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
-    if (found && !agrees && (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
+    if (found && (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
         std::abs(found->error) > std::max(least, kDeviations * std::hypot(found->deviation, readings)))
       return move(found->error);
   }

@@ -35,6 +35,7 @@ class ZeroWatch {
   static constexpr double kNone = 0.3 * kDegree;  ///< an error that was there and is gone leaves less
 
   double move(double angle) noexcept;
+  static bool agrees(const CrankFilter& filter) noexcept;
   double toMove(const CrankFilter& filter) noexcept;
 
   ZeroSearch search_;
