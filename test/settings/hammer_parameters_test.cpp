@@ -168,8 +168,9 @@ TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
 }
 
 TEST(HammerParameters, TheRodsSpringIsOptional) {
-  const TemporaryFile without(hammerYaml()),
-      with(hammerYaml() + "rod_stiffness_N_m: 1e9\nrod_damping_ratio: 0.3\npin_play_m: 0.0002\nlevel: elastic\n");
+  const TemporaryFile without(hammerYaml()), with(hammerYaml() +
+                                                  "rod_stiffness_N_m: 1e9\nrod_damping_ratio: 0.3\npin_play_m: 0.0002\n"
+                                                  "pin_friction_radius_m: 0.0005\nlevel: elastic\n");
   const Checked<Settings> absent = loadFiles(configDirectory(), {without.path()});
   const Checked<Settings> given = loadFiles(configDirectory(), {with.path()});
   ASSERT_TRUE(absent.value && given.value);
@@ -178,9 +179,14 @@ TEST(HammerParameters, TheRodsSpringIsOptional) {
   EXPECT_EQ(rod.stiffness, 1e9);
   EXPECT_EQ(rod.damping_ratio, 0.3);
   EXPECT_EQ(rod.play, 2e-4);
+  EXPECT_EQ(rod.friction_radius, 5e-4);
   EXPECT_EQ(given.value->pipeline.level, Level::kElastic);
   EXPECT_STREQ(nameOf(given.value->pipeline.level), "elastic");
-  EXPECT_EQ(problemsWith({}, "rod_stiffness_N_m: 10\nrod_damping_ratio: -1\npin_play_m: 0.1\n").size(), 3U);
+  EXPECT_EQ(problemsWith({},
+                         "rod_stiffness_N_m: 10\nrod_damping_ratio: -1\npin_play_m: 0.1\n"
+                         "pin_friction_radius_m: 0.1\n")
+                .size(),
+            4U);
 }
 
 TEST(HammerParameters, TheRodIsInDoubtUnlessTheFileSaysOtherwise) {
@@ -191,6 +197,7 @@ TEST(HammerParameters, TheRodIsInDoubtUnlessTheFileSaysOtherwise) {
   const HammerParameters usual = parametersOf(""), known = parametersOf("rod_stiffness_N_m: 1e9\n");
   EXPECT_EQ(usual.rod_deviation.stiffness, 4e8);
   EXPECT_EQ(usual.rod_deviation.play, 1e-4);
+  EXPECT_EQ(usual.rod_deviation.friction_radius, 1e-3);
   EXPECT_EQ(known.rod_deviation.stiffness, 2e8);
   EXPECT_TRUE(priorOf(usual.rod, usual.rod_deviation).gives);
   const HammerParameters weighed =
@@ -198,6 +205,7 @@ TEST(HammerParameters, TheRodIsInDoubtUnlessTheFileSaysOtherwise) {
   EXPECT_EQ(weighed.rod_deviation.stiffness, 1e8);
   EXPECT_EQ(weighed.rod_deviation.damping_ratio, 0.1);
   EXPECT_EQ(weighed.rod_deviation.play, 5e-5);
+  EXPECT_EQ(parametersOf("pin_friction_radius_std_m: 2e-4\n").rod_deviation.friction_radius, 2e-4);
   const HammerParameters rigid = parametersOf("rod_stiffness_deviation_N_m: 0\npin_play_deviation_m: 0\n");
   EXPECT_FALSE(priorOf(rigid.rod, rigid.rod_deviation).gives);
   EXPECT_EQ(problemsWith({}, "rod_stiffness_deviation_N_m: -1\n").size(), 1U);

@@ -7,11 +7,13 @@
 
 namespace hammer_loads {
 
-/// Rod, pins and bearings as one spring along the rod, its damping and the play of the pins.
+/// Rod, pins and bearings as one spring along the rod, its damping and the play of the pins; and what their friction
+/// is, which no level models.
 struct RodSpring {
-  double stiffness{};      ///< k [N/m]; 0: not known
-  double damping_ratio{};  ///< of an oscillator of kReference on k [-]; 0: not known
-  double play{};           ///< free way of both pins together [m], >= 0
+  double stiffness{};        ///< k [N/m]; 0: not known
+  double damping_ratio{};    ///< of an oscillator of kReference on k [-]; 0: not known
+  double play{};             ///< free way of both pins together [m], >= 0
+  double friction_radius{};  ///< radius of a pin's friction circle, coefficient of friction times pin radius [m], >= 0
 
   static constexpr double kReference = kTwoPi * 200.0;                                      ///< [rad/s]
   double damping() const noexcept { return 2.0 * damping_ratio * stiffness / kReference; }  ///< [N s/m]
@@ -31,7 +33,7 @@ struct RodPrior {
 /// Standard deviations where a file says nothing; 0 in the rod: not known.
 inline RodSpring usualDeviation(const RodSpring& rod) noexcept {
   return {rod.stiffness > 0.0 ? 0.2 * rod.stiffness : 0.5 * RodPrior::kStiffness,
-          rod.damping_ratio > 0.0 ? 0.4 * rod.damping_ratio : 0.8 * RodPrior::kDamping, 1e-4};
+          rod.damping_ratio > 0.0 ? 0.4 * rod.damping_ratio : 0.8 * RodPrior::kDamping, 1e-4, 1e-3};
 }
 
 /// deviation: standard, in the units of the rod. A stiffness that is neither known nor in doubt is that of a rigid rod.

@@ -10,6 +10,9 @@
 namespace hammer_loads {
 namespace {
 
+/// In the order of UnknownForce::Source: what to measure next.
+constexpr const char* kUnknownNames[] = {"pin_play_m", "pin_friction_radius_m", "rod_damping_ratio"};
+static_assert(std::size(kUnknownNames) == UnknownForce::kSources);
 constexpr std::size_t kSensor = static_cast<std::size_t>(ConstantErrors::kTable);
 
 }  // namespace
@@ -32,14 +35,15 @@ void BudgetRecorder::Sum::add(double number, const NumberError& error) noexcept 
 
 void BudgetRecorder::Extreme::add(const End& sample) noexcept {
   if (sign * sample.value > sign * end.value) end = sample;
-  const double reaches = sign * sample.value + std::sqrt(sample.readings + sample.rod);
+  const double reaches = sign * sample.value + std::sqrt(sample.own());
   if (reaches > reached) reached = reaches, reach = sample;
 }
 
 BudgetRecorder::End BudgetRecorder::Extreme::known() const noexcept {
-  const double beyond = square(reached - sign * end.value), own = reach.readings + reach.rod;
-  if (!(beyond > end.readings + end.rod) || !(own > 0.0)) return end;
-  return {end.value, end.columns, beyond * reach.readings / own, beyond * reach.rod / own};
+  const double beyond = square(reached - sign * end.value), own = reach.own();
+  if (!(beyond > end.own()) || !(own > 0.0)) return end;
+  return {end.value, end.columns, beyond * reach.readings / own, beyond * reach.rod / own,
+          beyond / own * reach.unknown};
 }
 
 void BudgetRecorder::Range::add(const End& sample) noexcept {
@@ -57,6 +61,7 @@ void BudgetRecorder::Range::endTurn() noexcept {
     square += range * range;
     readings += range * std::sqrt(high.readings + low.readings);
     rod += range * std::sqrt(high.rod + low.rod);
+    unknown += range * (high.unknown + low.unknown).sqrt();
     columns += range * (high.columns - low.columns);
   }
   begun = false;
@@ -69,8 +74,8 @@ void BudgetRecorder::sample(const SampleResult& result) noexcept {
   for (std::size_t i = 0; i < kHullChannels; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (!std::isfinite(all[row])) continue;
-    End end{load[row], result.load_columns.row(row), 0.0, square(rod[row])};
-    end.readings = std::max(0.0, square(all[row]) - square(common[row]) - end.rod);
+    End end{load[row], result.load_columns.row(row), 0.0, square(rod[row]), result.unknown.row(row)};
+    end.readings = std::max(0.0, square(all[row]) - square(common[row]) - end.own());
     ranges_[i].add(end);
   }
 }
@@ -94,7 +99,8 @@ void BudgetRecorder::follow() noexcept {
 }
 
 /// Rows of one name are parts of one source.
-std::vector<BudgetFigure::Source> BudgetRecorder::sources(const Columns& columns, double readings, double rod) const {
+std::vector<BudgetFigure::Source> BudgetRecorder::sources(const Columns& columns, double readings, double rod,
+                                                          const Unknown& unknown) const {
   std::vector<BudgetFigure::Source> sources;
   const auto add = [&](const std::string& name, double variance) {
     if (!(variance > 0.0)) return;
@@ -108,6 +114,8 @@ std::vector<BudgetFigure::Source> BudgetRecorder::sources(const Columns& columns
   for (std::size_t i = 0; i < names_.size(); ++i) add(names_[i], square(columns[static_cast<Eigen::Index>(i)]));
   add("readings", readings);
   add("rod_stiffness_N_m", rod);
+  for (std::size_t i = 0; i < std::size(kUnknownNames); ++i)
+    add(kUnknownNames[i], unknown[static_cast<Eigen::Index>(i)]);
   return sources;
 }
 
@@ -132,7 +140,8 @@ std::vector<BudgetFigure> BudgetRecorder::figures() const {
 std::vector<BudgetFigure::Source> BudgetRecorder::ofRange(std::size_t channel) const {
   const Range& range = ranges_[channel];
   if (!(range.square > 0.0)) return {};
-  return sources(range.columns / range.square, square(range.readings / range.square), square(range.rod / range.square));
+  return sources(range.columns / range.square, square(range.readings / range.square), square(range.rod / range.square),
+                 (range.unknown / range.square).square());
 }
 
 }  // namespace hammer_loads

@@ -38,6 +38,7 @@ class BudgetRecorder {
 
  private:
   using Columns = NumberError::Columns;
+  using Unknown = Eigen::Array<double, UnknownForce::kSources, 1>;
   struct Sum {
     std::uint64_t count{};
     double value{}, own{}, rod{};  ///< the latter of variances
@@ -46,9 +47,12 @@ class BudgetRecorder {
     void add(double number, const NumberError& error) noexcept;
   };
   struct End {
+    double own() const noexcept { return readings + rod + unknown.sum(); }
+
     double value{};
     Columns columns{Columns::Zero()};
-    double readings{}, rod{};  ///< variances
+    double readings{}, rod{};          ///< variances
+    Unknown unknown{Unknown::Zero()};  ///< as above, of UnknownForce
   };
   /// Of a turn: the sample that is extreme, and that which may be by one of its own deviations (life::TurnExtremes).
   struct Extreme {
@@ -64,13 +68,15 @@ class BudgetRecorder {
     Extreme least, greatest;
     bool begun{};
     double square{}, readings{}, rod{};
+    Unknown unknown{Unknown::Zero()};
     Columns columns{Columns::Zero()};
 
     void add(const End& sample) noexcept;
     void endTurn() noexcept;
   };
   void sample(const SampleResult& result) noexcept;
-  std::vector<BudgetFigure::Source> sources(const Columns& columns, double readings, double rod) const;
+  std::vector<BudgetFigure::Source> sources(const Columns& columns, double readings, double rod,
+                                            const Unknown& unknown = Unknown::Zero()) const;
 
   const Pipeline* pipeline_;
   std::array<std::string, kLoadColumns> names_;

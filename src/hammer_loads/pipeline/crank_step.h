@@ -1,6 +1,7 @@
 /// The crank's way over the step between the last two samples, and where on it the blow is passed.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -63,6 +64,10 @@ class CrankStep {
   /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
   const Passage* begin() const noexcept { return passage_.data(); }
   const Passage* end() const noexcept { return passage_.data() + passages_; }
+  /// The rocker hits the tool within it.
+  bool strikes() const noexcept {
+    return std::any_of(begin(), end(), [](const Passage& passage) { return passage.strikes; });
+  }
 
   /// Estimate on one side of a passage that is not smooth: exactly at the blow, so that nothing is lost to rounding
   /// there.

@@ -187,7 +187,8 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
   Loads mean = loads(filter().motion(), drive);
   const LoadCovariance errors = covariance(drive, mean);
   if (!filter().hasStruck()) squares_ = {};
-  squares_.add(square(mean[kBesideRigid]));
+  vibration_ = mean[kBesideRigid];
+  squares_.add(square(vibration_));
   gain_.setZero();
   if (filter().hasStruck()) {
     const double expected = std::max({square(ring), squares_.mean(), std::numeric_limits<double>::min()});

@@ -49,6 +49,8 @@ class ElasticFollower {
   /// the two bodies is weighed with it, or with its own mean since the blow where that is more, by the variances: what
   /// is known no better than that is the moment of an impact within the pins.
   Beside beside(const DriveReaction& drive, double ring) noexcept;
+  /// As of the last beside(): of the rocker beside a rigid rod's [rad/s2].
+  double vibration() const noexcept { return vibration_; }
   /// While it runs: with links as the spring has them. near_blow: transmission angle below which they are flagged
   /// [rad]; angle_deviation: of the crank [rad].
   PinReactions pins(const HullMotion& hull, double near_blow, double angle_deviation) const noexcept;
@@ -129,6 +131,7 @@ class ElasticFollower {
   double late_{};              ///< standard deviation of what all stamps are off alike [s]
   RunningMean<> squares_;      ///< of x'' since the blow [rad2/s4]
   double length_{};            ///< of the last step [s]
+  double vibration_{};         ///< x'' at the last sample [rad/s2]
   Loads gain_{Loads::Zero()};  ///< of beside()'s correction, by x''
 };
 

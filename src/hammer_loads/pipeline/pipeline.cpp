@@ -48,6 +48,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       zero_(ShaftModel(mechanism_, model_.level()), mechanism_.parameters().drive_inertia),
       hull_(mechanism_.parameters(), settings_, boom),
       rod_(model_),
+      unknown_(mechanism_),
       elastic_(model_, settings_.level),
       turn_(model_, columns_, crank_.step(), crank_.tracker(), rod_, elastic_),
       sampler_(model_, columns_, crank_.step(), crank_.tracker(), elastic_, settings_),
@@ -143,6 +144,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
     followHull();
     rod_.follow(crank_.step(), crank_.tracker());
     rod_.take(crank_.tracker(), elastic_.isLost());
+    unknown_.follow(crank_.step().length(), crank_.step().strikes());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
     if (elastic_.runs())
       crank_.considerRod(elastic_.filter().motion().state.angle, elastic_.filter().motion().state.speed);
@@ -195,6 +197,8 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
             : ElasticFollower::Beside{{}, rod_.deviation(links.here.links, result_.crank.speed)};
   result_.rod_ring = rod.deviation;
   result_.rod_followed = gives;
+  unknown_.vibrates(links.here.links, gives ? elastic_.vibration() : std::sqrt(2.0) * rod_.acceleration());
+  result_.unknown = unknown_.squares(links.here.links);
   result_.contact_doubt = contactDoubt(links.here.links, drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());

@@ -15,6 +15,7 @@
 #include "hammer_loads/pipeline/rod_ring.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_follower.h"
+#include "hammer_loads/pipeline/unknown_force.h"
 #include "hammer_loads/pipeline/wrench_sampler.h"
 #include "hammer_loads/pipeline/zero_watch.h"
 
@@ -101,6 +102,7 @@ class Pipeline {
   ZeroWatch zero_;
   HullState hull_;
   RodRing rod_;
+  UnknownForce unknown_;
   ElasticFollower elastic_;
   TurnFollower turn_;
   MisuseFollower misuse_;

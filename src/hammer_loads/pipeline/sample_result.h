@@ -15,6 +15,7 @@
 #include "hammer_loads/pipeline/hull_state.h"
 #include "hammer_loads/pipeline/number_error.h"
 #include "hammer_loads/pipeline/refusal.h"
+#include "hammer_loads/pipeline/unknown_force.h"
 
 namespace hammer_loads {
 
@@ -45,7 +46,7 @@ struct WrenchOutput {
 struct SampleResult {
   /// Of the wrench's deviation, what is beside the crank's motion: squares [N2, N2, N2 m2].
   Eigen::Vector3d squaresBeside() const noexcept {
-    return vectorOf(rod_ring).cwiseAbs2() + vectorOf(contact_doubt).cwiseAbs2();
+    return vectorOf(rod_ring).cwiseAbs2() + vectorOf(contact_doubt).cwiseAbs2() + unknown.rowwise().sum();
   }
 
   /// deviation.wrench and rod_ring where the sample is to stand for a turn's extreme: of a ring whose phase is not
@@ -75,10 +76,11 @@ struct SampleResult {
   HullWrench rod_momentum;  ///< that the rocker may have beside a rigid rod's, where no spring is followed [N s, N m s]
   HullWrench contact_doubt;  ///< as below, of where it is not known whether the tool was met
   HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
-  bool rod_followed{};       ///< else rod_ring is a root mean square over a phase that is not known
-  HullDeviation deviation;   ///< at the sample, with what the hull's motion adds
-  double consistency{};      ///< CrankFilter::consistency()
-  bool inconsistent{};       ///< readings contradict the model, not yet so that samples are withheld
+  UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< likewise, that no level has: squares, by source
+  bool rod_followed{};      ///< else rod_ring is a root mean square over a phase that is not known
+  HullDeviation deviation;  ///< at the sample, with what the hull's motion adds
+  double consistency{};     ///< CrankFilter::consistency()
+  bool inconsistent{};      ///< readings contradict the model, not yet so that samples are withheld
   LinkState links;
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad

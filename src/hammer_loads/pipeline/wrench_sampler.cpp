@@ -127,13 +127,13 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   output.near_blow = state.transmission_angle < near_blow_;
   if (at_sample) {
     output.deviation = result.deviation;
-    boundMean(links, result.doubt.own, result.rod_momentum, output);
+    boundMean(links, result.doubt.own, result, output);
     return output;
   }
   const CrankUncertainty doubt = tracker_->uncertaintyBetween(time, torque_part_);
   const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
   output.deviation = deviation(output.crank, doubt, there, hull, result);
-  boundMean(there, doubt.own, result.rod_momentum, output);
+  boundMean(there, doubt.own, result, output);
   return output;
 }
 
@@ -163,15 +163,16 @@ HullDeviation WrenchSampler::deviation(double time, const CrankEstimate& crank,
                    LinksBeside(*model_, linksAt(*model_, crank.position.angle)), result.hull.motion, result);
 }
 
-/// What a sample's error is of, the momenta at both ends bound; a constant's is the mean of its own. rod: momentum of
-/// its ring.
-void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const HullWrench& rod,
+/// What a sample's error is of, the momenta at both ends bound; a constant's is the mean of its own.
+void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const SampleResult& result,
                               WrenchOutput& output) noexcept {
   if (kind_ != OutputKind::kMean) return;
   HullDeviation& deviation = output.deviation;
-  const HullWrench momentum = elastic_->ranOverStep() ? elastic_->momentumDeviation(drive_)
+  const HullWrench modelled = elastic_->ranOverStep() ? elastic_->momentumDeviation(drive_)
                                                       : momentumDeviation(*model_, drive_, output.crank, links, own) +
-                                                            wrenchOf(vectorOf(rod).cwiseAbs());
+                                                            wrenchOf(vectorOf(result.rod_momentum).cwiseAbs());
+  const HullWrench momentum =
+      modelled + wrenchOf(UnknownForce::kKeepsSign * result.unknown.rowwise().sum().cwiseSqrt());
   const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_deviation_ + momentum + blow_doubt_);
   momentum_deviation_ = momentum;
   blow_doubt_ = {};

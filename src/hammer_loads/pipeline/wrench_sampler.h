@@ -42,7 +42,7 @@ class WrenchSampler {
   void addUpTo(double time, const SampleResult& result) noexcept;
   void setInstant(double time, const HullMotion& hull, WrenchOutput& output) const noexcept;
   void followHull(const HullMotion& hull) noexcept;
-  void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const HullWrench& rod,
+  void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const SampleResult& result,
                  WrenchOutput& output) noexcept;
 
   const HullModel* model_;

@@ -73,7 +73,8 @@ struct RodKey {
 constexpr RodKey kRodKeys[] = {
     {"rod_stiffness_N_m", "rod_stiffness_deviation_N_m", "N/m", &RodSpring::stiffness, kStiffness},
     {"rod_damping_ratio", "rod_damping_ratio_deviation", "", &RodSpring::damping_ratio, kDampingRatio},
-    {"pin_play_m", "pin_play_deviation_m", "m", &RodSpring::play, kPlay}};
+    {"pin_play_m", "pin_play_deviation_m", "m", &RodSpring::play, kPlay},
+    {"pin_friction_radius_m", "pin_friction_radius_std_m", "m", &RodSpring::friction_radius, kPlay}};
 
 /// All optional. Of a hammer whose other constants are all exact the rod is so too, unless the file says otherwise.
 void readRod(ParameterReader& reader, HammerParameters& parameters, std::string& usual) {

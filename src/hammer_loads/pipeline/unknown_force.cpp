@@ -1,0 +1,62 @@
+#include "hammer_loads/pipeline/unknown_force.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/linkage/rod_spring.h"
+#include "hammer_loads/pipeline/rod_ring.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kContacts = 0.012;     // root mean square of the contacts' force over its greatest
+constexpr double kContactsLever = 0.5;  // of l3
+constexpr double kOfDamping = 0.2;      // of the moment, by a unit of the damping ratio
+constexpr double kLasts = 0.08;         // [s]
+constexpr double kHeld = 0.02;          // [s] for which friction has changed what the rod does
+// Prior: WornMachine.IsCoveredWithFrictionAndClearance of kContacts, kContactsLever, kOfDamping, kLasts, kHeld
+constexpr double kLeastLever = 0.01;  // of l3: nearer to the dead centre the rod's force is not that of its moment
+// Numerical: kLeastLever
+
+}  // namespace
+
+UnknownForce::UnknownForce(const Mechanism& mechanism) noexcept : mechanism_(&mechanism) {
+  const RodSpring &rod = mechanism.parameters().rod, &deviation = mechanism.parameters().rod_deviation;
+  const RodPrior prior = priorOf(rod, deviation);
+  if (!prior.gives) return;
+  clearance_ = std::hypot(rod.play, deviation.play);
+  friction_radius_ = std::hypot(rod.friction_radius, deviation.friction_radius);
+  damping_ = deviation.damping_ratio;
+  stiffness_ = prior.rod.stiffness;
+}
+
+void UnknownForce::follow(double step, bool struck) noexcept {
+  if (struck) last_ = now_, now_ = {};
+  since_ = struck ? 0.0 : since_ + step;
+  held_ *= std::exp(-step / kHeld);
+}
+
+void UnknownForce::vibrates(const LinkMotion& links, double vibration) noexcept {
+  const HammerParameters& p = mechanism_->parameters();
+  const double moment = p.rocker_inertia_about_pivot * std::abs(vibration);
+  const double force = moment / (p.lengths.rocker * std::max(kLeastLever, std::abs(links.sin_mu)));
+  held_ = std::max(force, held_);
+  now_ = {std::max(now_.moment, moment), std::max(now_.force, force)};
+}
+
+UnknownForce::Squares UnknownForce::squares(const LinkMotion& links) const noexcept {
+  const HammerParameters& p = mechanism_->parameters();
+  const Greatest most{std::max(now_.moment, last_.moment), std::max(now_.force, last_.force)};
+  const double lasts = std::exp(-square(since_ / kLasts));
+  const double contacts = kContacts * lasts * std::sqrt(2.0 * stiffness_ * clearance_ * most.force);
+  const double on_rocker[] = {kContactsLever * p.lengths.rocker * contacts, friction_radius_ * held_,
+                              kOfDamping * damping_ * lasts * most.moment};
+  const HullWrench of_moment = rockerWrench(*mechanism_, links, 1.0 / p.rocker_inertia_about_pivot);
+  Squares squares = vectorOf(of_moment).cwiseAbs2().replicate<1, kSources>();
+  for (Eigen::Index i = 0; i < kSources; ++i) squares.col(i) *= square(on_rocker[i]);
+  squares.col(kClearance).head<2>().array() += square(contacts);
+  return squares;
+}
+
+}  // namespace hammer_loads

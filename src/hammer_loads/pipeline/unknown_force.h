@@ -1,0 +1,53 @@
+/// Forces after a blow that every level lacks: friction and clearance of the pins, a rod that rings on.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "hammer_loads/hammer/hammer_model.h"
+
+namespace hammer_loads {
+
+/// A generalised force d on the rocker and a force on the connecting rod, of zero mean and new at each blow. Every load
+/// is linear in them: F = F0 + (dF/dpsi'') d/I. Usual encoders do not show them. Their standard deviations therefore
+/// follow from what the hammer file leaves open and from the size of the rod's vibration, and a model that fits the
+/// readings does not reduce them. With N the rod's force, N_max and E its greatest value and its greatest moment on the
+/// rocker over the last revolution, s the time since the blow and D = exp(-(s/80 ms)^2):
+///
+///     clearance   closing a clearance c under N_max turns N_max c into the spring energy F^2/(2 k), F = sqrt(2 k c
+///                 N_max). Contacts last for a small share of the time: 0.012 F D on the rod in each direction, and
+///                 l3/2 times that on the rocker
+///     friction    rho N, with rho the radius of the friction circle; N is held for 20 ms
+///     damping     0.2 zeta E D, with zeta the standard deviation of the damping ratio
+///
+/// c and rho are a value of the file and its standard deviation together, since no level has clearance in two
+/// dimensions, nor friction. The factors are those of simulated machines (doc/model.md 6).
+class UnknownForce {
+ public:
+  enum Source : Eigen::Index { kClearance, kFriction, kDamping, kSources };
+  /// Squares of standard deviations of a load: rows force_x [N2], force_z [N2], torque_y [N2 m2], columns sources.
+  using Squares = Eigen::Matrix<double, 3, kSources>;
+
+  /// Zero for a rod that is rigid and tight by the hammer file. Refers to the mechanism, which must outlive it.
+  explicit UnknownForce(const Mechanism& mechanism) noexcept;
+
+  /// Over a step [s]; struck: it passed a blow.
+  void follow(double step, bool struck) noexcept;
+  /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
+  void vibrates(const LinkMotion& links, double vibration) noexcept;
+  Squares squares(const LinkMotion& links) const noexcept;
+  /// Time for which such a force keeps its sign, 1/(2 pi 200 Hz) [s]: its impulse is at most that times the force.
+  static constexpr double kKeepsSign = 8e-4;
+  // Numerical: kKeepsSign
+
+ private:
+  struct Greatest {
+    double moment{}, force{};  ///< of the rod on the rocker [N m]; in the rod [N]
+  };
+  const Mechanism* mechanism_;
+  double clearance_{}, friction_radius_{}, damping_{};  ///< c [m], rho [m], zeta [-]
+  double stiffness_{};                                  ///< k [N/m]
+  Greatest now_, last_;                                 ///< since the last blow; in the revolution before it
+  double held_{}, since_{1.0};                          ///< N, held [N]; s [s]
+};
+
+}  // namespace hammer_loads
