@@ -27,7 +27,7 @@ double ZeroWatch::move(double angle) noexcept {
 
 double ZeroWatch::follow(const CrankFilter& filter, double reading, double step, const HullMotion& hull) noexcept {
   const Encoder& encoder = filter.encoder();
-  if (filter.slips() != slips_) search_.restart();
+  if (filter.slips() != slips_) search_.restart(), left_ = false;
   slips_ = filter.slips();
   // A turn without a tool has other times. A zero that is far off may look like one, but not without a contradiction.
   if (filter.state().position.isMirrored() && !(filter.consistency() > kAgrees)) search_.skipTurn();
@@ -52,7 +52,8 @@ double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
     const auto& found = search_.found();
     const double readings = std::hypot(filter.timingNoise() * filter.state().speed, kOfStep * search_.stepAngle());
     const double least = found && found->error > 0.0 ? kSearchShowsAhead : kSearchShows;
-    if (found && (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
+    if (found && !(left_ && found->error < 0.0) &&
+        (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
         std::abs(found->error) > std::max(least, kDeviations * std::hypot(found->deviation, readings)))
       return move(found->error);
   }
@@ -60,6 +61,10 @@ double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
   const bool is_off = moved_ != 0.0 ? std::abs(shown) > std::max(kRefined, gate::kUsual * deviation)
                                     : shown > std::max(kFilterShows, gate::kRare * deviation);
   if (is_off) return move(shown);
+  if (moved_ < 0.0 && moved_ > -kRodLooks) {
+    left_ = true;
+    return move(-moved_);
+  }
   settled_ = true;
   return 0.0;
 }

@@ -13,7 +13,8 @@ namespace hammer_loads {
 /// filter's zero is moved there and refined until the filter agrees. Nothing is published meanwhile, nor of a zero that
 /// is off by more than kMost: the parameter has to be set right.
 ///
-/// A small negative error is left to the deviations: an elastic connecting rod looks like one of up to 1.6 deg.
+/// A small negative error is left to the deviations: an elastic connecting rod looks like one of up to 1.6 deg. Where
+/// its pins rub the search shows more, which the filter refines to that: it is taken back.
 class ZeroWatch {
  public:
   static constexpr double kMost = 2.0 * kDegree;  ///< larger errors are not published [rad]
@@ -32,7 +33,8 @@ class ZeroWatch {
   double moved() const noexcept { return moved_; }
 
  private:
-  static constexpr double kNone = 0.3 * kDegree;  ///< an error that was there and is gone leaves less
+  static constexpr double kNone = 0.3 * kDegree;      ///< an error that was there and is gone leaves less
+  static constexpr double kRodLooks = 1.6 * kDegree;  ///< of a right zero, negative
 
   double move(double angle) noexcept;
   static bool agrees(const CrankFilter& filter) noexcept;
@@ -42,6 +44,7 @@ class ZeroWatch {
   int evaluations_{}, slips_{};
   double moved_{};
   bool settled_{};
+  bool left_{};  ///< a negative error found by the search is friction in the pins
 };
 
 }  // namespace hammer_loads
