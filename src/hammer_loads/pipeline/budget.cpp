@@ -10,9 +10,6 @@
 namespace hammer_loads {
 namespace {
 
-/// In the order of UnknownForce::Source: what to measure next.
-constexpr const char* kUnknownNames[] = {"pin_play_m", "pin_friction_radius_m", "rod_damping_ratio"};
-static_assert(std::size(kUnknownNames) == UnknownForce::kSources);
 constexpr std::size_t kSensor = static_cast<std::size_t>(ConstantErrors::kTable);
 
 }  // namespace
@@ -114,8 +111,7 @@ std::vector<BudgetFigure::Source> BudgetRecorder::sources(const Columns& columns
   for (std::size_t i = 0; i < names_.size(); ++i) add(names_[i], square(columns[static_cast<Eigen::Index>(i)]));
   add("readings", readings);
   add("rod_stiffness_N_m", rod);
-  for (std::size_t i = 0; i < std::size(kUnknownNames); ++i)
-    add(kUnknownNames[i], unknown[static_cast<Eigen::Index>(i)]);
+  for (Eigen::Index i = 0; i < UnknownForce::kSources; ++i) add(UnknownForce::kKeys[i], unknown[i]);
   return sources;
 }
 

@@ -65,6 +65,7 @@ class Pipeline {
   const CrankTrust& crankTrust() const noexcept { return trust_; }
   const ZeroWatch& zeroWatch() const noexcept { return zero_; }
   const ElasticFollower& elastic() const noexcept { return elastic_; }
+  const UnknownForce& unknownForce() const noexcept { return unknown_; }
   const HullState& hull() const noexcept { return hull_; }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }
   const PipelineSettings& settings() const noexcept { return settings_; }

@@ -45,18 +45,32 @@ void UnknownForce::vibrates(const LinkMotion& links, double vibration) noexcept 
   now_ = {std::max(now_.moment, moment), std::max(now_.force, force)};
 }
 
+double UnknownForce::contacts() const noexcept {
+  return kContacts * std::sqrt(2.0 * stiffness_ * clearance_ * greatest().force);
+}
+
 UnknownForce::Squares UnknownForce::squares(const LinkMotion& links) const noexcept {
   const HammerParameters& p = mechanism_->parameters();
-  const Greatest most{std::max(now_.moment, last_.moment), std::max(now_.force, last_.force)};
-  const double lasts = std::exp(-square(since_ / kLasts));
-  const double contacts = kContacts * lasts * std::sqrt(2.0 * stiffness_ * clearance_ * most.force);
+  const double lasts = std::exp(-square(since_ / kLasts)), contacts = lasts * this->contacts();
   const double on_rocker[] = {kContactsLever * p.lengths.rocker * contacts, friction_radius_ * held_,
-                              kOfDamping * damping_ * lasts * most.moment};
+                              kOfDamping * damping_ * lasts * greatest().moment};
   const HullWrench of_moment = rockerWrench(*mechanism_, links, 1.0 / p.rocker_inertia_about_pivot);
   Squares squares = vectorOf(of_moment).cwiseAbs2().replicate<1, kSources>();
   for (Eigen::Index i = 0; i < kSources; ++i) squares.col(i) *= square(on_rocker[i]);
   squares.col(kClearance).head<2>().array() += square(contacts);
   return squares;
+}
+
+/// Friction by the rod's greatest force.
+UnknownForce::Largest UnknownForce::largest() const noexcept {
+  constexpr const char* kNames[kSources] = {"the pins' clearance", "the pins' friction", "the rod's damping"};
+  const HammerParameters& p = mechanism_->parameters();
+  const double by_moment = mechanism_->rockerFirstMoment() / p.rocker_inertia_about_pivot;
+  const double forces[kSources] = {contacts() * std::hypot(1.0, kContactsLever * p.lengths.rocker * by_moment),
+                                   friction_radius_ * greatest().force * by_moment,
+                                   kOfDamping * damping_ * greatest().moment * by_moment};
+  const auto i = std::max_element(forces, forces + kSources) - forces;
+  return {std::hypot(forces[kClearance], forces[kFriction], forces[kDamping]), kNames[i], kKeys[i]};
 }
 
 }  // namespace hammer_loads

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "hammer_loads/hammer/hammer_model.h"
 
@@ -35,6 +36,14 @@ class UnknownForce {
   /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;
   Squares squares(const LinkMotion& links) const noexcept;
+  /// Standard deviation of a force on the hull just after a blow [N], all sources together; name of the largest source
+  /// and the key of the hammer file that describes it.
+  struct Largest {
+    double force{};
+    const char *name{}, *key{};
+  };
+  Largest largest() const noexcept;
+  static constexpr const char* kKeys[kSources] = {"pin_play_m", "pin_friction_radius_m", "rod_damping_ratio"};
   /// Time for which such a force keeps its sign, 1/(2 pi 200 Hz) [s]: its impulse is at most that times the force.
   static constexpr double kKeepsSign = 8e-4;
   // Numerical: kKeepsSign
@@ -43,6 +52,12 @@ class UnknownForce {
   struct Greatest {
     double moment{}, force{};  ///< of the rod on the rocker [N m]; in the rod [N]
   };
+  Greatest greatest() const noexcept {
+    return {std::max(now_.moment, last_.moment), std::max(now_.force, last_.force)};
+  }
+  /// Of the contacts, while D is 1 [N].
+  double contacts() const noexcept;
+
   const Mechanism* mechanism_;
   double clearance_{}, friction_radius_{}, damping_{};  ///< c [m], rho [m], zeta [-]
   double stiffness_{};                                  ///< k [N/m]

@@ -135,15 +135,22 @@ std::string zeroFarOff(const Pipeline& pipeline, const CrankFilter& filter) {
                 action.c_str());
 }
 
-/// The rod gives: what a rigid model takes that for is not said of the sensor, nor of the hammer file.
-std::string rodOf(const CrankFilter& filter) {
-  const RodEvidence& rod = filter.rodEvidence();
+/// Neither the sensor nor the hammer file is blamed for what a rigid model takes the rod's elasticity for.
+std::string rodOf(const Pipeline& pipeline, const CrankFilter& filter) {
+  const ElasticFollower& elastic = pipeline.elastic();
+  if (elastic.isUsed()) {
+    const UnknownForce::Largest largest = pipeline.unknownForce().largest();
+    return format(
+        "crank: an unknown force of %.1f kN after the blow is in the deviations, most of it by %s. Measure %s.",
+        1e-3 * largest.force, largest.name, largest.key);
+  }
+  if (elastic.isWanted())
+    return format("crank: level elastic is not used: %s. The deviations contain the rod's vibration.",
+                  elastic.whyNotUsed());
   return format(
-      "crank: just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of "
-      "a turn later by %.2g: rod, pins and bearings give (level: elastic; rod_stiffness_N_m, pin_play_m); "
-      "crank_zero_rad "
-      "looks %.2g deg off; such a rod makes it look 0.2 to 3 deg less than it is: neither is corrected",
-      rod.pickedUp(), rod.later(), filter.constantErrors().estimate()[0] / kDegree);
+      "crank: connecting rod or pins are elastic (%.2g times the expected variance after the blow). Use level: "
+      "elastic.",
+      filter.rodEvidence().pickedUp());
 }
 
 /// As it is now; where it comes and goes, that it did.
@@ -196,7 +203,7 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
   if (now && !gives)
     return warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld > 0), true});
   if (gives) {
-    warnings.push_back({withheld > 0 ? "inconsistent" : "rod", rodOf(filter), true});
+    warnings.push_back({withheld > 0 ? "inconsistent" : "rod", rodOf(pipeline, filter), true});
   } else if (withheld > 0) {
     warnings.push_back({"inconsistent", agreesAgain(filter, withheld), false});
   }
