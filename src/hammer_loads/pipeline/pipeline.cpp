@@ -264,8 +264,9 @@ bool Pipeline::isKnown() const noexcept {
   if (crank_.tracker().driveInertia() > 0.0) return true;  // of a crank at work
   const double most = std::max(1.0, speedScale()) * peak_at_speed_;
   const double peak = turn_.peakForce() > 0.0 ? std::clamp(seen_peak_, kLeastPeak * most, most) : most;
-  const HullWrench& deviation = result_.deviation.wrench;
-  return std::max(deviation.force_x, deviation.force_z) <= kUncertain * settings_.withhold_above * peak;
+  // An unknown force of the rod says nothing of the crank.
+  const Eigen::Vector3d squares = vectorOf(result_.deviation.wrench).cwiseAbs2() - result_.unknown.rowwise().sum();
+  return squares.head<2>().maxCoeff() <= square(kUncertain * settings_.withhold_above * peak);
 }
 
 void Pipeline::followPeak() noexcept {
