@@ -11,17 +11,17 @@
 namespace hammer_loads {
 namespace {
 
-struct Case {
+struct StrikingCase {
   Level level;
   double offset, friction;
 };
 
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const StrikingCase& c, std::ostream* out) {
   *out << (c.level == Level::kRocker ? "rocker" : "linkage") << ", offset " << c.offset << " m, friction "
        << c.friction;
 }
 
-class StrikingPointOfTheNode : public testing::TestWithParam<Case> {};
+class StrikingPointOfTheNode : public testing::TestWithParam<StrikingCase> {};
 
 /// What the blow says of the speeds counts; the impulses and the energy are worked out anew.
 TEST_P(StrikingPointOfTheNode, GivesTheImpulsesOfARigidBodyImpact) {
@@ -75,9 +75,9 @@ TEST_P(StrikingPointOfTheNode, GivesTheImpulsesOfARigidBodyImpact) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Pipeline, StrikingPointOfTheNode,
-                         testing::Values(Case{Level::kRocker, 0.0, 0.4}, Case{Level::kRocker, 0.02, 0.25},
-                                         Case{Level::kRocker, -0.02, 0.25}, Case{Level::kLinkage, 0.015, 0.4},
-                                         Case{Level::kLinkage, -0.03, 0.4}, Case{Level::kLinkage, 0.02, 0.0}));
+                         testing::Values(StrikingCase{Level::kRocker, 0.0, 0.4}, StrikingCase{Level::kRocker, 0.02, 0.25},
+                                         StrikingCase{Level::kRocker, -0.02, 0.25}, StrikingCase{Level::kLinkage, 0.015, 0.4},
+                                         StrikingCase{Level::kLinkage, -0.03, 0.4}, StrikingCase{Level::kLinkage, 0.02, 0.0}));
 
 }  // namespace
 }  // namespace hammer_loads
