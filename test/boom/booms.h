@@ -65,6 +65,16 @@ inline BoomParameters shippedBoomParameters() {
   return boom.value->parameters();
 }
 
+/// The shipped boom with a hammer cylinder that acts directly.
+inline BoomParameters directBoomParameters() {
+  BoomParameters p = shippedBoomParameters();
+  CylinderParameters& hammer = p.cylinders.back();
+  hammer.linkage.reset();
+  hammer.base_x = 0.50, hammer.base_z = 0.28, hammer.rod_x = 0.277, hammer.rod_z = 0.115;
+  hammer.closed_length = 0.99, hammer.stroke = 0.53;
+  return p;
+}
+
 inline Boom shippedBoom() {
   Checked<Boom> boom = Boom::make(shippedUrdf(), shippedBoomParameters());
   if (!boom.value) throw std::runtime_error(boom.problems.front());

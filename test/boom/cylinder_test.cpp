@@ -11,7 +11,7 @@ constexpr double kBulkModulus = 1e9;
 
 class Cylinders : public testing::Test {
  protected:
-  Cylinders() : parameters_(test::shippedBoomParameters()), chain_(*Chain::make(test::shippedUrdf(), {}).value) {}
+  Cylinders() : parameters_(test::directBoomParameters()), chain_(*Chain::make(test::shippedUrdf(), {}).value) {}
   Cylinder make(const CylinderParameters& p) const {
     const Checked<Cylinder> made = Cylinder::make(p, kBulkModulus, chain_);
     if (!made.value) throw std::runtime_error(made.problems.front());
@@ -47,6 +47,7 @@ TEST_F(Cylinders, LengthIsTheDistanceOfTheAnchorsAndArmItsSlope) {
       const auto difference = [&](double step) { return length(p, q + step) - length(p, q - step); };
       const double slope = (45.0 * difference(h) - 9.0 * difference(2 * h) + difference(3 * h)) / (60.0 * h);
       EXPECT_NEAR(at.arm, slope, 1e-11);
+      EXPECT_NEAR(at.arm_rate, (cylinder.at(q + 1e-5).arm - cylinder.at(q - 1e-5).arm) / 2e-5, 1e-8);
       EXPECT_FALSE(at.dead_centre) << p.name << " at " << q;
       EXPECT_GE(at.length, p.closed_length);
       EXPECT_LE(at.length, p.closed_length + p.stroke);

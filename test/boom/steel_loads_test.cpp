@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "boom/linkage_reference.h"
 #include "boom/mass_points.h"
 
 namespace hammer_loads {
@@ -44,45 +45,71 @@ class Steel : public testing::Test {
     return load;
   }
 
-  /// A cylinder's two pins in the base's frame, and the force that holds its joint against everything beyond by the
-  /// work that they do: length by differences.
+  /// A cylinder's pins in the base's frame and the forces on the chain there, by the force that holds its joint against
+  /// everything beyond by the work that they do: length by differences.
+  struct Pin {
+    int link;
+    Vector on_link, place, force;
+  };
   struct Held {
     int beyond;
-    Vector base, rod, push;
+    Real force;
+    std::vector<Pin> pins;  ///< the one on the link beyond comes last
   };
+  static Vector inSpace(const test::LinkageReference::Point& p) { return {p.x(), 0, p.y()}; }
+
   Held held(const Case& c, const CylinderParameters& p) const {
     const int joint = *boom_.chain().jointIndex(p.joint), beyond = boom_.chain().linkBeyond(joint);
-    const auto pins = [&](const JointMotion& motion) {
-      const std::vector<Place> places = row_.places(motion, 0);
-      const auto link = static_cast<std::size_t>(beyond);
-      return std::pair<Vector, Vector>(places[link - 1].at(Vector(p.base_x, 0, p.base_z)),
-                                       places[link].at(Vector(p.rod_x, 0, p.rod_z)));
-    };
-    const auto length = [&](Real step) {
-      JointMotion moved = c.motion;
-      moved.position[joint] += static_cast<double>(step);
-      const auto [base, rod] = pins(moved);
-      return (rod - base).norm();
-    };
-    constexpr Real h = 1.0L / 1024;
-    Real slope = 0;
-    constexpr Real kWeight[] = {4.0L / 5, -1.0L / 5, 4.0L / 105, -1.0L / 280};
-    for (int k = 1; k <= 4; ++k) slope += kWeight[k - 1] / h * (length(k * h) - length(-k * h));
+    const auto link = static_cast<std::size_t>(beyond);
+    const std::vector<Place> places = row_.places(c.motion, 0);
     const Load beyond_demands =
         row_.demanded(row_.points(), c.motion, c.g, [&](const Point& point) { return point.link >= beyond; });
     const Load hammer = tip(c);
-    const Place place = row_.places(c.motion, 0)[static_cast<std::size_t>(beyond)];
-    const Vector axis = place.R * boom_.chain().link(beyond).axis.cast<Real>();
+    const Vector axis = places[link].R * boom_.chain().link(beyond).axis.cast<Real>();
     const Load net{hammer.force - beyond_demands.force, hammer.moment - beyond_demands.moment};
-    const Real torque = axis.dot(net.moment - place.p.cross(net.force));
-    const auto [base, rod] = pins(c.motion);
-    return {beyond, base, rod, -torque / slope * (rod - base).normalized()};
+    const Real torque = axis.dot(net.moment - places[link].p.cross(net.force));
+    const Vector base(p.base_x, 0, p.base_z), rod(p.rod_x, 0, p.rod_z);
+    if (p.linkage) {
+      const Eigen::Vector3d origin = boom_.chain().link(beyond).origin;
+      const Eigen::Vector2d from(origin.x(), origin.z());
+      BucketLinkageParameters lengths = *p.linkage;
+      lengths.branch = -1.0;
+      const test::LinkageReference reference(
+          {{p.base_x - from.x(), p.base_z - from.y()},
+           {lengths.guide_x - from.x(), lengths.guide_z - from.y()},
+           {p.rod_x, p.rod_z}},
+          lengths);
+      const Real q = c.motion.position[joint], force = -torque / reference.arm(q);
+      const test::LinkageReference::Forces f = reference.forces(q);
+      const Matrix turn = places[link - 1].R;
+      const Vector guide(lengths.guide_x, 0, lengths.guide_z);
+      return {beyond,
+              force,
+              {{beyond - 1, base, places[link - 1].at(base), turn * (force * inSpace(f.base))},
+               {beyond - 1, guide, places[link - 1].at(guide), turn * (force * inSpace(f.pivot))},
+               {beyond, rod, places[link].at(rod), turn * (force * inSpace(f.driven))}}};
+    }
+    const auto pins = [&](Real step) {
+      JointMotion moved = c.motion;
+      moved.position[joint] += static_cast<double>(step);
+      const std::vector<Place> then = row_.places(moved, 0);
+      return std::pair<Vector, Vector>(then[link - 1].at(base), then[link].at(rod));
+    };
+    const Real slope = test::LinkageReference::slope(
+        [&](Real step) {
+          const auto [from, to] = pins(step);
+          return (to - from).norm();
+        },
+        0);
+    const auto [from, to] = pins(0);
+    const Vector push = -torque / slope * (to - from).normalized();
+    return {beyond, -torque / slope, {{beyond - 1, base, from, -push}, {beyond, rod, to, push}}};
   }
 
   /// By the part beyond on the part before, from the part before: what the base and the cylinders do to it and what its
-  /// motion demands. `before` of points, `crosses` of cylinders.
-  template <typename Before, typename Crosses>
-  Load fromBefore(const Case& c, const std::vector<Point>& points, Before before, Crosses crosses) const {
+  /// motion demands. `before` of points, `isBefore` of the cylinders' pins.
+  template <typename Before, typename IsBefore>
+  Load fromBefore(const Case& c, const std::vector<Point>& points, Before before, IsBefore isBefore) const {
     const Load all = row_.demanded(row_.points(), c.motion, c.g, [](const Point&) { return true; });
     const Load hammer = tip(c);
     const Load base{all.force - hammer.force, all.moment - hammer.moment};
@@ -90,7 +117,8 @@ class Steel : public testing::Test {
     result.force -= base.force, result.moment -= base.moment;
     for (const CylinderParameters& p : boom_.parameters().cylinders) {
       const Held held = this->held(c, p);
-      if (crosses(held, p)) result.add(held.base, held.push);  // by it on the part before: -push
+      for (const Pin& pin : held.pins)
+        if (isBefore(pin)) result.add(pin.place, -pin.force);
     }
     return result;
   }
@@ -135,12 +163,7 @@ TEST_F(Steel, SectionsAreTheSameFromEitherSide) {
       Row::addBody(link, section.part(), -1.0, points);
       const Load load = fromBefore(
           c, points, [&](const Point& point) { return point.link <= link; },
-          [&](const Held& held, const CylinderParameters& cylinder) {
-            const int base = held.beyond - 1;
-            const bool base_beyond = base > link || (base == link && x({cylinder.base_x, 0, cylinder.base_z}) > 0);
-            const bool rod_beyond = base + 1 > link || (base + 1 == link && x({cylinder.rod_x, 0, cylinder.rod_z}) > 0);
-            return rod_beyond && !base_beyond;
-          });
+          [&](const Pin& pin) { return pin.link < link || (pin.link == link && !(x(pin.on_link) > 0)); });
       Place place = row_.places(c.motion, 0)[static_cast<std::size_t>(link)];
       place.p = place.at(p.origin.cast<Real>());
       place.R = place.R * turn;
@@ -166,7 +189,7 @@ TEST_F(Steel, JointReactionsAreTheSameFromEitherSide) {
       const int beyond = boom_.chain().linkBeyond(j);
       const Load load = fromBefore(
           c, row_.points(), [&](const Point& point) { return point.link < beyond; },
-          [&](const Held& held, const CylinderParameters&) { return held.beyond == beyond; });
+          [&](const Pin& pin) { return pin.link < beyond; });
       Place place = row_.places(c.motion, 0)[static_cast<std::size_t>(beyond) - 1];
       place.p = place.at(boom_.chain().link(beyond).origin.cast<Real>());
       const Wrench& reaction = loads.joint[static_cast<std::size_t>(j)];
@@ -193,12 +216,19 @@ TEST_F(Steel, PinsCarryTheCylindersForce) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Held held = this->held(c, boom_.parameters().cylinders[k]);
       const std::vector<Place> places = row_.places(c.motion, 0);
-      const auto beyond = static_cast<std::size_t>(held.beyond);
-      const Eigen::Vector3d rod = (places[beyond].R.transpose() * held.push).cast<double>();
-      const Eigen::Vector3d base = -(places[beyond - 1].R.transpose() * held.push).cast<double>();
-      EXPECT_LT((loads.pins[k].rod - rod).norm(), 1e-9 * (rod.norm() + 1e4));
-      EXPECT_LT((loads.pins[k].base - base).norm(), 1e-9 * (rod.norm() + 1e4));
-      EXPECT_NEAR(loads.pins[k].rod.norm(), std::abs(torques.cylinder[k].force), 1e-9 * (rod.norm() + 1e4));
+      const auto expectAs = [&](const Eigen::Vector3d& got, const Pin& pin) {
+        const Matrix& axes = places[static_cast<std::size_t>(pin.link)].R;
+        const Eigen::Vector3d want = (axes.transpose() * pin.force).cast<double>();
+        EXPECT_LT((got - want).norm(), 1e-9 * (want.norm() + 1e4));
+      };
+      expectAs(loads.pins[k].base, held.pins.front());
+      expectAs(loads.pins[k].rod, held.pins.back());
+      if (held.pins.size() == 3)
+        expectAs(loads.pins[k].guide, held.pins[1]);
+      else
+        EXPECT_TRUE(loads.pins[k].guide.isZero(0.0));
+      EXPECT_NEAR(loads.pins[k].base.norm(), std::abs(torques.cylinder[k].force),
+                  1e-9 * (loads.pins[k].base.norm() + 1e4));
     }
   }
 }
@@ -212,9 +242,7 @@ TEST_F(Steel, StaticSectionIsTheWorkOfASmallYieldThere) {
     c.motion.velocity.setZero(), c.motion.acceleration.setZero();
     boom_.move(c.motion, c.g);
     SteelLoads loads;
-    BoomLoads torques;
     ASSERT_TRUE(boom_.steelLoads(c.w, true, loads));
-    boom_.loads(c.w, true, torques);
     const std::vector<Place> places = row_.places(c.motion, 0);
     for (std::size_t k = 0; k < boom_.sections().size(); ++k) {
       const Section& section = boom_.sections()[k];
@@ -239,14 +267,14 @@ TEST_F(Steel, StaticSectionIsTheWorkOfASmallYieldThere) {
           for (const Point& point : row_.points())
             if (point.link > section.link()) weight(point);
           for (std::size_t n = 0; n < 3; ++n) {
-            const CylinderParameters& p = boom_.parameters().cylinders[n];
-            const Held held = this->held(c, p);
-            const auto beyond = [&](int on, Real x) {
-              return on > section.link() || (on == section.link() && x > section.parameters().origin.x());
+            const Held held = this->held(c, boom_.parameters().cylinders[n]);
+            const auto isBeyond = [&](const Pin& pin) {
+              return pin.link > section.link() ||
+                     (pin.link == section.link() && pin.on_link.x() > section.parameters().origin.x());
             };
-            if (!beyond(held.beyond, p.rod_x) || beyond(held.beyond - 1, p.base_x)) continue;
-            const Real stretch = (moved(held.rod, step) - held.base).norm() - (held.rod - held.base).norm();
-            sum += torques.cylinder[n].force * stretch;
+            // Those before stay; the linkage's own links go with those beyond, as their pins do.
+            for (const Pin& pin : held.pins)
+              if (!isBeyond(pin)) sum -= pin.force.dot(moved(pin.place, step) - pin.place);
           }
           return sum;
         };
@@ -274,7 +302,7 @@ TEST_F(Steel, VibrationCountsAsWhatItAccelerates) {
   ASSERT_TRUE(boom_.loads(w, false, torques));
   ASSERT_TRUE(boom_.steelLoads(w, false, loads));
   for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_NEAR(loads.pins[k].rod.norm(), std::abs(torques.cylinder[k].force), 1e-9 * loads.pins[k].rod.norm());
+    EXPECT_NEAR(loads.pins[k].base.norm(), std::abs(torques.cylinder[k].force), 1e-9 * loads.pins[k].base.norm());
   EXPECT_NEAR(loads.joint[0].torque.z(), torques.total[0], 1e-8);
   // The same motion, as if the joints made it.
   Boom driven = test::shippedBoom();

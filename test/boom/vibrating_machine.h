@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "boom/booms.h"
+#include "boom/linkage_reference.h"
 
 namespace hammer_loads::test {
 
@@ -109,12 +110,21 @@ class VibratingMachine {
                                  const Eigen::Vector3d& load) const {
     return inverse_ * (load - C_ * v - K_.cwiseProduct(x));
   }
-  /// Oil of both chambers on the arm of the triangle.
+  /// Oil of both chambers on the arm of the triangle or the linkage.
   static double stiffness(const CylinderParameters& p, std::size_t joint, double bulk_modulus) {
-    constexpr std::array<std::complex<double>, 3> kHalfTurnvot{
+    constexpr std::array<std::complex<double>, 3> kPivot{
         std::complex<double>(0.25, 0.40), std::complex<double>(2.60, 0.0), std::complex<double>(1.70, 0.0)};
     const auto length = [&](double q) {
-      return std::abs(kHalfTurnvot[joint] +
+      if (p.linkage) {
+        BucketLinkageParameters lengths = *p.linkage;
+        lengths.branch = -1.0;
+        const Eigen::Vector2d pivot(kPivot[joint].real(), kPivot[joint].imag());
+        const BucketLinkage::Pins pins{Eigen::Vector2d(p.base_x, p.base_z) - pivot,
+                                       Eigen::Vector2d(lengths.guide_x, lengths.guide_z) - pivot,
+                                       {p.rod_x, p.rod_z}};
+        return static_cast<double>(LinkageReference(pins, lengths).length(q));
+      }
+      return std::abs(kPivot[joint] +
                       std::exp(std::complex<double>(0.0, -q)) * std::complex<double>(p.rod_x, p.rod_z) -
                       std::complex<double>(p.base_x, p.base_z));
     };

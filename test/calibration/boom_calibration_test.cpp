@@ -249,5 +249,63 @@ TEST(BoomCalibration, LeavesOutWhatIsHammered) {
   }
 }
 
+/// Three days of one machine: pressures of each day are off by their own offset.
+TEST(BoomCalibration, KnowsHowWellItKnowsFromSeveralDays) {
+  std::mt19937 random(21);
+  std::normal_distribution<> normal;
+  int weights = 0, within = 0;
+  for (int i = 0; i < 8; ++i) {
+    FreeBoom machine = FreeBoom::drawn(random);
+    const auto usual = machine.offset;
+    std::vector<BoomPoints> points;
+    for (int day = 0; day < 3; ++day) {
+      for (std::size_t k = 0; k < 3; ++k) machine.offset[k] = usual[k] + 1e5 * normal(random);
+      points.push_back(pointsOf(machine.record(random, 60.0)));
+    }
+    const BoomModel model(test::shippedBasis(), {TipWeight{}, TipWeight{}, TipWeight{}});
+    const BoomFit fit = fitBoom(model, rowsOf(model, points));
+    for (int n = 0; n < 4; ++n) {
+      const Pose3 q = anyPose(random), truth = machine.staticTorque(q);
+      const std::vector<StaticTorque> found = staticTorques(model, fit, {readAt(machine, q)}).front();
+      for (std::size_t k = 0; k < 3; ++k)
+        ++weights, within += std::abs(found[k].value - truth[k]) < 2.0 * found[k].deviation;
+    }
+  }
+  EXPECT_GE(within, static_cast<int>(0.88 * weights)) << weights;
+}
+
+/// 2e-4 rad where the sensor is right.
+TEST(BoomCalibration, NamesASensorThatIsFaultyInOneOfManyRecordings) {
+  std::mt19937 random(22);
+  FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
+  std::vector<WeighedRecording> recordings;
+  for (const char* name : {"monday", "tuesday"}) recordings.push_back({machine.record(random, 40.0), {}, name});
+  for (const double noise : {3e-3, 2e-4}) {
+    machine.joint_noise = noise;
+    recordings.push_back({machine.record(random, 40.0), {}, "wednesday"});
+    const BoomCalibration found = calibrateBoom(test::shippedBasis(), recordings);
+    recordings.pop_back();
+    EXPECT_EQ(found.problem.find("boom_joint: its sensor's noise is ") == 0, noise > 1e-3) << found.problem;
+    EXPECT_EQ(found.problem.find("in wednesday, must be within 8 times") != std::string::npos, noise > 1e-3);
+    EXPECT_EQ(found.problem.empty(), noise < 1e-3);
+  }
+}
+
+/// A bore sensor that drifts by 8 bar in the last quarter: formal deviations alone would not tell.
+TEST(BoomCalibration, WritesNothingWhereWhatIsHeldOutDoesNotFit) {
+  std::mt19937 random(23);
+  const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
+  BoomRecording recording = machine.record(random, 120.0);
+  EXPECT_TRUE(calibrateBoom(test::shippedBasis(), {{recording, {}}}).determined());
+  Trace& trace = recording.pressure[0][0];
+  for (std::size_t i = 0; i < trace.time.size(); ++i)
+    if (trace.time[i] > 90.0) trace.value[i] += 8e5;
+  const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{recording, {}}});
+  ASSERT_EQ(found.problem, "");
+  EXPECT_FALSE(found.cylinders[0].holds());
+  EXPECT_TRUE(found.cylinders[2].holds());
+  EXPECT_FALSE(found.determined());
+}
+
 }  // namespace
 }  // namespace hammer_loads::calibration

@@ -84,8 +84,8 @@ struct FreeBoom {
       auto& link = boom.chain.links[k];
       link.mass *= 1.0 + 0.1 * normal(random), link.inertia *= 1.0 + 0.1 * normal(random);
       link.com += std::complex<double>(0.03 * normal(random), 0.03 * normal(random));
-      boom.friction[k] = between(random, 0.005, 0.05);
-      boom.friction_force[k] = between(random, 0.0, 0.005) * 14e6 * boom.cylinders[k].bore_area;
+      boom.friction[k] = between(random, 0.0, 0.05);
+      boom.friction_force[k] = between(random, 0.0, 0.016) * 14e6 * boom.cylinders[k].bore_area;
       boom.zero[k] = 0.005 * normal(random), boom.offset[k] = 5e4 * normal(random),
       boom.gain[k] = 0.003 * normal(random);
     }

@@ -100,6 +100,9 @@ TEST_F(Messages, HoldWhatTheSteelCarries) {
   EXPECT_EQ(reactions.load[3].force.z, state.steel.joint[3].force.z());
   EXPECT_EQ(reactions.cylinder_name, (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
   EXPECT_EQ(reactions.base_force_N[0].x, state.steel.pins[0].base.x());
+  EXPECT_EQ(reactions.guide_force_N[2].x, state.steel.pins[2].guide.x());
+  EXPECT_NE(reactions.guide_force_N[2].x, 0.0);
+  EXPECT_EQ(reactions.guide_force_N[0].x, 0.0);
   EXPECT_EQ(reactions.rod_force_N[2].z, state.steel.pins[2].rod.z());
   EXPECT_EQ(jointLoads().cylinder_flags[0], state.cylinder_flags[0]);
   EXPECT_EQ(vibration().damping_ratio[0], 0.05);

@@ -79,6 +79,8 @@ class Boom {
   void moveVibrating(const JointMotion& motion, const JointVector& displacement, const Eigen::Vector3d& g_B) noexcept;
 
   const ChainPose& pose() const noexcept { return pose_; }
+  /// Motion of the joints at this pose, displaced by the vibration where moveVibrating() was called.
+  const JointMotion& motion() const noexcept { return joints_; }
   /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
   Eigen::Vector3d gravityAtTip() const noexcept;
   /// tipJacobian() of the pose.
@@ -178,7 +180,7 @@ class Boom {
   void arrangeResponse() noexcept;
   void takeDeviations(BoomDeviations& result) const noexcept;
   /// Columns: LoadErrors::Inputs. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces
-  /// on their rods' pins.
+  /// on their bases' pins.
   Eigen::MatrixXd response_;
   Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane, nor the rows, half of all, that are then 0
   Eigen::VectorXi rows_in_plane_;      ///< which rows these are, the first in_plane_ of them

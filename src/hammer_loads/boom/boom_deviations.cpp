@@ -39,7 +39,7 @@ void Boom::storeResponse(Eigen::Index column, const JointVector& torque, const S
   for (std::size_t i = 0; i < sections().size(); ++i) append(load.section[i].force), append(load.section[i].torque);
   for (std::size_t i = 0; i < static_cast<std::size_t>(chain_.joints()); ++i)
     append(load.joint[i].force), append(load.joint[i].torque);
-  for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].rod);
+  for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].base);  // as large as the force
 }
 
 /// The rows of response_ that inputs in the plane make other than zero.

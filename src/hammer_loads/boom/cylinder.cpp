@@ -34,6 +34,13 @@ void checkRange(const CylinderParameters& p, std::vector<std::string>& problems)
   check("bore_hose_volume_m3", p.bore_hose_volume, "m3", kLeastVolume, kMostVolume);
   check("rod_hose_volume_m3", p.rod_hose_volume, "m3", kLeastVolume, kMostVolume);
   check("relief_pressure_Pa", p.relief_pressure, "Pa", 1.0, kMostPressure);
+  if (!p.linkage) return;
+  check("rocker_link_base_x_m", p.linkage->guide_x, "m", -figure::kMostLength, figure::kMostLength);
+  check("rocker_link_base_z_m", p.linkage->guide_z, "m", -figure::kMostLength, figure::kMostLength);
+  check("rocker_link_length_m", p.linkage->guide_length, "m", kLeastLength, figure::kMostLength);
+  check("coupler_length_m", p.linkage->coupler_length, "m", kLeastLength, figure::kMostLength);
+  if (std::abs(p.linkage->branch) != 1.0 && p.linkage->branch != 0.0)
+    problems.push_back(format("%s_linkage_branch: %.9g, must be 1 or -1", p.name.c_str(), p.linkage->branch));
 }
 
 /// Friction, and what is off with sensors.
@@ -46,7 +53,8 @@ void checkOptional(const CylinderParameters& p, std::vector<std::string>& proble
   constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
   // Limit: kLeastLength, kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
   within("friction_force_N", p.friction_force, " N", 0.0, 1e6);
-  within("friction_force_deviation_N", p.friction_force_deviation, " N", 0.0, 1e6);
+  if (!std::isnan(p.friction_force_deviation))
+    within("friction_force_deviation_N", p.friction_force_deviation, " N", 0.0, 1e6);
   within("friction", p.friction, "", 0.0, kMostFriction);
   within("friction_deviation", p.friction_deviation, "", 0.0, kMostFriction);
   within("stiffness_deviation", p.stiffness_deviation, "", 0.0, 1.0);
@@ -103,8 +111,14 @@ Checked<Cylinder> Cylinder::make(const CylinderParameters& p, double bulk_modulu
   cylinder.bulk_modulus_ = bulk_modulus;
   cylinder.bore_area_ = 0.25 * kPi * p.bore * p.bore;
   cylinder.rod_area_ = cylinder.bore_area_ - 0.25 * kPi * p.rod_diameter * p.rod_diameter;
-  cylinder.findTriangle(chain);
-  cylinder.checkReach(chain, result.problems);
+  if (std::isnan(p.friction_force_deviation))
+    cylinder.parameters_.friction_force_deviation = CylinderParameters::kFrictionForceDeviation * cylinder.greatestPush();
+  if (!cylinder.hasLimits(chain, result.problems)) return result;
+  if (p.linkage)
+    cylinder.findLinkage(chain, result.problems);
+  else
+    cylinder.findTriangle(chain);
+  if (result.problems.empty()) cylinder.checkReach(chain, result.problems);
   if (result.problems.empty()) result.value = cylinder;
   return result;
 }
@@ -121,34 +135,48 @@ void Cylinder::findTriangle(const Chain& chain) {
   shorter_side_ = std::min(link.axis.cross(a_P).norm(), link.axis.cross(b_P).norm());
 }
 
-void Cylinder::checkReach(const Chain& chain, std::vector<std::string>& problems) const {
+bool Cylinder::hasLimits(const Chain& chain, std::vector<std::string>& problems) const {
+  if (std::isfinite(chain.lower()[joint_]) && std::isfinite(chain.upper()[joint_])) return true;
+  problems.push_back(format("%s_joint: %s, must have limits in robot_description", parameters_.name.c_str(),
+                            parameters_.joint.c_str()));
+  return false;
+}
+
+Cylinder::Reach Cylinder::worstReach(const Chain& chain) const {
   const double lower = chain.lower()[joint_], upper = chain.upper()[joint_];
+  const double open = parameters_.closed_length + parameters_.stroke;
+  Reach worst;
+  const auto judge = [&](double angle) {
+    const double length = at(angle).length, miss = std::max(parameters_.closed_length - length, length - open);
+    if (miss > worst.miss) worst = {miss, angle, length};
+  };
+  judge(lower), judge(upper);
+  if (linkage_) {  // longest and shortest between them are 1e-6 of a length off
+    constexpr int kSteps = 1000;
+    for (int i = 1; i < kSteps; ++i) judge(lower + (upper - lower) * i / kSteps);
+    return worst;
+  }
+  // Longest and shortest where the anchors are in line with the joint, if within the limits.
+  const double longest = std::atan2(sine_, cosine_);
+  for (double angle : {longest - kPi, longest, longest + kPi})
+    if (angle > lower && angle < upper) judge(angle);
+  return worst;
+}
+
+void Cylinder::checkReach(const Chain& chain, std::vector<std::string>& problems) const {
   const char* joint = parameters_.joint.c_str();
   const char* name = parameters_.name.c_str();
   if (!(shorter_side_ > 0.0)) {
     problems.push_back(format("%s_joint: %s, an anchor lies on its axis, must be beside it", name, joint));
     return;
   }
-  if (!std::isfinite(lower) || !std::isfinite(upper)) {
-    problems.push_back(format("%s_joint: %s, must have limits in robot_description", name, joint));
-    return;
-  }
-  // Longest and shortest where the anchors are in line with the joint, if within the limits, else at a limit.
-  const double longest = std::atan2(sine_, cosine_);
-  const double open = parameters_.closed_length + parameters_.stroke;
-  double worst = 0.0, worst_angle = 0.0, worst_length = 0.0;
-  for (double angle : {lower, upper, longest - kPi, longest, longest + kPi}) {
-    if (angle < lower || angle > upper) continue;
-    const double length = std::sqrt(std::max(0.0, steady_ + cosine_ * std::cos(angle) + sine_ * std::sin(angle)));
-    const double miss = std::max(parameters_.closed_length - length, length - open);
-    if (miss > worst) worst = miss, worst_angle = angle, worst_length = length;
-  }
-  if (worst > 0.0) {
-    problems.push_back(
-        format("%s_closed_length_m: %.9g m, cannot close the triangle: at %s = %.6g rad its length must be "
-               "%.6g m, from closed to open are %.6g to %.6g m",
-               name, parameters_.closed_length, joint, worst_angle, worst_length, parameters_.closed_length, open));
-  }
+  const Reach worst = worstReach(chain);
+  if (!(worst.miss > 0.0)) return;
+  problems.push_back(
+      format("%s_closed_length_m: %.9g m, cannot close the %s: at %s = %.6g rad its length must be "
+             "%.6g m, from closed to open are %.6g to %.6g m",
+             name, parameters_.closed_length, linkage_ ? "linkage" : "triangle", joint, worst.angle, worst.length,
+             parameters_.closed_length, parameters_.closed_length + parameters_.stroke));
 }
 
 CylinderPosition Cylinder::at(double joint_angle) const noexcept {
@@ -157,8 +185,15 @@ CylinderPosition Cylinder::at(double joint_angle) const noexcept {
 
 CylinderPosition Cylinder::at(double c, double s) const noexcept {
   CylinderPosition position;
-  position.length = std::sqrt(steady_ + cosine_ * c + sine_ * s);
-  position.arm = (sine_ * c - cosine_ * s) / (2.0 * position.length);
+  if (linkage_) {
+    const BucketLinkagePosition links = linkage_->at(c, s);
+    position.length = links.length, position.arm = links.arm, position.arm_rate = links.arm_rate;
+    position.rod_pin = links.rod_pin, position.driven_pin = links.driven_pin;
+  } else {
+    position.length = std::sqrt(steady_ + cosine_ * c + sine_ * s);
+    position.arm = (sine_ * c - cosine_ * s) / (2.0 * position.length);
+    position.arm_rate = -(0.5 * (cosine_ * c + sine_ * s) + position.arm * position.arm) / position.length;
+  }
   position.dead_centre = !(std::abs(position.arm) >= kDeadCentreRatio * shorter_side_);
   return position;
 }

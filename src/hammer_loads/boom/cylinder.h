@@ -1,8 +1,11 @@
-/// A hydraulic cylinder that holds a joint: triangle of joint and two anchors, chambers, stiffness.
+/// A hydraulic cylinder that holds a joint, directly or through a bucket linkage: geometry, chambers, stiffness.
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <string>
 
+#include "hammer_loads/boom/bucket_linkage.h"
 #include "hammer_loads/boom/chain.h"
 
 namespace hammer_loads {
@@ -12,32 +15,41 @@ struct CylinderParameters {
   std::string name;
   std::string joint;          ///< joint: the moving revolute joint that it spans
   double base_x{}, base_z{};  ///< base_x_m, base_z_m: anchor on the link before the joint, in its frame [m]
-  double rod_x{}, rod_z{};    ///< rod_x_m, rod_z_m: anchor on the link beyond, in its frame [m]
+  double rod_x{}, rod_z{};    ///< rod_x_m, rod_z_m: anchor on the link beyond, in its frame; the coupler's pin there,
+                              ///< where there is a linkage [m]
+  std::optional<BucketLinkageParameters> linkage{};  ///< linkage: bucket; nothing: the rod ends on the link beyond
   double bore{};              ///< bore_m: diameter of the piston [m], > 0
   double rod_diameter{};      ///< rod_diameter_m [m], > 0, < bore
-  double closed_length{};     ///< closed_length_m: between anchors, rod in [m], > stroke
+  double closed_length{};     ///< closed_length_m: between the cylinder's pins, rod in [m], > stroke
   double stroke{};            ///< stroke_m [m], > 0
   double bore_hose_volume{};  ///< bore_hose_volume_m3: oil trapped beside the piston's sweep, hose included, > 0
   double rod_hose_volume{};   ///< rod_hose_volume_m3, > 0
   double relief_pressure{};   ///< relief_pressure_Pa: highest pressure that the chambers hold, > 0
   /// Of the seals, against the rod's motion: friction_force_N and friction times the oil's force [N], [-]; >= 0.
   double friction_force{}, friction{};
-  double friction_force_deviation{}, friction_deviation{kFrictionDeviation};  ///< standard [N], [-]
+  /// Standard [N], [-]; not a number: kFrictionForceDeviation of the greatest push.
+  double friction_force_deviation{std::numeric_limits<double>::quiet_NaN()}, friction_deviation{kFrictionDeviation};
   double stiffness_deviation{kStiffnessDeviation};  ///< standard, of its oil against the common one [-]
   double joint_zero{}, joint_zero_deviation{};      ///< joint_zero_rad: reading of its joint at the description's zero
   /// pressure_offset_Pa: of the bore's sensor, as that of both chambers acts on the force [Pa].
   double pressure_offset{}, pressure_offset_deviation{};
 
-  static constexpr double kFrictionDeviation = 0.03;  ///< where the boom file gives none; seals of 0.5 to 5 %
+  /// Where the boom file gives none, of the greatest push and of the force: a loader crane's cylinders rubbed with a
+  /// constant 1 to 1.6 % of the push, 3 to 6 % of a large force (doc/boom_calibration.md).
+  static constexpr double kFrictionForceDeviation = 0.015, kFrictionDeviation = 0.03;
   static constexpr double kStiffnessDeviation = 0.1;  ///< as above; air and hoses of one machine's cylinders
   // Prior: kFrictionDeviation, kStiffnessDeviation
 };
 
 /// Length and leverage at a joint angle.
 struct CylinderPosition {
-  double length{};     ///< L between the anchors [m]
+  double length{};     ///< L between the cylinder's pins [m]
   double arm{};        ///< dL/dq [m]; positive: extending drives the joint forward
+  double arm_rate{};   ///< d2L/dq2 [m]
   bool dead_centre{};  ///< the arm is so short that no finite force holds the joint
+  /// Of a linkage: x, z of the rod's pin and of the coupler's on the link beyond, from the joint's origin, axes of the
+  /// link before [m].
+  Eigen::Vector2d rod_pin{0.0, 0.0}, driven_pin{0.0, 0.0};
 };
 
 /// Load of the cylinder. At a dead centre force and pressure are NaN.
@@ -52,20 +64,21 @@ struct OilVolumes {
   double bore{}, rod{};
 };
 
-/// Neglects: mass of the cylinder, friction, flexibility of rod, pins and mounts, the tilt of a link by its cylinder's
-/// own compression.
+/// Neglects: mass of the cylinder and its linkage, friction, flexibility of rod, links, pins and mounts, the tilt of a
+/// link by its cylinder's own compression.
 class Cylinder {
  public:
-  /// Arms below this share of the triangle's shorter fixed side are a dead centre: the force would be 50 times the
-  /// torque over that side.
+  /// Arms below this share of the shortest fixed side (joint to either anchor; of a linkage: joint to the coupler's pin,
+  /// or the guide link) are a dead centre: the force would be 50 times the torque over that side.
   static constexpr double kDeadCentreRatio = 0.02;
 
-  /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, and a triangle
-  /// that needs the cylinder shorter than closed or longer than open within the joint's limits. bulk_modulus: of oil
-  /// with hose and air [Pa].
+  /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, a linkage that
+  /// does not close, and a geometry that needs the cylinder shorter than closed or longer than open within the joint's
+  /// limits. bulk_modulus: of oil with hose and air [Pa].
   static Checked<Cylinder> make(const CylinderParameters& parameters, double bulk_modulus, const Chain& chain);
 
   const CylinderParameters& parameters() const noexcept { return parameters_; }
+  const std::optional<BucketLinkage>& linkage() const noexcept { return linkage_; }
   int joint() const noexcept { return joint_; }  ///< index in the chain
 
   CylinderPosition at(double joint_angle) const noexcept;
@@ -87,13 +100,22 @@ class Cylinder {
  private:
   Cylinder() = default;
   void findTriangle(const Chain& chain);
+  void findLinkage(const Chain& chain, std::vector<std::string>& problems);
+  void checkClosure(const Chain& chain, std::vector<std::string>& problems) const;
+  /// Where within the joint's limits the length is farthest from what the stroke allows.
+  struct Reach {
+    double miss{}, angle{}, length{};  ///< [m], [rad], [m]
+  };
+  Reach worstReach(const Chain& chain) const;
+  bool hasLimits(const Chain& chain, std::vector<std::string>& problems) const;
   void checkReach(const Chain& chain, std::vector<std::string>& problems) const;
 
   CylinderParameters parameters_;
   int joint_{};
   double bulk_modulus_{};
   double bore_area_{}, rod_area_{};
-  double shorter_side_{};                ///< of the two from the joint's axis to the anchors [m]
+  std::optional<BucketLinkage> linkage_;
+  double shorter_side_{};                ///< of the two from the joint's axis to the anchors; or of the linkage [m]
   double steady_{}, cosine_{}, sine_{};  ///< L^2 = steady + cosine cos q + sine sin q [m2]
 };
 

@@ -12,10 +12,11 @@ namespace hammer_loads {
 
 constexpr int kMaxSections = 32;
 
-/// Forces of a cylinder ON the links that its two pins join [N].
+/// Forces of a cylinder and its linkage ON the links that they join [N].
 struct PinForces3d {
-  Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< on the link before, in its axes
-  Eigen::Vector3d rod = Eigen::Vector3d::Zero();   ///< on the link beyond, in its axes
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();   ///< by the cylinder on the link before, in its axes
+  Eigen::Vector3d guide = Eigen::Vector3d::Zero();  ///< by the guide link on the link before, in its axes; or none
+  Eigen::Vector3d rod = Eigen::Vector3d::Zero();    ///< by the rod or the coupler on the link beyond, in its axes
 };
 
 /// Where a cylinder stands at its dead centre, all that it carries is NaN: its pins, the reaction of its joint, and the
@@ -51,12 +52,19 @@ class SteelLoadFinder {
   const std::vector<Section>& sections() const noexcept { return sections_; }
 
  private:
-  /// A cylinder whose rod's pin pushes on the chain beyond a joint.
+  /// A cylinder with its pins on the two links of a joint.
   struct Anchors {
     Cylinder cylinder;
-    int beyond{};                   ///< link of the rod's pin; the base's is on the one before
-    Eigen::Vector3d base_P, rod_L;  ///< in the frames of the two links [m]
+    int beyond{};                              ///< link of the rod's pin; the others are on the one before
+    Eigen::Vector3d base_P, guide_P, rod_L;    ///< in the frames of the two links [m]
   };
+  enum Pin { kBase, kGuide, kRod, kPins };
+  /// A pin whose force acts on what lies beyond a section, of a cylinder that has others before it.
+  struct Crossing {
+    std::size_t cylinder{};
+    Pin pin{};
+  };
+  std::vector<Crossing> crossing(const Section& section) const;
   /// In the root's frame, moments about its origin.
   struct Working;
 
@@ -68,7 +76,7 @@ class SteelLoadFinder {
   Chain chain_;
   std::vector<Anchors> anchors_;
   std::vector<Section> sections_;
-  std::vector<std::vector<std::size_t>> crossing_;  ///< per section: cylinders with one pin on each side
+  std::vector<std::vector<Crossing>> crossing_;  ///< per section
 };
 
 }  // namespace hammer_loads

@@ -28,6 +28,7 @@ class Finder {
     for (const WeighedRecording& r : recordings) {
       points_.push_back(pointsOf(r.recording));
       weights_.push_back(r.weight);
+      result_.names.push_back(r.name);
       result_.seconds += points_.back().seconds;
       result_.points += points_.back().points.size(), result_.left_out += points_.back().left_out;
     }
@@ -69,6 +70,8 @@ class Finder {
         result_.problem += line;
       }
     }
+    for (const std::string& line : noisySensors(model.given().chain(), points_, result_.names))
+      result_.problem += (result_.problem.empty() ? "" : "\n") + line;
     return result_.problem.empty();
   }
 
@@ -115,6 +118,7 @@ class Finder {
       }
       for (std::size_t i = 0; i < late.size(); ++i)
         if (late[i].cylinder == k) out.push_back(unseen[static_cast<Eigen::Index>(i)]);
+      for (std::size_t r = 0; r < points_.size() && points_.size() > 1; ++r) c.left_in.push_back(rmsOf(rows, after, k, r));
       c.rows = force.size(), c.force = rms(force), c.left = rms(left), c.before = rms(was), c.held_out = rms(out);
       const auto friction = [&](const Eigen::VectorXd& x) {
         return model.valueOf(x, BoomUnknown::kFrictionForce, k) + c.force * model.valueOf(x, BoomUnknown::kFriction, k);
@@ -122,6 +126,15 @@ class Finder {
       c.friction = friction(fit.x), c.friction_deviation = deviationOf(fit, gradientOf(friction, fit.x));
       result_.cylinders.push_back(c);
     }
+  }
+
+  static double rmsOf(const std::vector<BoomRow>& rows, const Eigen::VectorXd& left, std::size_t cylinder,
+                      std::size_t recording) {
+    std::vector<double> own;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i].cylinder == cylinder && rows[i].recording == recording)
+        own.push_back(left[static_cast<Eigen::Index>(i)]);
+    return rms(own);
   }
 
   void fillJoints(const BoomModel& model, const BoomFit& fit) {
@@ -165,6 +178,10 @@ class Finder {
   void describe(const BoomModel& model, const Boom& found, const Unknown& u, Estimate& e) {
     if (u.kind == BoomUnknown::kTipWeight) {
       e.unit = "kg", e.meaning = "hung on the tip";
+      return;
+    }
+    if (u.kind == BoomUnknown::kRecording) {
+      e.unit = "Pa", e.meaning = "not of the boom file; " + result_.names[u.recording];
       return;
     }
     CylinderParameters& cylinder = result_.found.cylinders[u.of];
@@ -256,7 +273,8 @@ class Finder {
 
 bool BoomCalibration::determined() const {
   return problem.empty() &&
-         std::all_of(joints.begin(), joints.end(), [](const JointWeight& j) { return j.part() <= kLimit; });
+         std::all_of(joints.begin(), joints.end(), [](const JointWeight& j) { return j.part() <= kLimit; }) &&
+         std::all_of(cylinders.begin(), cylinders.end(), [](const CylinderFit& c) { return c.holds(); });
 }
 
 BoomCalibration calibrateBoom(const BoomBasis& basis, const std::vector<WeighedRecording>& recordings,

@@ -1,6 +1,7 @@
 /// A boom that is weighed by its own cylinders: masses, friction and zeros from two minutes of free movement.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@ namespace hammer_loads::calibration {
 struct WeighedRecording {
   BoomRecording recording;
   TipWeight weight;
+  std::string name{};  ///< of its bag, for texts
 };
 
 /// How well the weight of all beyond a joint is known, over the poses of the recording.
@@ -32,9 +34,14 @@ struct CylinderFit {
   double force{};               ///< rms [N]
   double left{};                ///< rms, with the values found [N]
   double before{};              ///< rms, with those given [N]
+  std::vector<double> left_in;  ///< the same of each recording, where there are several [N]; NaN: no rows there
   double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
   double friction{};            ///< at that force [N]
   double friction_deviation{};  ///< standard [N]
+  /// What is held out fits far worse than what was fitted: the model does not hold, whatever its deviations say.
+  bool holds() const { return !(held_out > std::max(kHeldOutOverLeft * left, kHeldOutOverForce * force)); }
+
+  static constexpr double kHeldOutOverLeft = 2.0, kHeldOutOverForce = 0.04;
 };
 
 /// One row as a picture shows it.
@@ -49,6 +56,8 @@ struct BoomCalibration {
   /// A larger part of a joint's static torque leaves it undetermined, and then nothing is written: values belong
   /// together.
   static constexpr double kLimit = 0.02;
+
+  std::vector<std::string> names;  ///< of the recordings
 
   std::string problem;  ///< why there is nothing
   double seconds{};

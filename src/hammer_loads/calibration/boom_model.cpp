@@ -64,6 +64,9 @@ BoomModel::BoomModel(const BoomBasis& basis, const std::vector<TipWeight>& weigh
     add(BoomUnknown::kGain, 0.0, basis.gain_deviation);
     add(BoomUnknown::kZero, p.joint_zero, basis.zero_deviation);
   }
+  for (std::size_t k = 0; k < given_.cylinders().size() && weights.size() > 1; ++k)
+    for (std::size_t r = 0; r < weights.size(); ++r)
+      unknowns_.push_back({BoomUnknown::kRecording, k, 0.0, basis.recording_deviation, r});
   for (std::size_t r = 0; r < weights.size(); ++r)
     if (weights[r].deviation > 0.0)
       unknowns_.push_back({BoomUnknown::kTipWeight, r, weights[r].mass, weights[r].deviation});
@@ -101,6 +104,8 @@ std::string BoomModel::nameOf(std::size_t unknown) const {
       return cylinder + "'s bore and gain of its sensors";
     case BoomUnknown::kZero:
       return cylinder + "_joint_zero_rad";
+    case BoomUnknown::kRecording:
+      return cylinder + "'s offset in recording " + std::to_string(u.recording + 1);
     case BoomUnknown::kTipWeight:
       break;
   }
@@ -116,19 +121,19 @@ std::vector<WeighedLink> BoomModel::linksAt(const Eigen::VectorXd& x) const {
   for (const int index : links_) links.push_back(given_.chain().body(index));
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     const double value = valueOf(x, i);
-    WeighedLink* link = unknowns_[i].kind == BoomUnknown::kTipWeight ? nullptr : &links[unknowns_[i].of];
+    const std::size_t of = unknowns_[i].of;
     switch (unknowns_[i].kind) {
       case BoomUnknown::kMass:
-        link->mass *= std::exp(value);
+        links[of].mass *= std::exp(value);
         break;
       case BoomUnknown::kComX:
-        link->com_x += value;
+        links[of].com_x += value;
         break;
       case BoomUnknown::kComZ:
-        link->com_z += value;
+        links[of].com_z += value;
         break;
       case BoomUnknown::kInertia:
-        link->inertia *= std::exp(value);
+        links[of].inertia *= std::exp(value);
         break;
       default:
         break;
@@ -209,8 +214,16 @@ double BoomModel::rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoi
   return boom.cylinderPosition(cylinder).arm * point.motion.velocity[boom.cylinders()[cylinder].joint()];
 }
 
+double BoomModel::recordingOffset(const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording) const {
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& u = unknowns_[i];
+    if (u.kind == BoomUnknown::kRecording && u.of == cylinder && u.recording == recording) return valueOf(x, i);
+  }
+  return 0.0;
+}
+
 /// The rod pushes with the oil's force less what rubs against its motion.
-double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder,
+double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording,
                              const BoomPoint& point) const {
   const auto unknown = [&](BoomUnknown kind, double otherwise) { return valueOf(x, kind, cylinder, otherwise); };
   const Cylinder& c = boom.cylinders()[cylinder];
@@ -221,7 +234,7 @@ double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::si
                          unknown(BoomUnknown::kFriction, p.friction) * std::abs(force);
   const double oil = force + (speed < 0.0 ? -rubbing : rubbing) + unknown(BoomUnknown::kViscous, 0.0) * speed;
   return oil * (1.0 + unknown(BoomUnknown::kGain, 0.0)) +
-         unknown(BoomUnknown::kOffset, p.pressure_offset) * c.boreArea();
+         (unknown(BoomUnknown::kOffset, p.pressure_offset) + recordingOffset(x, cylinder, recording)) * c.boreArea();
 }
 
 double BoomModel::measuredForce(std::size_t cylinder, const BoomPoint& point) const {

@@ -22,11 +22,12 @@ struct BoomBasis {
   RobotDescription urdf;
   BoomParameters parameters;
   Eigen::Vector3d g_B{0.0, 0.0, -kStandardGravity};  ///< gravity in the root's axes [m/s2]
-  double mass_deviation{0.15};            ///< standard, of each link's mass, relative: a sum of drawn parts [-]
+  double mass_deviation{0.25};            ///< standard, of each link's mass, relative: drawings lack hoses, oil, valves [-]
   double com_deviation{0.10};             ///< of each link's centre of mass in x and z each [m]
   double inertia_deviation{0.30};         ///< of each link's inertia, relative [-]
   double zero_deviation{0.005};           ///< of each joint's zero: 0.3 deg [rad]
   double offset_deviation{5e4};           ///< of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
+  double recording_deviation{5e4};        ///< by which a bore's pressure differs from one recording to the next [Pa]
   double gain_deviation{0.005};           ///< of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
   double friction_deviation{0.05};        ///< of the part of friction that goes with the force [-]
   double friction_force_deviation{0.02};  ///< of the part that does not, over the greatest push [-]
@@ -46,6 +47,7 @@ enum class BoomUnknown {
   kGain,           ///< of a cylinder's measured force, less one [-]
   kZero,           ///< of a cylinder's joint [rad]
   kTipWeight,      ///< of a recording [kg]
+  kRecording,      ///< of a cylinder's bore pressure in one recording, beside kOffset [Pa]
 };
 
 struct Unknown {
@@ -53,6 +55,7 @@ struct Unknown {
   std::size_t of;      ///< index of cylinder (links: of the cylinder whose joint they hang on) or recording
   double given{};      ///< the value at which its entry is zero
   double deviation{};  ///< standard, before the recording
+  std::size_t recording{};  ///< of kRecording
 };
 
 /// A boom with the unknowns at some values. Entries of the vector are in their standard deviations, zero as given.
@@ -84,8 +87,9 @@ class BoomModel {
   double jointZero(const Eigen::VectorXd& x, std::size_t cylinder) const;
   /// Puts the boom where the joints are at a point, zeros allowed for.
   void move(Boom& boom, const Eigen::VectorXd& x, const BoomPoint& point) const;
-  /// After that: force that the cylinder's pressures show [N]. NaN at a dead centre.
-  double shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder, const BoomPoint& point) const;
+  /// After that: force that the cylinder's pressures show in a recording [N]. NaN at a dead centre.
+  double shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording,
+                    const BoomPoint& point) const;
   /// The rod's speed [m/s]: positive as it comes out.
   static double rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoint& point);
   /// What pressures show as given, without what the unknowns do to it [N].
@@ -96,6 +100,7 @@ class BoomModel {
 
  private:
   BoomParameters withLinksAt(const Eigen::VectorXd& x) const;
+  double recordingOffset(const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording) const;  ///< [Pa]
   double massOf(const std::string& link) const;  ///< as given [kg]
   std::vector<WeighedLink> linksAt(const Eigen::VectorXd& x) const;
 

@@ -22,6 +22,12 @@ struct BoomRecording {
   std::vector<double> working;                 ///< times at which the hammer's crank turned [s]
 };
 
+/// Adds what goes on `later` seconds after the first one began: the next split of one recording.
+void append(const BoomRecording& next, double later, BoomRecording& recording);
+
+/// Time of the last reading [s].
+double endOf(const BoomRecording& recording);
+
 /// All sensors at one instant, from a parabola in time through the readings around it: joints and pressures
 /// are smoothed alike, so that the one fits the other.
 struct BoomPoint {

@@ -100,9 +100,18 @@ std::string panelOf(const BoomCalibration& c, std::size_t cylinder, Panel panel)
 std::string cylinderLine(const CylinderFit& f) {
   return format(
       "%-20s %zu instants, force %.0f N rms; off before %.1f %%, left %.2f %%, last quarter by the others %.2f "
-      "%%; friction %.0f +- %.0f N (%.1f %%)\n",
+      "%%%s; friction %.0f +- %.0f N (%.1f %%)\n",
       f.name.c_str(), f.rows, f.force, percent(f.before, f.force), percent(f.left, f.force),
-      percent(f.held_out, f.force), f.friction, f.friction_deviation, percent(f.friction, f.force));
+      percent(f.held_out, f.force), f.holds() ? "" : ": DOES NOT FIT, nothing is written", f.friction, f.friction_deviation, percent(f.friction, f.force));
+}
+
+/// What is left in each recording; nothing where there is one.
+std::string recordingLine(const CylinderFit& f, const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t r = 0; r < f.left_in.size(); ++r)
+    if (std::isfinite(f.left_in[r]))
+      text += format("%s%s %.2f %%", text.empty() ? "  left in " : ", ", names[r].c_str(), percent(f.left_in[r], f.force));
+  return text.empty() ? text : text + "\n";
 }
 
 std::string jointLine(const JointWeight& j) {
@@ -118,7 +127,7 @@ std::string textOf(const BoomCalibration& c) {
   if (!c.problem.empty()) return c.problem + "\n";
   std::string text = format("%.0f s, %zu instants, %zu left out\n", c.seconds, c.points, c.left_out);
   for (const JointWeight& joint : c.joints) text += jointLine(joint);
-  for (const CylinderFit& cylinder : c.cylinders) text += cylinderLine(cylinder);
+  for (const CylinderFit& cylinder : c.cylinders) text += cylinderLine(cylinder) + recordingLine(cylinder, c.names);
   for (const Estimate& e : c.estimates)
     text += format("%-40s %.6g%s%s +- %.2g, before +- %.2g; %s\n", e.key.c_str(), e.value, e.unit.empty() ? "" : " ",
                    e.unit.c_str(), e.deviation, e.limit, e.meaning.c_str());

@@ -1,4 +1,4 @@
-/// Pressures that are otherwise than said: exchanged or in another unit.
+/// Checks of readings: pressures exchanged or in another unit, a joint's sensor that is faulty.
 #pragma once
 
 #include <string>
@@ -11,5 +11,9 @@ namespace hammer_loads::calibration {
 /// One line per cylinder whose pressures fit the given boom only as something else, or not at all; and per joint beyond
 /// its limits. A given boom is within half of the forces: a drawing's masses are. Empty: nothing found.
 std::vector<std::string> misreadings(const BoomModel& model, const BoomPoints& recording);
+
+/// One line per joint's sensor whose noise in one recording is far above that in the others; names: of the recordings.
+std::vector<std::string> noisySensors(const Chain& chain, const std::vector<BoomPoints>& recordings,
+                                      const std::vector<std::string>& names);
 
 }  // namespace hammer_loads::calibration

@@ -25,6 +25,7 @@ class BoomReader {
     recording.pressure.resize(settings.boom->cylinders().size());
   }
 
+  ros::Time begin() const { return first_.value_or(ros::Time()); }  ///< traces count from it
   void joints(const sensor_msgs::JointState& message) {
     for (std::size_t i = 0; i < message.name.size() && i < message.position.size(); ++i) {
       const std::optional<int> joint = chain_.jointIndex(message.name[i]);
@@ -114,6 +115,7 @@ BoomBag readBoomBag(const BagInputs& inputs, const Settings& settings, const Pro
       if (topic == joints) reader.joints(state);
       if (topic == crank) reader.crank(state);
     }
+    result.begin = reader.begin();
   } catch (const std::exception& error) {
     result.problem = inputs.names() + ": cannot be read: " + onOneLine(error.what());
     return result;

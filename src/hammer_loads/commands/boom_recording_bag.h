@@ -1,6 +1,8 @@
 /// Joints' angles and cylinders' pressures of a recording.
 #pragma once
 
+#include <ros/time.h>
+
 #include <string>
 
 #include "hammer_loads/calibration/boom_recording.h"
@@ -13,6 +15,7 @@ namespace hammer_loads {
 struct BoomBag {
   std::string problem;  ///< one line why it could not be read
   calibration::BoomRecording recording;
+  ros::Time begin;     ///< traces count from this stamp
   std::string silent;  ///< joints without a cylinder that were never heard, in one line: taken at zero
 };
 

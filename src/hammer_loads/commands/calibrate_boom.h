@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 
 struct BoomCalibrationJob {
+  std::vector<std::string> bags;     ///< each a recording, or the next split of the one before
   std::vector<std::string> weighed;  ///< bags with a weight on the tip; none: it hangs there in all, if it is given
   std::optional<double> weight;      ///< [kg]
   std::vector<double> at;            ///< x and z of its centre of mass in the tip's frame [m]
@@ -23,7 +23,6 @@ struct CalibrationTexts {
 };
 
 /// settings: those of the recording; bags: their names in the file.
-CalibrationTexts calibrateBoom(const BagInputs& inputs, const Settings& settings, const BoomCalibrationJob& job,
-                               const std::string& source);
+CalibrationTexts calibrateBoom(const Settings& settings, const BoomCalibrationJob& job, const std::string& source);
 
 }  // namespace hammer_loads

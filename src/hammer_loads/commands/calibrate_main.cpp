@@ -10,6 +10,7 @@
 #include "hammer_loads/calibration/report.h"
 #include "hammer_loads/commands/bag_options.h"
 #include "hammer_loads/commands/calibrate_boom.h"
+#include "hammer_loads/commands/calibrate_linkage.h"
 #include "hammer_loads/commands/crank_recording_bag.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
@@ -182,10 +183,12 @@ CalibrationTexts calibrateCrank(const BagInputs& inputs, const Settings& setting
 
 int run(int argc, const char* const* argv) {
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
+  if (asksForLinkage(argc, argv)) return calibrateLinkage(argc, argv);
   CommandLine line(
       "Crank sensor's place and drive's inertia from a recording of the hammer at work; or, with --boom, the boom's "
       "masses and friction from one of its free movement",
-      "calibrate");
+      "calibrate",
+      "A table of stroke and angle gives the lengths of a bucket linkage: calibrate --linkage --help");
   Arguments given;
   BagJob job;
   addOptions(line, given, job);
@@ -211,8 +214,9 @@ int run(int argc, const char* const* argv) {
   if (!settings.value) return fail(settings.problems);
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
   for (const std::string& warning : textsOf(warnings)) std::cerr << "warning: " << warning << '\n';
+  given.boom_job.bags = given.bags;
   const std::string source = fs::path(given.bags.front()).filename().string();
-  const CalibrationTexts texts = given.boom ? calibrateBoom(*recording.value, *settings.value, given.boom_job, source)
+  const CalibrationTexts texts = given.boom ? calibrateBoom(*settings.value, given.boom_job, source)
                                             : calibrateCrank(*recording.value, *settings.value, given, source);
   if (!texts.problems.empty()) return fail(texts.problems);
   (texts.yaml.empty() ? std::cerr : std::cout) << texts.words;

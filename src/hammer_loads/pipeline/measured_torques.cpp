@@ -151,7 +151,10 @@ void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motio
   const double arm = torque.at.arm;
   const Rubbing seals =
       rubbing(sealsOf(cylinder, arm, torque.value, motion), boom.vibration().velocity()[cylinder.joint()]);
-  const double offset = square(arm * cylinder.boreArea() * cylinder.parameters().pressure_offset_deviation);
+  // A zero that is off has the lever of another angle.
+  const CylinderParameters& p = cylinder.parameters();
+  const double offset = square(arm * cylinder.boreArea() * p.pressure_offset_deviation) +
+                        square(torque.value * torque.at.arm_rate / arm * p.joint_zero_deviation);
   const auto& identifier = boom.vibration().identifier();
   torque.value += seals.torque;
   torque.constant =

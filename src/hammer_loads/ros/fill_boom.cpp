@@ -1,6 +1,7 @@
 #include "hammer_loads/ros/fill_boom.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/util/constants.h"
@@ -61,7 +62,35 @@ void prepareReactions(const Boom& boom, JointReactions& message) {
   message.load_common_deviation.resize(joints);
   for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
   message.base_force_N.resize(boom.cylinders().size());
+  message.guide_force_N.resize(boom.cylinders().size());
   message.rod_force_N.resize(boom.cylinders().size());
+}
+
+CylinderJoints::CylinderJoints(const Boom& boom, sensor_msgs::JointState& message) {
+  for (const Cylinder& cylinder : boom.cylinders()) {
+    const CylinderDrawing& drawing = drawings_.emplace_back(boom.chain(), cylinder);
+    message.name.insert(message.name.end(), drawing.names().begin(), drawing.names().end());
+  }
+  message.position.resize(message.name.size());
+  message.velocity.resize(message.name.size());
+}
+
+void CylinderJoints::fill(const Boom& boom, sensor_msgs::JointState& message) const {
+  constexpr double kStep = 1e-5;  // of differences [rad]
+  // Numerical: kStep
+  std::size_t first = message.name.size();
+  for (std::size_t k = drawings_.size(); k-- > 0;) {
+    const CylinderDrawing& drawing = drawings_[k];
+    const int joint = boom.cylinders()[k].joint();
+    const double angle = boom.motion().position[joint], rate = boom.motion().velocity[joint];
+    const auto now = drawing.positions(angle), up = drawing.positions(angle + kStep),
+               down = drawing.positions(angle - kStep);
+    first -= drawing.names().size();
+    for (std::size_t i = 0; i < drawing.names().size(); ++i) {
+      message.position[first + i] = now[i];
+      message.velocity[first + i] = std::remainder(up[i] - down[i], kTwoPi) / (2.0 * kStep) * rate;
+    }
+  }
 }
 
 void prepareVibration(const Boom& boom, BoomVibration& message) {
@@ -113,6 +142,7 @@ void fillReactions(const BoomState& state, JointReactions& message) {
   }
   for (std::size_t i = 0; i < message.base_force_N.size(); ++i) {
     copy(state.steel.pins[i].base, message.base_force_N[i]);
+    copy(state.steel.pins[i].guide, message.guide_force_N[i]);
     copy(state.steel.pins[i].rod, message.rod_force_N[i]);
   }
 }

@@ -6,7 +6,11 @@
 #include <hammer_loads/JointLoads.h>
 #include <hammer_loads/JointReactions.h>
 #include <hammer_loads/SectionLoads.h>
+#include <sensor_msgs/JointState.h>
 
+#include <vector>
+
+#include "hammer_loads/boom/cylinder_drawing.h"
 #include "hammer_loads/boom/wrench.h"
 #include "hammer_loads/pipeline/boom_follower.h"
 
@@ -15,6 +19,19 @@ namespace hammer_loads {
 void prepareJointLoads(const Boom& boom, JointLoads& message);
 void prepareSections(const Boom& boom, SectionLoads& message);
 void prepareReactions(const Boom& boom, JointReactions& message);
+/// Joints of cylinders and their linkages, the last ones of a message with the mechanism's (CylinderDrawing).
+class CylinderJoints {
+ public:
+  /// Adds their names and room to the message.
+  CylinderJoints(const Boom& boom, sensor_msgs::JointState& message);
+  /// Positions and velocities as the boom stands [rad], [m] and by the second.
+  void fill(const Boom& boom, sensor_msgs::JointState& message) const;
+
+ private:
+  std::vector<CylinderDrawing> drawings_;
+};
+
+
 void prepareVibration(const Boom& boom, BoomVibration& message);
 
 /// The follower's last sample must have no fault.

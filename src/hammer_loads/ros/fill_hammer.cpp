@@ -1,5 +1,8 @@
 #include "hammer_loads/ros/fill_hammer.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "hammer_loads/ros/stamp.h"
 
 namespace hammer_loads {
@@ -54,8 +57,10 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
 void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message) {
   const LinkState& links = result.links;
   message.header.stamp = timeOf(result.stamp);
-  message.position = {links.crank_angle, links.rod_angle, links.rocker_angle};
-  message.velocity = {links.crank_speed, links.rod_speed, links.rocker_speed};
+  const double angles[]{links.crank_angle, links.rod_angle, links.rocker_angle};
+  const double speeds[]{links.crank_speed, links.rod_speed, links.rocker_speed};
+  std::copy(std::begin(angles), std::end(angles), message.position.begin());
+  std::copy(std::begin(speeds), std::end(speeds), message.velocity.begin());
 }
 
 void fillPinForces(const SampleResult& result, PinForces& message) {

@@ -43,6 +43,7 @@ void HammerBridge::prepareOutputs() {
   outputs_.run_info.message.revision = packageRevision();
   prepareMechanism(settings_.pipeline.crank_joint, outputs_.mechanism.message);
   if (settings_.boom) {
+    cylinder_joints_.emplace(*settings_.boom, outputs_.mechanism.message);
     prepareJointLoads(*settings_.boom, outputs_.joint_loads.message);
     prepareSections(*settings_.boom, outputs_.section_loads.message);
     prepareReactions(*settings_.boom, outputs_.joint_reactions.message);
@@ -133,7 +134,10 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   if (!result.isPublished()) return;
   if (result.boom != nullptr && !result.boom->fault) sendBoom(record_time);
   // Pure functions of the result: nothing else depends on them.
-  if (outputs_.mechanism.attached()) fillMechanism(result, outputs_.mechanism.message);
+  if (outputs_.mechanism.attached()) {
+    fillMechanism(result, outputs_.mechanism.message);
+    if (cylinder_joints_ && result.boom != nullptr) cylinder_joints_->fill(pipeline_->boom()->boom(), outputs_.mechanism.message);
+  }
   outputs_.mechanism.send(record_time);
   if (outputs_.pin_forces.attached()) fillPinForces(result, outputs_.pin_forces.message);
   outputs_.pin_forces.send(record_time);

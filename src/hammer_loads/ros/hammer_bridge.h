@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/ros/fill_boom.h"
 #include "hammer_loads/ros/frame_wrench.h"
 #include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/ros/life_flow.h"
@@ -76,6 +77,7 @@ class HammerBridge {
   Settings settings_;
   std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
   HammerOutputs outputs_;
+  std::optional<CylinderJoints> cylinder_joints_;  ///< of the boom's cylinders, in the mechanism's message
   std::optional<LifeFlow> life_;  ///< of the pipeline, replaced with each count
   life::PieceSink* pieces_{};     ///< null: none
   std::vector<ChainLink> chain_links_;

@@ -30,6 +30,18 @@ constexpr CylinderKey kCylinderKeys[] = {
     {"relief_pressure_Pa", "Pa", &CylinderParameters::relief_pressure},
 };
 
+struct LinkageKey {
+  const char* key;
+  double BucketLinkageParameters::*field;
+};
+
+constexpr LinkageKey kLinkageKeys[] = {
+    {"rocker_link_base_x_m", &BucketLinkageParameters::guide_x},
+    {"rocker_link_base_z_m", &BucketLinkageParameters::guide_z},
+    {"rocker_link_length_m", &BucketLinkageParameters::guide_length},
+    {"coupler_length_m", &BucketLinkageParameters::coupler_length},
+};
+
 constexpr CylinderKey kOptionalKeys[] = {
     {"friction", "", &CylinderParameters::friction},
     {"friction_deviation", "", &CylinderParameters::friction_deviation},
@@ -42,6 +54,18 @@ constexpr CylinderKey kOptionalKeys[] = {
     {"pressure_offset_deviation_Pa", "Pa", &CylinderParameters::pressure_offset_deviation},
 };
 
+std::optional<BucketLinkageParameters> readLinkage(ParameterReader& reader, const std::string& name) {
+  const std::string key = name + "_linkage";
+  if (!reader.given(key)) return {};
+  constexpr std::array<Named<bool>, 1> kKinds{{{"bucket", true}}};
+  reader.choice(key, kKinds);
+  BucketLinkageParameters linkage;
+  for (const LinkageKey& k : kLinkageKeys)
+    linkage.*k.field = reader.number(name + "_" + k.key, "m", NumberRule::any());
+  if (reader.given(key + "_branch")) linkage.branch = reader.number(key + "_branch", "", NumberRule::any());
+  return linkage;
+}
+
 CylinderParameters readCylinder(ParameterReader& reader, const std::string& name) {
   CylinderParameters cylinder;
   cylinder.name = name;
@@ -49,6 +73,7 @@ CylinderParameters readCylinder(ParameterReader& reader, const std::string& name
   for (const CylinderKey& key : kCylinderKeys) {
     cylinder.*key.field = reader.number(name + "_" + key.key, key.unit, NumberRule::any());
   }
+  cylinder.linkage = readLinkage(reader, name);
   for (const CylinderKey& key : kOptionalKeys) {
     const std::string whole = name + "_" + key.key;
     if (reader.given(whole)) cylinder.*key.field = reader.number(whole, key.unit, NumberRule::any());

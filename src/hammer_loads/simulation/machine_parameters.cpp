@@ -148,6 +148,7 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   s.damping = reader.number("boom_damping_ratio", "", NumberRule::within(0.0, 0.99));
   s.step = reader.number("boom_step_s", "s", kPositive);
   s.seals.friction = reader.number("machine_seal_friction", "", NumberRule::within(0.0, 0.2));
+  s.seals.constant = reader.number("machine_seal_constant", "", NumberRule::within(0.0, 0.2));
   s.rock.stiffness = reader.number("rock_stiffness_N_m", "N/m", kNotNegative);
   s.rock.damping = reader.number("rock_damping_s_m", "s/m", kNotNegative);
   s.rock.press_force = reader.number("press_force_N", "N", kNotNegative);

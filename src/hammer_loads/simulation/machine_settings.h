@@ -152,13 +152,17 @@ struct RockSettings {
   double press_force{};  ///< of the operator on the hull before it works [N], >= 0
 };
 
-/// Seals of the boom's cylinders: against the rod's speed v, force = friction |F| (1 + breakaway e^-(v/stribeck)^2)
-/// tanh(v/smooth), F the oil's force.
+/// Seals of the boom's cylinders: against the rod's speed v, force = (constant P + friction |F|) (1 + breakaway
+/// e^-(v/stribeck)^2) tanh(v/smooth), F the oil's force, P the push at 14 MPa.
 struct SealSettings {
-  double friction{};             ///< [-]; 0: none
+  double friction{};             ///< [-]
+  double constant{};             ///< [-]; a loader crane's: 0.010 to 0.016
   double breakaway{0.4};         ///< more of it near standstill [-], >= 0
   double stribeck_speed{0.004};  ///< [m/s], > 0
   double smooth_speed{5e-4};     ///< below it the force fades through zero [m/s], > 0
+
+  static constexpr double kReliefPressure = 14e6;  ///< [Pa]
+  bool rubs() const { return friction > 0.0 || constant > 0.0; }
 };
 
 /// Hull and boom that move on the oil of their cylinders; all dimensions in oil_boom.h.

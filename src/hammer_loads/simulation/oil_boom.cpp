@@ -9,12 +9,27 @@ double areaOf(double diameter) { return 0.25 * kPi * diameter * diameter; }
 
 }  // namespace
 
-double OilCylinder::length(double angle) const { return std::abs(turnedBy(angle) * rod - base); }
+double OilCylinder::length(double angle) const { return std::abs(pins(angle).rod - base); }
 
-/// The pin moves across its lever.
+/// The guide's pivot feels no moment: that of the coupler about it is that of the rod.
+OilCylinder::Pins OilCylinder::pins(double angle) const {
+  const PlanePoint driven = turnedBy(angle) * rod;
+  if (linkage.guide == 0.0) {
+    const PlanePoint push = (driven - base) / std::abs(driven - base);
+    return {driven, -push, 0.0, push};
+  }
+  const PlanePoint across = driven - linkage.pivot;
+  const double g = linkage.guide, c = linkage.coupler, d = std::abs(across);
+  const double at_pivot = std::acos((g * g + d * d - c * c) / (2.0 * g * d));
+  const PlanePoint guide = g * across / d * turnedBy(linkage.side * at_pivot), pin = linkage.pivot + guide;
+  const PlanePoint push = (pin - base) / std::abs(pin - base), along = (driven - pin) / c;
+  const PlanePoint by_coupler = momentOf(guide, push) / momentOf(guide, along) * along;
+  return {pin, -push, push - by_coupler, by_coupler};
+}
+
+/// By the work of the force on the driven link.
 double OilCylinder::arm(double angle) const {
-  const PlanePoint pin = turnedBy(angle) * rod, along = pin - base;
-  return (std::conj(along) * -kI * pin).real() / std::abs(along);
+  return momentOf(turnedBy(angle) * rod, pins(angle).on_driven);
 }
 
 double OilCylinder::boreShare(double angle) const {
@@ -35,14 +50,15 @@ OilBoom oilBoomEo2621() {
       {0.10, -0.55}, both, 400.0, 1.104 + 29.9 + 50.0 * std::norm(bracket - both) + 350.0 * std::norm(hull - both)};
   const auto cylinder = [](PlanePoint base, PlanePoint rod, double bore, double rod_diameter, double closed,
                            double stroke, double hose) {
-    return OilCylinder{base, rod, areaOf(bore), areaOf(bore) - areaOf(rod_diameter), closed, stroke, hose, hose};
+    return OilCylinder{base, rod, areaOf(bore), areaOf(bore) - areaOf(rod_diameter), closed, stroke, hose, hose, {}};
   };
   const PlanePoint foot(0.25, 0.40);
   b.cylinders[0] = cylinder(PlanePoint(0.138, -0.159) - foot, {0.90, -0.10}, 0.110, 0.063, 0.79, 0.65, 0.0008);
   b.cylinders[1] =
       cylinder(PlanePoint(1.30, 0.30) - b.links[0].to_next, {-0.371, 0.197}, 0.100, 0.056, 1.00, 0.73, 0.0010);
   b.cylinders[2] =
-      cylinder(PlanePoint(0.50, 0.28) - b.links[1].to_next, {0.277, 0.115}, 0.080, 0.050, 0.99, 0.53, 0.0012);
+      cylinder(PlanePoint(0.35, 0.28) - b.links[1].to_next, {0.25, 0.13}, 0.080, 0.050, 0.84, 0.53, 0.0012);
+  b.cylinders[2].linkage = {PlanePoint(1.44, 0.05) - b.links[1].to_next, 0.34, 0.31, -1.0};
   b.cuts = {{{0, {0.50, 0.08}, {{}, {1.482, 0.08}, 308.7, 114.3}},
              {0, {1.10, 0.08}, {{}, {1.813, 0.08}, 208.2, 40.3}},
              {1, {0.80, 0.06}, {{}, {1.255, 0.06}, 101.6, 7.42}}}};

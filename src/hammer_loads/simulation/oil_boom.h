@@ -12,6 +12,8 @@ using PlanePoint = std::complex<double>;
 constexpr PlanePoint kI{0.0, 1.0};
 
 inline PlanePoint turnedBy(double angle) { return {std::cos(angle), -std::sin(angle)}; }  ///< e^(-iq)
+/// Moment about +y of a force at r.
+inline double momentOf(PlanePoint r, PlanePoint f) { return r.imag() * f.real() - r.real() * f.imag(); }
 
 /// A link from its joint on, in its own axes.
 struct OilBoomLink {
@@ -21,11 +23,27 @@ struct OilBoomLink {
   double inertia{};  ///< about the centre of mass, about y [kg m2]
 };
 
-/// Cylinder of a joint; anchors from the joint: base in the axes of the link before, rod in those of the link beyond.
+/// Bucket linkage of a cylinder: a link from a pivot on the link before to the rod's pin, another from there on.
+struct OilLinkage {
+  PlanePoint pivot;  ///< from the joint, axes of the link before
+  double guide{}, coupler{};  ///< lengths [m]; zero: the cylinder acts directly
+  double side{};              ///< 1: the guide is turned about +y from the line between pivot and driven pin; or -1
+};
+
+/// Cylinder of a joint; pins from the joint: base in the axes of the link before, rod in those of the link beyond.
 struct OilCylinder {
   PlanePoint base, rod;
   double bore_area{}, rod_area{};                             ///< [m2]
   double closed_length{}, stroke{}, bore_hose{}, rod_hose{};  ///< [m], [m], [m3], [m3]
+  OilLinkage linkage{};
+
+  /// Where the cylinder's rod ends, and the forces on the chain's pins for each N of its push; from the joint, axes of
+  /// the link before.
+  struct Pins {
+    PlanePoint rod;                   ///< [m]
+    PlanePoint on_base, on_pivot, on_driven;  ///< [-]
+  };
+  Pins pins(double angle) const;
 
   double length(double angle) const;  ///< [m]
   double arm(double angle) const;     ///< what the joint's angle does to it [m/rad]

@@ -98,11 +98,13 @@ Eigen::Vector3d HammerOnBoom::oil(const State& s, const Hold& hold) const {
 Eigen::Vector3d HammerOnBoom::seals(const State& s, const Eigen::Vector3d& oil) const {
   const SealSettings& seal = machine_.on_boom.seals;
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
-  if (seal.friction == 0.0) return torque;
+  if (!seal.rubs()) return torque;
   for (int k = 0; k < 3; ++k) {
     const double arm = boom_.cylinders[static_cast<std::size_t>(k)].arm(s.x[k]), speed = arm * s.v[k];
     const double slow = speed / seal.stribeck_speed;
-    const double force = seal.friction * std::abs(oil[k] / arm) * (1.0 + seal.breakaway * std::exp(-slow * slow));
+    const double push = SealSettings::kReliefPressure * boom_.cylinders[static_cast<std::size_t>(k)].bore_area;
+    const double steady = seal.constant * push + seal.friction * std::abs(oil[k] / arm);
+    const double force = steady * (1.0 + seal.breakaway * std::exp(-slow * slow));
     torque[k] = -arm * force * std::tanh(speed / seal.smooth_speed);
   }
   return torque;

@@ -9,9 +9,6 @@ namespace {
 
 constexpr double kInstant = 2e-5;  // of differences in time [s]
 
-/// Moment about +y of a force at r.
-double moment(PlanePoint r, PlanePoint f) { return r.imag() * f.real() - r.real() * f.imag(); }
-
 }  // namespace
 
 HammerOnBoom::State HammerOnBoom::along(const State& s, const Coordinates& a, double dt) const {
@@ -44,14 +41,14 @@ Load HammerOnBoom::loadOf(const Coordinates& a, const Moments& m, const Links& l
     const PlanePoint f = -now.body[k].mass * (acceleration + kI * machine_.gravity);
     const double spin = now.body[k].turn.dot(a) + (later.body[k].turn - sooner.body[k].turn).dot(now_.v) / (2.0 * h);
     force += f;
-    torque += moment(now.body[k].place - about, f) - now.body[k].inertia * spin;
+    torque += momentOf(now.body[k].place - about, f) - now.body[k].inertia * spin;
   }
   torque -= rotor_ * ratio_ * (a[3] + ratio_ * hullTurning(a));
   const PlanePoint turned = force * std::conj(turnedBy(axes));
   return {turned.real(), turned.imag(), torque};
 }
 
-/// With the forces of the cylinders that have their base before the cut and their rod's pin beyond it.
+/// With the forces of the cylinders that have pins on both sides of the cut, on those beyond.
 Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Moments& m, const OilBoomCut& cut) const {
   const double axes = angleBefore(now_, cut.link + 1);
   const PlanePoint turn = turnedBy(axes), about = jointPlace(now_, cut.link) + turn * cut.place;
@@ -61,26 +58,33 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Mom
   const PlanePoint foot = footPlace(now_) - about,
                    by_rock = PlanePoint(t.rock.force_x, t.rock.force_z) * turnedBy(hullAngle(now_));
   const PlanePoint rock_here = by_rock * std::conj(turn);
-  load.force_x += rock_here.real(), load.force_z += rock_here.imag(), load.torque_y += moment(foot, by_rock);
+  load.force_x += rock_here.real(), load.force_z += rock_here.imag(), load.torque_y += momentOf(foot, by_rock);
   if (elastic_) {
     const PlanePoint by_tool = t.tool_force * kI * turnedBy(hullAngle(now_)), here = by_tool * std::conj(turn);
     load.force_x += here.real(), load.force_z += here.imag();
-    load.torque_y += moment(strikingPlace(now_) - about, by_tool);
+    load.torque_y += momentOf(strikingPlace(now_) - about, by_tool);
   }
   for (std::size_t k = cut.link; k < 3; ++k) {
     const OilCylinder& c = boom_.cylinders[k];
-    const bool rod_beyond = k > cut.link || c.rod.real() > cut.place.real();
-    const bool base_beyond =
-        k > cut.link + 1 ||
-        (k == cut.link + 1 && c.base.real() + boom_.links[cut.link].to_next.real() > cut.place.real());
-    if (!rod_beyond || base_beyond) continue;
-    const double before = k == 0 ? 0.0 : bentAngle(now_, k - 1), angle = now_.x[static_cast<int>(k)];
-    const PlanePoint joint = jointPlace(now_, k), rod = joint + turnedBy(before + angle) * c.rod;
-    const PlanePoint along_rod = rod - joint - turnedBy(before) * c.base;
-    const PlanePoint push = t.hold[static_cast<int>(k)] / c.arm(angle) * along_rod / std::abs(along_rod);
-    const PlanePoint turned = push * std::conj(turn);
-    load.force_x += turned.real(), load.force_z += turned.imag();
-    load.torque_y += moment(rod - about, push);
+    const PlanePoint joint = jointPlace(now_, k), to_joint = k > cut.link ? boom_.links[k - 1].to_next : PlanePoint();
+    const auto isBeyond = [&](std::size_t link, PlanePoint pin) {
+      return link > cut.link || (link == cut.link && pin.real() > cut.place.real());
+    };
+    const bool base = k > cut.link && isBeyond(k - 1, to_joint + c.base),
+               pivot = k > cut.link && isBeyond(k - 1, to_joint + c.linkage.pivot), rod = isBeyond(k, c.rod);
+    const bool guided = c.linkage.guide > 0.0;
+    if (base == rod && (!guided || pivot == rod)) continue;
+    const double angle = now_.x[static_cast<int>(k)], push = t.hold[static_cast<int>(k)] / c.arm(angle);
+    const PlanePoint before = turnedBy(k == 0 ? 0.0 : bentAngle(now_, k - 1));
+    const OilCylinder::Pins pins = c.pins(angle);
+    const auto add = [&](PlanePoint pin, PlanePoint share) {
+      const PlanePoint force = push * before * share, turned = force * std::conj(turn);
+      load.force_x += turned.real(), load.force_z += turned.imag();
+      load.torque_y += momentOf(joint + before * pin - about, force);
+    };
+    if (base) add(c.base, pins.on_base);
+    if (guided && pivot) add(c.linkage.pivot, pins.on_pivot);
+    if (rod) add(turnedBy(angle) * c.rod, pins.on_driven);
   }
   return load;
 }
@@ -127,7 +131,7 @@ OnBoomTruth HammerOnBoom::truth() const {
     t.rocker_angle = now_.x[4], t.rocker_speed = now_.v[4];
     t.load.force_z += t.tool_force;
     t.load.torque_y +=
-        moment((strikingPlace(now_) - jointPlace(now_, 3)) * std::conj(turnedBy(t.hull_pitch)), t.tool_force * kI);
+        momentOf((strikingPlace(now_) - jointPlace(now_, 3)) * std::conj(turnedBy(t.hull_pitch)), t.tool_force * kI);
   }
   static_cast<OnBoomSensors&>(t) = sensors(hold, a);
   t.displacement = t.angles - hold.state.x.head<3>();

@@ -1,0 +1,35 @@
+/// Positions of the joints by which a robot description draws a cylinder and its linkage.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/chain.h"
+#include "hammer_loads/boom/cylinder.h"
+
+namespace hammer_loads {
+
+/// Of one cylinder whose joint turns about y. The barrel turns about its pin on the link before, the rod slides in it, the
+/// guide link turns about its pivot on the link before, the coupler about its pin on the link beyond. Angles are positive
+/// about +y; at zero each body lies along x of the link that carries it, and the cylinder is closed.
+class CylinderDrawing {
+ public:
+  static constexpr std::size_t kMost = 4;
+
+  CylinderDrawing(const Chain& chain, const Cylinder& cylinder);
+
+  /// NAME_barrel_joint, NAME_rod_joint; with a linkage NAME_guide_joint and NAME_coupler_joint as well. Empty where the
+  /// joint does not turn about y.
+  const std::vector<std::string>& names() const noexcept { return names_; }
+  /// In the order of the names [rad], [m]; joint_angle: of the cylinder's joint [rad].
+  std::array<double, kMost> positions(double joint_angle) const noexcept;
+
+ private:
+  Cylinder cylinder_;
+  std::vector<std::string> names_;
+  Eigen::Vector2d base_, guide_{0.0, 0.0}, rod_;  ///< from the joint, at zero, axes of the link before [m]
+  double sense_;
+};
+
+}  // namespace hammer_loads

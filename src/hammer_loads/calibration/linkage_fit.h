@@ -1,0 +1,61 @@
+/// Lengths of a bucket linkage from a table of its cylinder's stroke and its joint's angle.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/bucket_linkage.h"
+#include "hammer_loads/calibration/calibration.h"
+
+namespace hammer_loads::calibration {
+
+/// Strokes and angles of one joint, in any order.
+struct StrokeTable {
+  std::vector<double> stroke;  ///< of the rod from its closed end [m]
+  std::vector<double> angle;   ///< of the joint [rad]
+};
+
+/// Reads CSV with the columns stroke_m and angle_rad. problem: one line that names the line of the file, its value and
+/// the rule.
+std::optional<StrokeTable> readStrokeTable(const std::string& csv, std::string& problem);
+
+/// Unknowns of the fit, in the order of its vectors: pins from the joint's axis, links, closed length; all [m].
+struct LinkageUnknowns {
+  enum Index { kBaseX, kBaseZ, kGuideX, kGuideZ, kGuide, kCoupler, kRodX, kRodZ, kClosed, kCount };
+  using Vector = Eigen::Matrix<double, kCount, 1>;
+  /// Key of the boom file behind the cylinder's name.
+  static const std::array<const char*, kCount> kKeys;
+};
+
+/// What is known before the table. sense: 1 where the joint turns about +y, -1 about -y.
+struct LinkageBasis {
+  /// Measured with a tape [m]; nothing: not known.
+  std::array<std::optional<double>, LinkageUnknowns::kCount> measured;
+  double tape_deviation{0.01};  ///< standard, of each of them [m]
+  double sense{1.0};
+};
+
+struct LinkageFit {
+  std::string problem;             ///< why there is nothing
+  LinkageUnknowns::Vector value;   ///< [m]
+  double branch{};                 ///< BucketLinkageParameters::branch
+  std::size_t rows{};
+  double left{}, worst{};          ///< rms and largest of the strokes' residuals [m]
+  double arm{}, arm_deviation{};   ///< rms of the lever over the table; standard deviation, rms [m/rad]
+  std::vector<Estimate> estimates;
+  std::vector<Correlation> correlations;  ///< beyond 0.9 in size
+  std::vector<std::string> remarks;
+
+  BucketLinkage linkage(double sense) const;
+  /// The lever is known to 1 % of its rms.
+  bool determined() const { return problem.empty() && arm_deviation <= 0.01 * arm; }
+};
+
+/// Least squares over all starts that a linkage may have; cylinder: name in front of the keys.
+LinkageFit fitLinkage(const StrokeTable& table, const LinkageBasis& basis, const std::string& cylinder,
+                      const Progress& progress = {});
+
+}  // namespace hammer_loads::calibration

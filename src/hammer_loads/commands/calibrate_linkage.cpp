@@ -1,0 +1,183 @@
+#include "hammer_loads/commands/calibrate_linkage.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/chain.h"
+#include "hammer_loads/calibration/linkage_fit.h"
+#include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/commands/output_file.h"
+#include "hammer_loads/commands/progress_bar.h"
+#include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads {
+namespace {
+
+using calibration::LinkageUnknowns;
+
+struct Arguments {
+  std::string table, output, cylinder{"hammer_cylinder"}, urdf;
+  std::vector<std::string> params;
+  double tape_std{0.01};
+  bool force{};
+};
+
+/// Where the joint stands in the link before, and how the link beyond stands to it.
+struct Frames {
+  Eigen::Vector2d origin{0.0, 0.0};
+  Eigen::Matrix3d at_zero = Eigen::Matrix3d::Identity();
+  double sense{1.0};
+};
+
+void addOptions(CommandLine& line, Arguments& given) {
+  line.option("--linkage", given.table, "columns stroke_m,angle_rad over the whole stroke").required().type("TABLE.csv");
+  line.option("--write", given.output, "keys of the linkage, for --params beside the boom file").required().type("FILE.yaml");
+  line.option("--cylinder", given.cylinder, "name of the cylinder, in front of its keys").type("NAME").showDefault();
+  addParamsOption(line, given.params);
+  line["--params"].description("boom file: its keys of the cylinder's pins and links count as measured with a tape");
+  addUrdfOption(line, given.urdf);
+  line["--urdf"].description("robot description, for the place and the axis of the joint NAME_joint of --params");
+  line.option("--tape-std", given.tape_std, "standard deviation of what was measured [m]")
+      .within(1e-5, 1.0, "m")
+      .showDefault();
+  line.flag("--force", given.force, "replaces a file that exists");
+}
+
+/// Of the joint in the description; the joint's origin and +y without one.
+std::vector<std::string> findFrames(ParameterReader& reader, const Arguments& given, Frames& frames) {
+  const std::string key = given.cylinder + "_joint";
+  if (given.urdf.empty()) return {};
+  const Checked<std::string> text = fileText(given.urdf);
+  if (!text.value) return text.problems;
+  if (!reader.given(key)) return {key + ": missing, is required with --urdf"};
+  ChainRequest request;
+  request.massless = true;
+  if (reader.given("root_link")) request.root = reader.text("root_link");
+  if (reader.given("tip_link")) request.tip = reader.text("tip_link");
+  const std::string name = reader.text(key);
+  request.joints = {name};
+  const Checked<Chain> chain = Chain::make(*text.value, request);
+  if (!chain.value) return chain.problems;
+  const std::optional<int> joint = chain.value->jointIndex(name);
+  if (!joint) return {key + ": " + name + ", must be a joint of the chain"};
+  const ChainLink& link = chain.value->link(chain.value->linkBeyond(*joint));
+  if (std::abs(std::abs(link.axis.y()) - 1.0) > 1e-6) return {key + ": " + name + ", must turn about y"};
+  frames = {{link.origin.x(), link.origin.z()}, link.steady + link.cosine, link.axis.y() > 0.0 ? 1.0 : -1.0};
+  return {};
+}
+
+/// Pins of the link before are measured from its frame's origin.
+double originOf(int unknown, const Frames& frames) {
+  const bool before = unknown < LinkageUnknowns::kGuide;
+  return before ? frames.origin[unknown % 2] : 0.0;
+}
+
+calibration::LinkageBasis basisOf(ParameterReader& reader, const Arguments& given, const Frames& frames) {
+  calibration::LinkageBasis basis;
+  basis.tape_deviation = given.tape_std, basis.sense = frames.sense;
+  for (int i = 0; i < LinkageUnknowns::kCount; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const std::string key = given.cylinder + "_" + LinkageUnknowns::kKeys[at];
+    if (reader.given(key)) basis.measured[at] = reader.number(key, "m", NumberRule::within(-100.0, 100.0)) - originOf(i, frames);
+  }
+  auto &x = basis.measured[LinkageUnknowns::kRodX], &z = basis.measured[LinkageUnknowns::kRodZ];
+  if (x && z) {
+    const Eigen::Vector3d turned = frames.at_zero * Eigen::Vector3d(*x, 0.0, *z);
+    x = turned.x(), z = turned.z();
+  }
+  return basis;
+}
+
+std::string wordsOf(const calibration::LinkageFit& fit) {
+  std::string text = format(
+      "%zu rows: strokes left %.3f mm rms, %.3f mm at worst; lever %.4f m/rad rms, known to %.2f %% (limit 1 %%)%s\n",
+      fit.rows, 1e3 * fit.left, 1e3 * fit.worst, fit.arm, 100.0 * fit.arm_deviation / fit.arm,
+      fit.determined() ? "" : ": NOT DETERMINED, nothing is written");
+  for (const calibration::Estimate& e : fit.estimates)
+    text += format("%-44s %.4f m +- %.2g; %s\n", e.key.c_str(), e.value, e.deviation, e.meaning.c_str());
+  for (const calibration::Correlation& r : fit.correlations)
+    text += format("cannot be separated (correlation %+.2f): %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
+  for (const std::string& remark : fit.remarks) text += "note: " + remark + "\n";
+  return text;
+}
+
+std::string yamlOf(const calibration::LinkageFit& fit, const Arguments& given, const Frames& frames) {
+  const std::string name = given.cylinder + "_";
+  std::string text = std::string(kLinkageYamlBegins) + " " +
+                     onOneLine(std::filesystem::path(given.table).filename().string()) + ":\n" +
+                     format("# strokes left %.3f mm rms, lever known to %.2f %%. Values belong together.\n",
+                            1e3 * fit.left, 100.0 * fit.arm_deviation / fit.arm) +
+                     name + "linkage: bucket\n" + name + "linkage_branch: " + (fit.branch > 0.0 ? "1" : "-1") + "\n";
+  LinkageUnknowns::Vector value = fit.value;
+  const Eigen::Vector3d rod =
+      frames.at_zero.transpose() *
+      Eigen::Vector3d(value[LinkageUnknowns::kRodX], 0.0, value[LinkageUnknowns::kRodZ]);
+  value[LinkageUnknowns::kRodX] = rod.x(), value[LinkageUnknowns::kRodZ] = rod.z();
+  for (int i = 0; i < LinkageUnknowns::kCount; ++i)
+    text += name + LinkageUnknowns::kKeys[static_cast<std::size_t>(i)] + ": " +
+            numberText(value[i] + originOf(i, frames)) + "\n";
+  return text;
+}
+
+std::string whyFileMustStay(const std::string& name) {
+  std::string line;
+  std::getline(std::ifstream(name), line);
+  return line.rfind(kLinkageYamlBegins, 0) == 0 ? "" : "it holds no linkage that was fitted";
+}
+
+int fail(const std::vector<std::string>& problems) {
+  for (const std::string& problem : problems) std::cerr << problem << '\n';
+  return kExitFailure;
+}
+
+}  // namespace
+
+bool asksForLinkage(int argc, const char* const* argv) {
+  return std::any_of(argv, argv + argc, [](const char* word) { return std::string(word).rfind("--linkage", 0) == 0; });
+}
+
+int calibrateLinkage(int argc, const char* const* argv) {
+  CommandLine line("Lengths of a cylinder's bucket linkage from a table of stroke and angle", "calibrate");
+  Arguments given;
+  addOptions(line, given);
+  if (const auto code = line.parse(argc, argv)) return *code;
+  endCleanlyOnSignals();
+  std::vector<std::string> inputs = given.params;
+  inputs.push_back(given.table);
+  Checked<OutputFile> file = OutputFile::make({given.output, inputs, given.force, whyFileMustStay});
+  if (!file.value) return fail(file.problems);
+  ParameterMap parameters;
+  std::vector<std::string> problems;
+  if (!addFiles(given.params, parameters, problems) || !problems.empty()) return fail(problems);
+  ParameterReader reader(std::move(parameters));
+  Frames frames;
+  problems = findFrames(reader, given, frames);
+  const calibration::LinkageBasis basis = basisOf(reader, given, frames);
+  problems.insert(problems.end(), reader.problems().begin(), reader.problems().end());
+  const Checked<std::string> text = fileText(given.table);
+  problems.insert(problems.end(), text.problems.begin(), text.problems.end());
+  if (!problems.empty()) return fail(problems);
+  std::string problem;
+  const std::optional<calibration::StrokeTable> table = calibration::readStrokeTable(*text.value, problem);
+  if (!table) return fail({given.table + ": " + problem});
+  ProgressBar bar;
+  const calibration::LinkageFit fit = calibration::fitLinkage(*table, basis, given.cylinder, std::ref(bar));
+  if (!fit.problem.empty()) return fail({given.table + ": " + fit.problem});
+  (fit.determined() ? std::cout : std::cerr) << wordsOf(fit);
+  if (!fit.determined()) return kExitFailure;
+  std::ofstream stream(file.value->path(), std::ios::binary);
+  if (!((stream << yamlOf(fit, given, frames)) && stream.flush())) return fail({given.output + ": cannot be written"});
+  stream.close();
+  const std::string why = file.value->publish();
+  if (!why.empty()) return fail({why});
+  return finishOutput();
+}
+
+}  // namespace hammer_loads
