@@ -61,17 +61,17 @@ class Finder {
 
   bool readable(const BoomModel& model) {
     if (model.given().cylinders().empty()) return refuse("cylinders: [], must be some for calibrate --boom");
+    BoomPoints free;  // one recording alone may have poses that weigh nothing
     for (std::size_t r = 0; r < points_.size(); ++r) {
       if (points_[r].points.empty())
         return refuse("no instant at which every joint and pressure is known and the hammer rests");
-      if (weights_[r].mass > 0.0) continue;
-      for (const std::string& line : misreadings(model, points_[r])) {
-        if (!result_.problem.empty()) result_.problem += "\n";
-        result_.problem += line;
-      }
+      if (weights_[r].mass == 0.0)
+        free.points.insert(free.points.end(), points_[r].points.begin(), points_[r].points.end());
     }
+    const auto add = [this](const std::string& line) { result_.problem += (result_.problem.empty() ? "" : "\n") + line; };
+    for (const std::string& line : misreadings(model, free)) add(line);
     for (const std::string& line : noisySensors(model.given().chain(), points_, result_.names))
-      result_.problem += (result_.problem.empty() ? "" : "\n") + line;
+      add(line);
     return result_.problem.empty();
   }
 

@@ -18,7 +18,7 @@ namespace {
 using Unknowns = LinkageUnknowns;
 using Vector = LinkageUnknowns::Vector;
 
-constexpr std::size_t kLeastRows = 12;  // nine unknowns and what they leave
+constexpr std::size_t kLeastTableRows = 12;  // nine unknowns and what they leave
 constexpr std::size_t kMostRows = 400;  // of a longer table some are left out
 constexpr int kPieces = 40;             // differences are over this part of the table
 constexpr double kDifferences = 6.0;    // their weight: the lever is what the lengths are for
@@ -28,8 +28,8 @@ constexpr double kLeastLink = 0.05;    // a shorter link, or lever of the driven
 constexpr double kAnyPlace = 1.0;      // standard deviation of a pin that was not measured, about the joint [m]
 constexpr double kAnyLink = 0.4;       // mean and standard deviation of a link's length [m]
 constexpr double kReading = 1e-4;      // of a stroke: what is left is not taken for less [m]
-constexpr double kStrongCorrelation = 0.9;  // correlation
-// Numerical: kLeastRows, kMostRows, kPieces, kDifferences, kStarts, kBest, kLeastLink, kAnyPlace, kAnyLink, kReading, kStrongCorrelation
+constexpr double kInseparable = 0.9;  // correlation
+// Numerical: kLeastTableRows, kMostRows, kPieces, kDifferences, kStarts, kBest, kLeastLink, kAnyPlace, kAnyLink, kReading, kInseparable
 
 BucketLinkage linkageOf(const Vector& x, double branch, double sense) {
   return {{x.segment<2>(Unknowns::kBaseX), x.segment<2>(Unknowns::kGuideX), x.segment<2>(Unknowns::kRodX), sense},
@@ -77,13 +77,13 @@ class Problem {
     return 0;
   }
   int df(const Eigen::VectorXd& x, Eigen::MatrixXd& J) const {
-    constexpr double kStep = 1e-6;  // [m]
+    constexpr double kLengthStep = 1e-6;  // [m]
     Eigen::VectorXd up(values()), down(values());
     for (int i = 0; i < Unknowns::kCount; ++i) {
       Eigen::VectorXd moved = x;
-      moved[i] = x[i] + kStep, (*this)(moved, up);
-      moved[i] = x[i] - kStep, (*this)(moved, down);
-      J.col(i) = (up - down) / (2.0 * kStep);
+      moved[i] = x[i] + kLengthStep, (*this)(moved, up);
+      moved[i] = x[i] - kLengthStep, (*this)(moved, down);
+      J.col(i) = (up - down) / (2.0 * kLengthStep);
     }
     return 0;
   }
@@ -222,7 +222,7 @@ void fillEstimates(const Problem& problem, const LinkageBasis& basis, const std:
     fit.estimates.push_back(e);
     for (int j = 0; j < i; ++j) {
       const double r = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
-      if (std::abs(r) > kStrongCorrelation)
+      if (std::abs(r) > kInseparable)
         fit.correlations.push_back({fit.estimates[static_cast<std::size_t>(j)].key, e.key, r});
     }
   }
@@ -259,8 +259,8 @@ std::optional<StrokeTable> readStrokeTable(const std::string& csv, std::string& 
     }
     table.stroke.push_back(stroke), table.angle.push_back(angle);
   }
-  if (table.stroke.size() >= kLeastRows) return table;
-  problem = format("%zu rows, must be at least %zu over the whole stroke", table.stroke.size(), kLeastRows);
+  if (table.stroke.size() >= kLeastTableRows) return table;
+  problem = format("%zu rows, must be at least %zu over the whole stroke", table.stroke.size(), kLeastTableRows);
   return {};
 }
 

@@ -97,7 +97,7 @@ double quietNoise(const BoomPoints& recording, int joint) {
   return *tenth;
 }
 
-double median(std::vector<double> values) {
+double middleOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -114,7 +114,7 @@ std::vector<std::string> noisySensors(const Chain& chain, const std::vector<Boom
     for (std::size_t r = 0; r < noise.size(); ++r) {
       std::vector<double> others = noise;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
-      const double usual = median(others);
+      const double usual = middleOf(others);
       if (!(usual > 0.0) || noise[r] <= kFaultyNoise * usual) continue;
       lines.push_back(format("%s: its sensor's noise is %.0f times that of the other recordings in %s, must be within "
                              "%.0f times: faulty there, leave that recording out",

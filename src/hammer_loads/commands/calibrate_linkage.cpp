@@ -22,7 +22,7 @@ namespace {
 
 using calibration::LinkageUnknowns;
 
-struct Arguments {
+struct LinkageArguments {
   std::string table, output, cylinder{"hammer_cylinder"}, urdf;
   std::vector<std::string> params;
   double tape_std{0.01};
@@ -36,7 +36,7 @@ struct Frames {
   double sense{1.0};
 };
 
-void addOptions(CommandLine& line, Arguments& given) {
+void addLinkageOptions(CommandLine& line, LinkageArguments& given) {
   line.option("--linkage", given.table, "columns stroke_m,angle_rad over the whole stroke").required().type("TABLE.csv");
   line.option("--write", given.output, "keys of the linkage, for --params beside the boom file").required().type("FILE.yaml");
   line.option("--cylinder", given.cylinder, "name of the cylinder, in front of its keys").type("NAME").showDefault();
@@ -51,7 +51,7 @@ void addOptions(CommandLine& line, Arguments& given) {
 }
 
 /// Of the joint in the description; the joint's origin and +y without one.
-std::vector<std::string> findFrames(ParameterReader& reader, const Arguments& given, Frames& frames) {
+std::vector<std::string> findFrames(ParameterReader& reader, const LinkageArguments& given, Frames& frames) {
   const std::string key = given.cylinder + "_joint";
   if (given.urdf.empty()) return {};
   const Checked<std::string> text = fileText(given.urdf);
@@ -79,7 +79,7 @@ double originOf(int unknown, const Frames& frames) {
   return before ? frames.origin[unknown % 2] : 0.0;
 }
 
-calibration::LinkageBasis basisOf(ParameterReader& reader, const Arguments& given, const Frames& frames) {
+calibration::LinkageBasis tapeOf(ParameterReader& reader, const LinkageArguments& given, const Frames& frames) {
   calibration::LinkageBasis basis;
   basis.tape_deviation = given.tape_std, basis.sense = frames.sense;
   for (int i = 0; i < LinkageUnknowns::kCount; ++i) {
@@ -108,7 +108,7 @@ std::string wordsOf(const calibration::LinkageFit& fit) {
   return text;
 }
 
-std::string yamlOf(const calibration::LinkageFit& fit, const Arguments& given, const Frames& frames) {
+std::string yamlOf(const calibration::LinkageFit& fit, const LinkageArguments& given, const Frames& frames) {
   const std::string name = given.cylinder + "_";
   std::string text = std::string(kLinkageYamlBegins) + " " +
                      onOneLine(std::filesystem::path(given.table).filename().string()) + ":\n" +
@@ -126,13 +126,13 @@ std::string yamlOf(const calibration::LinkageFit& fit, const Arguments& given, c
   return text;
 }
 
-std::string whyFileMustStay(const std::string& name) {
+std::string whyLinkageMustStay(const std::string& name) {
   std::string line;
   std::getline(std::ifstream(name), line);
   return line.rfind(kLinkageYamlBegins, 0) == 0 ? "" : "it holds no linkage that was fitted";
 }
 
-int fail(const std::vector<std::string>& problems) {
+int failWith(const std::vector<std::string>& problems) {
   for (const std::string& problem : problems) std::cerr << problem << '\n';
   return kExitFailure;
 }
@@ -145,38 +145,38 @@ bool asksForLinkage(int argc, const char* const* argv) {
 
 int calibrateLinkage(int argc, const char* const* argv) {
   CommandLine line("Lengths of a cylinder's bucket linkage from a table of stroke and angle", "calibrate");
-  Arguments given;
-  addOptions(line, given);
+  LinkageArguments given;
+  addLinkageOptions(line, given);
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   std::vector<std::string> inputs = given.params;
   inputs.push_back(given.table);
-  Checked<OutputFile> file = OutputFile::make({given.output, inputs, given.force, whyFileMustStay});
-  if (!file.value) return fail(file.problems);
+  Checked<OutputFile> file = OutputFile::make({given.output, inputs, given.force, whyLinkageMustStay});
+  if (!file.value) return failWith(file.problems);
   ParameterMap parameters;
   std::vector<std::string> problems;
-  if (!addFiles(given.params, parameters, problems) || !problems.empty()) return fail(problems);
+  if (!addFiles(given.params, parameters, problems) || !problems.empty()) return failWith(problems);
   ParameterReader reader(std::move(parameters));
   Frames frames;
   problems = findFrames(reader, given, frames);
-  const calibration::LinkageBasis basis = basisOf(reader, given, frames);
+  const calibration::LinkageBasis basis = tapeOf(reader, given, frames);
   problems.insert(problems.end(), reader.problems().begin(), reader.problems().end());
   const Checked<std::string> text = fileText(given.table);
   problems.insert(problems.end(), text.problems.begin(), text.problems.end());
-  if (!problems.empty()) return fail(problems);
+  if (!problems.empty()) return failWith(problems);
   std::string problem;
   const std::optional<calibration::StrokeTable> table = calibration::readStrokeTable(*text.value, problem);
-  if (!table) return fail({given.table + ": " + problem});
+  if (!table) return failWith({given.table + ": " + problem});
   ProgressBar bar;
   const calibration::LinkageFit fit = calibration::fitLinkage(*table, basis, given.cylinder, std::ref(bar));
-  if (!fit.problem.empty()) return fail({given.table + ": " + fit.problem});
+  if (!fit.problem.empty()) return failWith({given.table + ": " + fit.problem});
   (fit.determined() ? std::cout : std::cerr) << wordsOf(fit);
   if (!fit.determined()) return kExitFailure;
   std::ofstream stream(file.value->path(), std::ios::binary);
-  if (!((stream << yamlOf(fit, given, frames)) && stream.flush())) return fail({given.output + ": cannot be written"});
+  if (!((stream << yamlOf(fit, given, frames)) && stream.flush())) return failWith({given.output + ": cannot be written"});
   stream.close();
   const std::string why = file.value->publish();
-  if (!why.empty()) return fail({why});
+  if (!why.empty()) return failWith({why});
   return finishOutput();
 }
 
