@@ -30,8 +30,8 @@ double covered(const ForceTrace& estimate, const ForceTrace& truth) {
 TEST(BlowTrace, ShowsARingThatOneLevelFollows) {
   const BlowTrace trace = blowTrace(test::heldHull(*load(configDirectory(), {}).value));
   EXPECT_EQ(trace.truth.time.size(), 501U);
-  EXPECT_GE(trace.linkage.time.size(), 45U);
-  EXPECT_GE(trace.elastic.time.size(), 45U);
+  EXPECT_GE(trace.linkage.time.size(), 40U);
+  EXPECT_GE(trace.elastic.time.size(), 40U);
   EXPECT_NEAR(trace.truth.time.front(), -0.005, 1e-9);
   const auto [least, most] = std::minmax_element(trace.truth.force_z.begin() + 100, trace.truth.force_z.end());
   EXPECT_LT(*least, -4000.0);

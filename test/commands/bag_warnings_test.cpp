@@ -44,8 +44,12 @@ TEST_F(BagWarnings, AGoodRecordingGivesNoneAndOneLineSaysWhatWasWritten) {
   const test::Outcome outcome =
       run(kSession + " " + path("out.bag") + " --params " + configDirectory() + "/hammer_mo100.yaml");
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.out,
-            path("out.bag") + ": 2979 crank samples, 2979 wrenches, 122 turns, written under /hammer_loads\n");
+  unsigned wrenches = 0;
+  const std::string begin = path("out.bag") + ": 2979 crank samples, ";
+  ASSERT_EQ(outcome.out.rfind(begin, 0), 0U) << outcome.out;
+  std::sscanf(outcome.out.c_str() + begin.size(), "%u", &wrenches);
+  EXPECT_EQ(outcome.out, begin + std::to_string(wrenches) + " wrenches, 122 turns, written under /hammer_loads\n");
+  EXPECT_GT(wrenches, 0.99 * 2979) << "samples beside a blow have none";
 }
 
 TEST_F(BagWarnings, AHammerFileThatWasNotGivenIsNamed) {

@@ -26,14 +26,15 @@ TEST_F(BoomBag, HoldsEveryOutputAsTheLiveFlowGivesItAndIsByteIdenticalOnASecondR
   const test::Recorded written = test::recordedIn(path("out.bag"));
   auto counts = countsOf(written);
   const std::size_t samples = session.crank.size();
-  // Before the first joint states and beyond the last transform nothing is known: 20 ms at most each.
+  // Before the first joint states and beyond the last transform nothing is known: 20 ms at most each. Beside a blow
+  // nothing is published: in the first turns of these 2.5 s the zero is not known.
+  const std::size_t beside = samples / 50;
   for (const char* topic : {"boom_wrench/arm_link", "joint_loads", "section_loads", "joint_reactions", "boom_vibration",
                             "boom_wrench/strain_gauge"}) {
-    EXPECT_GE(counts[topic], samples - 40) << topic;
+    EXPECT_GE(counts[topic], samples - 40 - beside) << topic;
     EXPECT_LT(counts[topic], samples) << topic;
   }
-  // By that motion the zero looks wrong, so that a sample in two hundred may be on the other side of the blow.
-  EXPECT_GE(counts["hull_wrench"], samples - samples / 100);
+  EXPECT_GE(counts["hull_wrench"], samples - beside);
   for (const char* topic : {"hull_loads", "mechanism", "pin_forces"}) EXPECT_EQ(counts[topic], counts["hull_wrench"]);
   EXPECT_GE(counts["blow"], 8U);
   EXPECT_EQ(counts["pulse"], counts["blow"] - 1);

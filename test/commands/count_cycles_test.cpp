@@ -1,7 +1,6 @@
 // count_cycles as its user runs it.
 #include <gtest/gtest.h>
 
-
 #include "support/command.h"
 
 namespace hammer_loads {

@@ -168,8 +168,11 @@ TEST_F(ProcessBag, WritesOutputsAtTheRecordTimeOfTheirInput) {
   rosbag::Bag in(data("mo100_100hz.bag")), out(path("out.bag"));
   rosbag::View inputs(in, rosbag::TopicQuery(std::string("/hammer/crank")));
   rosbag::View outputs(out, rosbag::TopicQuery(std::string("/hammer_loads/hull_wrench")));
-  ASSERT_EQ(inputs.size(), outputs.size());
-  for (auto i = inputs.begin(), o = outputs.begin(); i != inputs.end(); ++i, ++o) {
+  ASSERT_GT(outputs.size(), 0.99 * inputs.size()) << "samples beside a blow have none";
+  auto i = inputs.begin();
+  for (auto o = outputs.begin(); o != outputs.end(); ++o, ++i) {
+    while (i != inputs.end() && i->getTime() < o->getTime()) ++i;
+    ASSERT_TRUE(i != inputs.end());
     ASSERT_EQ(i->getTime(), o->getTime());
     ASSERT_EQ(i->instantiate<sensor_msgs::JointState>()->header.stamp,
               o->instantiate<geometry_msgs::WrenchStamped>()->header.stamp);

@@ -136,7 +136,9 @@ TEST_F(Tables, RefusalsAndWarningsAreThoseOnTheConsole) {
   }
   const test::Outcome outcome = tables(path("in.bag"), "out.sqlite");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const std::vector<std::string> refused = ask("out.sqlite", "SELECT reason || ': ' || count FROM refusals");
+  const std::vector<std::string> refused = ask("out.sqlite",
+                                               "SELECT reason || ': ' || count FROM refusals "
+                                               "WHERE reason != 'beside the blow'");
   ASSERT_EQ(refused.size(), 1U);
   EXPECT_NE(outcome.err.find("crank samples without a wrench, " + refused[0] + "\n"), std::string::npos) << outcome.err;
   const std::vector<std::string> warnings = ask("out.sqlite", "SELECT text FROM warnings ORDER BY place");

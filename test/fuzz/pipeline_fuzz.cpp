@@ -131,7 +131,9 @@ class Session {
     require(loads.turn_ends <= loads.ends.size());
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
       const TurnEnd& end = loads.ends[i];
-      require((std::isfinite(end.blow.energy) != end.blow.impossible) && std::isfinite(end.blow.support_impulse_z));
+      // An energy outside of what is possible is NaN, whether or not its deviation explains it.
+      require(std::isnan(end.blow.energy) || (std::isfinite(end.blow.energy) && !end.blow.impossible));
+      require(std::isfinite(end.blow.support_impulse_z));
       if (end.pulse) require(std::isfinite(end.pulse->amplitude) && std::isfinite(end.pulse->half_sine_rms_error));
     }
     count(loads);

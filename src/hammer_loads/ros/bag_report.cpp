@@ -34,13 +34,14 @@ void add(const SampleCounts& counts, SampleCounts& sum) {
 }
 
 std::string textOf(const BagReport& report) {
+  constexpr double kMuch = 0.02;  // share of the samples; of a good recording half a per cent lie beside a blow
   std::string text;
   for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
     if (report.crank.refused[i] == 0) continue;
     text += std::string("crank samples without a wrench, ") + kRefusalNames[i] + ": " +
             std::to_string(report.crank.refused[i]) + "\n";
   }
-  if (report.crank.beside_blow > 0)
+  if (static_cast<double>(report.crank.beside_blow) > kMuch * static_cast<double>(report.samples))
     text += "crank samples closer to the blow than the angle is known, not published: " +
             std::to_string(report.crank.beside_blow) + "\n";
   return text;
