@@ -75,6 +75,8 @@ def class_of(constant, codes):
 
 
 def main():
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        sys.exit(print(__doc__))
     count = collections.Counter()
     for room in sys.argv[1:] or ROOMS:
         paths = sorted((ROOT / "src/hammer_loads" / room).iterdir())

@@ -59,15 +59,16 @@ class Machine {
     return crank_.getNumSubscribers() > 0 && joints_.getNumSubscribers() > 1;  // node, robot_state_publisher
   }
 
-  /// The next joint states, then the crank samples up to their stamp; waits for the wrench of the last one, so that no
-  /// topic runs ahead of another.
+  /// The next joint states, then the crank samples up to their stamp. Waits for a wrench of the last ones, so that no
+  /// topic runs ahead of another; samples beside a blow have none.
   bool work() {
     simulation::Session period;
     time_ += kPeriod;
     stream_.advanceTo(time_, period);
     for (const simulation::JointReading& reading : period.joints) tellJoints(reading);
     for (const simulation::CrankReading& reading : period.crank) tellCrank(reading);
-    return eventually([this] { return hull.last() >= samples.back(); });
+    const ros::Time due = samples.back() - ros::Duration(kMostBeside);
+    return eventually([this, due] { return hull.last() >= due; });
   }
   bool workUntil(const std::function<bool()>& condition) {
     const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(120.0);
@@ -94,7 +95,8 @@ class Machine {
   std::array<double, 4> position{};             ///< of the joints [rad]
 
  private:
-  static constexpr double kPeriod = 0.02;  // [s] of joint states
+  static constexpr double kPeriod = 0.02;      // [s] of joint states
+  static constexpr double kMostBeside = 0.03;  // [s] without a wrench, in the first turns
 
   static simulation::MachineSettings settings() {
     simulation::MachineSettings s = simulation::workingMo100();
