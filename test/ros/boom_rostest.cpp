@@ -168,7 +168,8 @@ TEST_F(BoomTest, WithoutJointStatesTheJointLoadsAreSilentAndTheHullWrenchGoesOn)
   EXPECT_TRUE(machine_->says("boom", "no joint loads"));
   EXPECT_TRUE(isWhole(machine_->hull, from, now()));
   const auto expectSilence = [&](const auto& output, const char* what) {
-    EXPECT_TRUE(eventually([&] { return output.count(from, silent) + 1U >= machine_->hull.count(from, silent); })) << what;
+    EXPECT_TRUE(eventually([&] { return output.count(from, silent) + 1U >= machine_->hull.count(from, silent); }))
+        << what;
     EXPECT_LE(output.last(), silent) << what;
   };
   expectSilence(machine_->loads, "joint loads"), expectSilence(machine_->arm, "wrench at the arm");

@@ -65,7 +65,7 @@ TEST_F(LatencyTest, TheNodeAddsLittleToABareRelay) {
   sample.name = {"hammer_crank_joint"};
   sample.position.resize(1);
   sample.velocity = {4.0};  // a slow crank, which has a wrench beside a blow as well
-  crank_.publish(sample);  // the relay advertises at its first message
+  crank_.publish(sample);   // the relay advertises at its first message
   ASSERT_TRUE(eventually([this] { return relay_.getNumPublishers() > 0; }));
   Clock::time_point last = Clock::now();
   for (std::uint32_t i = 0; i < kSamples; ++i) {
