@@ -56,6 +56,8 @@ def draw(axes, boom, name, joint, angle, branch):
 
 
 def main():
+    if "--help" in sys.argv:
+        sys.exit(print(__doc__))
     boom_file, name, joint_x, joint_z, out, *angles = sys.argv[1:]
     with open(boom_file, encoding="utf-8") as text:
         boom = yaml.safe_load(text)
