@@ -256,10 +256,8 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
          std::abs(result_.crank.speed) <= kMostSpeedUnproven * nominal_speed;
 }
 
-/// Of a crank that is held at constant speed, which shows little of itself: no force's standard deviation is above five
-/// times withhold_above of its peak: of what was seen in the last minute,
-/// within what a turn at constant speed may have; of the latter before the first turn. (The drive's part of the moment
-/// has no such peak.)
+/// A crank held at constant speed shows little of itself: its samples are known where no force's standard deviation is
+/// above five times withhold_above of the peak of the last minute, within the bounds of a turn at constant speed.
 bool Pipeline::isKnown() const noexcept {
   if (crank_.tracker().driveInertia() > 0.0) return true;  // of a crank at work
   const double most = std::max(1.0, speedScale()) * peak_at_speed_;
