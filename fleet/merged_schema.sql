@@ -19,7 +19,7 @@ CREATE TABLE runs(
   blows BIGINT, backward_passes BIGINT, consistency DOUBLE PRECISION, timing_noise_s DOUBLE PRECISION,
   speed_noise_rad_s DOUBLE PRECISION, angle_resolution_rad DOUBLE PRECISION, drive_inertia_kg_m2 DOUBLE PRECISION,
   drive_inertia_deviation DOUBLE PRECISION, equivalent_cycles_per_hour DOUBLE PRECISION, blank_strokes BIGINT,
-  judged_blows BIGINT, unpressed_blows BIGINT, still_time_s DOUBLE PRECISION);
+  judged_blows BIGINT, unpressed_blows BIGINT, still_time_s DOUBLE PRECISION, hull_pitch_rad DOUBLE PRECISION);
 CREATE INDEX runs_of_bag ON runs(bag_id);
 
 CREATE VIEW parameters AS

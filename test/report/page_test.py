@@ -60,6 +60,7 @@ class Page(ReportTest):
         health = page.table("The crank's sensor")
         self.assertEqual(health["Consistency"]["Verdict"], "sound")
         self.assertEqual(health["Restarts"]["Value"], "2")
+        self.assertEqual((health["Hull pitch"]["Value"], health["Hull pitch"]["Verdict"]), ("0.35 rad", "sound"))
         self.assertEqual(health["Refused samples"]["Value"].split()[0], "10")
         self.assertEqual(page.table("Refused samples by reason")["duplicate"]["Samples"], "7")
 

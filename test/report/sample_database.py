@@ -28,7 +28,7 @@ CREATE TABLE runs(run_id INTEGER PRIMARY KEY, run_key TEXT NOT NULL UNIQUE, inpu
   samples INTEGER, published INTEGER, restarts INTEGER, turns INTEGER, blows INTEGER, backward_passes INTEGER,
   consistency REAL, timing_noise_s REAL, speed_noise_rad_s REAL, angle_resolution_rad REAL,
   drive_inertia_kg_m2 REAL, drive_inertia_deviation REAL, equivalent_cycles_per_hour REAL, blank_strokes INTEGER,
-  judged_blows INTEGER, unpressed_blows INTEGER, still_time_s REAL);
+  judged_blows INTEGER, unpressed_blows INTEGER, still_time_s REAL, hull_pitch_rad REAL);
 CREATE TABLE parameters(run_id INTEGER, key TEXT, value TEXT, shipped TEXT, PRIMARY KEY(run_id, key));
 CREATE TABLE refusals(run_id INTEGER, reason TEXT, count INTEGER);
 CREATE TABLE warnings(run_id INTEGER, place INTEGER, key TEXT, text TEXT);
@@ -186,11 +186,11 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
             write_trace(db, run_id, kind, turn, pulses[turn - 1][3:], rng)
     text = "".join(f"{key}: {value}\n" for key, (value, _) in sorted(machine.parameters.items()))
     source = sha(f"bag {machine.name} {seed} {seconds} {first_ns}")
-    db.execute(f"INSERT INTO runs VALUES({','.join('?' * 29)})",
+    db.execute(f"INSERT INTO runs VALUES({','.join('?' * 30)})",
                (run_id, sha(source + sha(text) + "0.1.0" + str(run_id)), source, sha(text),
                 sha("machine " + machine.name), "0.1.0", "abc1234", text, first_ns, stamp, stamp / SECOND -
                 first_ns / SECOND, "linkage", int(1000 * seconds) + 9, int(1000 * seconds), restarts, len(pulses),
-                len(blows), 0, machine.consistency, machine.jitter_s, None, 1.5e-3, 0.29, 0.02, 3600.0, *machine.misuse))
+                len(blows), 0, machine.consistency, machine.jitter_s, None, 1.5e-3, 0.29, 0.02, 3600.0, *machine.misuse, 0.35))
     db.executemany("INSERT INTO parameters VALUES(?,?,?,?)",
                    [(run_id, k, v, s) for k, (v, s) in sorted(machine.parameters.items())])
     db.executemany("INSERT INTO refusals VALUES(?,?,?)", [(run_id, r, n) for r, n in refusals.items()])

@@ -49,22 +49,25 @@ TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
     record.judged_blows = 50;
     record.unpressed_blows = 7;
     record.still_time = 12.5;
+    record.hull_pitch = -0.25;
     writer.run(2, record);
   });
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement rows(
       database,
       "SELECT blank_strokes, judged_blows, unpressed_blows, still_time_s, unpressed_blows IS "
-      "NULL FROM runs ORDER BY run_id");
+      "NULL, hull_pitch_rad FROM runs ORDER BY run_id");
   ASSERT_TRUE(rows.step());
   EXPECT_EQ(rows.integer(0), 3);
   EXPECT_EQ(rows.integer(1), 0);
   EXPECT_EQ(rows.integer(4), 1);
   EXPECT_TRUE(std::isnan(rows.number(3)));
+  EXPECT_TRUE(std::isnan(rows.number(5)));
   ASSERT_TRUE(rows.step());
   EXPECT_EQ(rows.integer(1), 50);
   EXPECT_EQ(rows.integer(2), 7);
   EXPECT_EQ(rows.number(3), 12.5);
+  EXPECT_EQ(rows.number(5), -0.25);
 }
 
 }  // namespace

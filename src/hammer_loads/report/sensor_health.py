@@ -4,6 +4,7 @@ from report.formats import Table, number, scaled
 CONSISTENT = 3.0   # times the variance; a sound sensor has 0.9
 JITTER_S = 1e-4    # from there on the wrench is some 0.2 % worse
 REFUSED = 0.01     # of the samples
+PITCH_RAD = 1.2    # as the warning of the node
 SOUND, DOUBTFUL = "sound", "look at it"
 
 
@@ -16,6 +17,15 @@ def refusals_of(subject):
 
 def worst_of(subject, name):
     return max((run[name] for run in subject.runs if run[name] is not None), default=None)
+
+
+def worst_pitch(subject):
+    known = (run["hull_pitch_rad"] for run in subject.runs if run["hull_pitch_rad"] is not None)
+    return max(known, key=abs, default=None)
+
+
+def judged_pitch(value):
+    return judged(value if value is None else abs(value), PITCH_RAD)
 
 
 def judged(value, limit):
@@ -43,6 +53,8 @@ def health_rows(subject):
          "drop-outs, jumps, time running back; one a run is its start"],
         ["Passages backward", number(backward), judged(backward, 3),
          "more than a few: crank_direction has the wrong sign"],
+        ["Hull pitch", f"{number(worst_pitch(subject), 3)} rad", judged_pitch(worst_pitch(subject)),
+         "largest at the end of a run; at work beyond 1.2 rad a sign or an offset of a boom joint is wrong"],
         ["Resolution of the angle", f"{number(scaled(resolution, 1e3), 3)} mrad", "", "step between two readings"],
         ["Noise of the speed", f"{number(noise, 3)} rad/s", "", "where the speed is measured"],
         ["Drive inertia", f"{number(worst_of(subject, 'drive_inertia_kg_m2'), 3)} kg m\u00b2",

@@ -141,6 +141,7 @@ void BagTables::end(const HammerBridge& bridge, std::uint64_t samples) {
   record.blows = bridge.outputs().blow.sent();
   addCounts(bridge.pipeline().counts(), record);
   addLearned(bridge.pipeline().crank().tracker(), record);
+  record.hull_pitch = bridge.pipeline().hull().pitch().pitch();
   writer_.traces(run(), traces_);
   life_.end(bridge);
 }

@@ -34,6 +34,7 @@ struct RunRecord {
   std::uint64_t blank_strokes{}, judged_blows{};
   std::optional<std::uint64_t> unpressed_blows;  ///< of the judged ones; nothing where none was
   double still_time{kUnknown};                   ///< hammering without penetration [s]
+  double hull_pitch{kUnknown};                   ///< at the end of the run [rad]
   double consistency{kUnknown};
   double timing_noise{kUnknown};             ///< [s]
   double speed_noise{kUnknown};              ///< [rad/s]

@@ -21,7 +21,7 @@ CREATE TABLE runs(
   level TEXT, samples INTEGER, published INTEGER, restarts INTEGER, turns INTEGER, blows INTEGER, backward_passes INTEGER,
   consistency REAL, timing_noise_s REAL, speed_noise_rad_s REAL, angle_resolution_rad REAL, drive_inertia_kg_m2 REAL,
   drive_inertia_deviation REAL, equivalent_cycles_per_hour REAL,
-  blank_strokes INTEGER, judged_blows INTEGER, unpressed_blows INTEGER, still_time_s REAL);
+  blank_strokes INTEGER, judged_blows INTEGER, unpressed_blows INTEGER, still_time_s REAL, hull_pitch_rad REAL);
 CREATE TABLE parameters(run_id INTEGER, key TEXT, value TEXT, shipped TEXT, PRIMARY KEY(run_id, key)) WITHOUT ROWID;
 CREATE TABLE refusals(run_id INTEGER, reason TEXT, count INTEGER, PRIMARY KEY(run_id, reason)) WITHOUT ROWID;
 CREATE TABLE warnings(run_id INTEGER, place INTEGER, key TEXT, text TEXT, PRIMARY KEY(run_id, place)) WITHOUT ROWID;

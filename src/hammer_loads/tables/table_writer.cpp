@@ -110,13 +110,13 @@ void TableWriter::trace(std::int64_t run, const std::string& kind, const TurnTra
 
 void TableWriter::run(std::int64_t run, const RunRecord& r) {
   const std::string key = sha256Of({r.input_sha256, r.parameters_sha256, r.version, std::to_string(run)});
-  Statement(database_, insertSql("runs", 29).c_str())
+  Statement(database_, insertSql("runs", 30).c_str())
       .run(run, key, r.input_sha256, r.parameters_sha256, r.machine, r.version, r.revision, r.parameters_yaml,
            r.first_stamp, r.last_stamp, finite(r.duration), r.level, r.samples, r.published, r.restarts, r.turns,
            r.blows, r.backward_passes, finite(r.consistency), finite(r.timing_noise), finite(r.speed_noise),
            finite(r.angle_resolution), finite(r.drive_inertia), finite(r.drive_inertia_deviation),
            finite(r.equivalent_cycles_per_hour), r.blank_strokes, r.judged_blows, r.unpressed_blows,
-           finite(r.still_time));
+           finite(r.still_time), finite(r.hull_pitch));
   Statement parameter(database_, insertSql("parameters", 4).c_str());
   for (const RunRecord::Parameter& p : r.parameters) parameter.run(run, p.key, p.value, p.shipped);
   Statement refusal(database_, insertSql("refusals", 3).c_str());
