@@ -22,7 +22,7 @@ namespace monte_carlo {
 namespace {
 
 constexpr double kEver = std::numeric_limits<double>::infinity();
-constexpr Eigen::Index kHammers = 200;
+constexpr Eigen::Index kHammers = 400;
 constexpr auto kConstants = static_cast<Eigen::Index>(kHammerConstants.size());
 
 using Draw = Eigen::Matrix<double, 1, kConstants>;

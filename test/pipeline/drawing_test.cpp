@@ -19,13 +19,13 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
       0.0;
   settings.mechanism = test::mechanismOf(parameters);
   double covered[3]{}, energy = 0.0, impulse = 0.0, amplitude = 0.0;
-  int ranges = 0;
-  constexpr int kDrawings = 6;
+  int ranges = 0, low = 0;
+  constexpr int kDrawings = 12;
   for (int i = 0; i < kDrawings; ++i) {
     const accuracy::DrawingRow row = accuracy::drawingRow(settings, 901 + static_cast<std::uint64_t>(i), 1.0);
     for (int k = 0; k < 3; ++k) {
       const double part = row.samples[static_cast<std::size_t>(k)].covered;
-      EXPECT_GT(part, 0.75) << row.seed << ' ' << k;
+      low += part < 0.75;
       covered[k] += part / kDrawings;
     }
     energy += row.energy.covered / kDrawings;
@@ -38,6 +38,7 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
     EXPECT_LT(part, 0.995);  // nor are they too large
   }
   // A drawing's errors are alike in all its turns: one of six may be beyond two deviations.
+  EXPECT_LE(low, kDrawings / 6);
   for (const double part : {energy, impulse, amplitude}) EXPECT_GT(part, 0.8);
   EXPECT_GE(ranges, kDrawings - 1);
 }

@@ -3,6 +3,7 @@ import functools
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 
 import pytest
@@ -31,7 +32,7 @@ def crane_bags():
     """A folder with the crane's bags and stroke tables."""
     source = real_data() / "loader_crane"
     folder = pathlib.Path(tempfile.mkdtemp(prefix="loader_crane_"))
-    done = subprocess.run(["/usr/bin/env", "python3", CRANE / "convert", source, folder], capture_output=True, text=True,
+    done = subprocess.run([sys.executable, CRANE / "convert", source, folder], capture_output=True, text=True,
                           check=False)
     assert done.returncode == 0, done.stderr
     return folder

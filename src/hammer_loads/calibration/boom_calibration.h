@@ -55,7 +55,7 @@ struct BoomResidual {
 struct BoomCalibration {
   /// A larger part of a joint's static torque leaves it undetermined, and then nothing is written: values belong
   /// together.
-  static constexpr double kLimit = 0.02;
+  static constexpr double kLimit = 0.03;
 
   std::vector<std::string> names;  ///< of the recordings
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
 constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
 constexpr double kHuber = 3.0;           // standard deviations of what is left
-constexpr int kMostRounds = 15;
+constexpr int kMostRounds = 40;
 constexpr double kSettled = 1e-3;              // of a standard deviation
 constexpr double kStep = 0.05;                 // of differences, in standard deviations before the recording
 constexpr std::size_t kNeighbouringRows = 100;  // of a row that may be alike: 20 s
