@@ -93,9 +93,11 @@ class Mcap:
         for kind, inner, _ in records(self.chunk, 0, size):
             at = Fields(inner)
             if kind == SCHEMA:
-                self.schemas[at.number("H")] = (at.text(), at.text(), at.text())
+                number = at.number("H")
+                self.schemas[number] = (at.text(), at.text(), at.text())
             elif kind == CHANNEL:
-                self.channels[at.number("H")] = (at.number("H"), at.text(), at.text(), at.pairs("text", "text"))
+                number = at.number("H")
+                self.channels[number] = (at.number("H"), at.text(), at.text(), at.pairs("text", "text"))
             elif kind == MESSAGE:
                 channel, _, time, _ = (at.number(code) for code in "HIQQ")
                 assert first <= time <= last and channel in self.channels
