@@ -18,7 +18,7 @@ void expectEqual(const RockerBlow& blow, const test::RigidImpact& truth, double 
   EXPECT_NEAR(blow.friction_work, truth.friction_work, 1e-10 * energy);
 }
 
-TEST(StrikingPoint, OfAnyRockerGivesTheImpulsesOfARigidBodyImpact) {
+TEST(StrikingPoint, GivesTheImpulsesOfARigidBodyImpactForAnyRocker) {
   std::mt19937 random(75);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
   int slid = 0;

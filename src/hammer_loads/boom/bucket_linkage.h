@@ -5,9 +5,9 @@
 
 namespace hammer_loads {
 
-/// As the boom file gives it; keys are `NAME_` and the names beside each member. The rod's pin is common to the guide
-/// link, which turns about a pivot on the link that carries the cylinder, and to the coupler, which ends on the driven
-/// link.
+/// Lengths in the boom file's terms; keys are `NAME_` and the names beside each member. The rod's pin is common to the
+/// guide link, which turns about a pivot on the link that carries the cylinder, and to the coupler, which ends on the
+/// driven link.
 struct BucketLinkageParameters {
   double guide_x{}, guide_z{};  ///< rocker_link_base_x_m, _z_m: pivot of the guide link, on the link before [m]
   double guide_length{};        ///< rocker_link_length_m: from that pivot to the common pin [m], > 0
@@ -19,10 +19,10 @@ struct BucketLinkageParameters {
 
 /// State of the linkage at one angle, in the plane (x, z) of the link that carries the cylinder, from the joint's axis.
 struct BucketLinkagePosition {
-  bool closed{};            ///< the links reach each other; otherwise guide and coupler are in line
-  double length{};          ///< of the cylinder, between its pins [m]
-  double arm{}, arm_rate{};  ///< dL/dq [m/rad] and d2L/dq2 [m/rad2]; zero where it is not closed
-  Eigen::Vector2d rod_pin;  ///< the common pin [m]
+  bool closed{};               ///< the links reach each other; otherwise guide and coupler are in line
+  double length{};             ///< of the cylinder, between its pins [m]
+  double arm{}, arm_rate{};    ///< dL/dq [m/rad] and d2L/dq2 [m/rad2]; zero where it is not closed
+  Eigen::Vector2d rod_pin;     ///< the common pin [m]
   Eigen::Vector2d driven_pin;  ///< of the coupler on the driven link [m]
 };
 

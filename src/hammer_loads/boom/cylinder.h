@@ -10,7 +10,7 @@
 
 namespace hammer_loads {
 
-/// As the boom file gives it; keys are `NAME_` and the names beside each member.
+/// Lengths in the boom file's terms; keys are `NAME_` and the names beside each member.
 struct CylinderParameters {
   std::string name;
   std::string joint;          ///< joint: the moving revolute joint that it spans
@@ -18,8 +18,8 @@ struct CylinderParameters {
   double rod_x{}, rod_z{};    ///< rod_x_m, rod_z_m: anchor on the link beyond, in its frame; the coupler's pin there,
                               ///< where there is a linkage [m]
   std::optional<BucketLinkageParameters> linkage{};  ///< linkage: bucket; nothing: the rod ends on the link beyond
-  double bore{};              ///< bore_m: diameter of the piston [m], > 0
-  double rod_diameter{};      ///< rod_diameter_m [m], > 0, < bore
+  double bore{};                                     ///< bore_m: diameter of the piston [m], > 0
+  double rod_diameter{};                             ///< rod_diameter_m [m], > 0, < bore
   double closed_length{};     ///< closed_length_m: between the cylinder's pins, rod in [m], > stroke
   double stroke{};            ///< stroke_m [m], > 0
   double bore_hose_volume{};  ///< bore_hose_volume_m3: oil trapped beside the piston's sweep, hose included, > 0
@@ -47,8 +47,8 @@ struct CylinderPosition {
   double arm{};        ///< dL/dq [m]; positive: extending drives the joint forward
   double arm_rate{};   ///< d2L/dq2 [m]
   bool dead_centre{};  ///< the arm is so short that no finite force holds the joint
-  /// Of a linkage: x, z of the rod's pin and of the coupler's on the link beyond, from the joint's origin, axes of the
-  /// link before [m].
+  /// Places in a linkage: x, z of the rod's pin and of the coupler's on the link beyond, from the joint's origin, axes
+  /// of the link before [m].
   Eigen::Vector2d rod_pin{0.0, 0.0}, driven_pin{0.0, 0.0};
 };
 
@@ -68,8 +68,8 @@ struct OilVolumes {
 /// link by its cylinder's own compression.
 class Cylinder {
  public:
-  /// Arms below this share of the shortest fixed side (joint to either anchor; of a linkage: joint to the coupler's pin,
-  /// or the guide link) are a dead centre: the force would be 50 times the torque over that side.
+  /// Arms below this share of the shortest fixed side (joint to either anchor; of a linkage: joint to the coupler's
+  /// pin, or the guide link) are a dead centre: the force would be 50 times the torque over that side.
   static constexpr double kDeadCentreRatio = 0.02;
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, a linkage that

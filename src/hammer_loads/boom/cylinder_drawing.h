@@ -10,9 +10,10 @@
 
 namespace hammer_loads {
 
-/// Of one cylinder whose joint turns about y. The barrel turns about its pin on the link before, the rod slides in it, the
-/// guide link turns about its pivot on the link before, the coupler about its pin on the link beyond. Angles are positive
-/// about +y; at zero each body lies along x of the link that carries it, and the cylinder is closed.
+/// Geometry of one cylinder whose joint turns about y. The barrel turns about its pin on the link before, the rod
+/// slides in it, the guide link turns about its pivot on the link before, the coupler about its pin on the link beyond.
+/// Angles are positive about +y; at zero each body lies along x of the link that carries it, and the cylinder is
+/// closed.
 class CylinderDrawing {
  public:
   static constexpr std::size_t kMost = 4;

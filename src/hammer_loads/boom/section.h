@@ -23,7 +23,7 @@ struct PartBeyond {
   double inertia_y{};                             ///< inertia_beyond_kg_m2: about y through that point [kg m2], >= 0
 };
 
-/// As the boom file gives it; keys are `NAME_section_` and the names beside each member.
+/// Lengths in the boom file's terms; keys are `NAME_section_` and the names beside each member.
 struct SectionParameters {
   std::string name;
   std::string link;                                  ///< link: between root_link and tip_link

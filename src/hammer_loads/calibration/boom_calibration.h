@@ -38,7 +38,7 @@ struct CylinderFit {
   double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
   double friction{};            ///< at that force [N]
   double friction_deviation{};  ///< standard [N]
-  /// What is held out fits far worse than what was fitted: the model does not hold, whatever its deviations say.
+  /// Held-out rows fit far worse than fitted ones: the model does not hold, whatever its deviations are.
   bool holds() const { return !(held_out > std::max(kHeldOutOverLeft * left, kHeldOutOverForce * force)); }
 
   static constexpr double kHeldOutOverLeft = 2.0, kHeldOutOverForce = 0.04;

@@ -102,15 +102,17 @@ std::string cylinderLine(const CylinderFit& f) {
       "%-20s %zu instants, force %.0f N rms; off before %.1f %%, left %.2f %%, last quarter by the others %.2f "
       "%%%s; friction %.0f +- %.0f N (%.1f %%)\n",
       f.name.c_str(), f.rows, f.force, percent(f.before, f.force), percent(f.left, f.force),
-      percent(f.held_out, f.force), f.holds() ? "" : ": DOES NOT FIT, nothing is written", f.friction, f.friction_deviation, percent(f.friction, f.force));
+      percent(f.held_out, f.force), f.holds() ? "" : ": DOES NOT FIT, nothing is written", f.friction,
+      f.friction_deviation, percent(f.friction, f.force));
 }
 
-/// What is left in each recording; nothing where there is one.
+/// Residuals of each recording; nothing where there is one recording.
 std::string recordingLine(const CylinderFit& f, const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t r = 0; r < f.left_in.size(); ++r)
     if (std::isfinite(f.left_in[r]))
-      text += format("%s%s %.2f %%", text.empty() ? "  left in " : ", ", names[r].c_str(), percent(f.left_in[r], f.force));
+      text +=
+          format("%s%s %.2f %%", text.empty() ? "  left in " : ", ", names[r].c_str(), percent(f.left_in[r], f.force));
   return text.empty() ? text : text + "\n";
 }
 

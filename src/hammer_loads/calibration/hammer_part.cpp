@@ -62,7 +62,7 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
   return all;
 }
 
-/// Of an eccentricity 0; of the others where the fit is: their priors are wide.
+/// An eccentricity's prior is about 0, that of the others about the fit: their priors are wide.
 Globals centreOf(const JointFit& fit) {
   Globals centre = fit.globals;
   centre.segment<4>(kSine1).setZero();

@@ -19,17 +19,18 @@ using Unknowns = LinkageUnknowns;
 using Vector = LinkageUnknowns::Vector;
 
 constexpr std::size_t kLeastTableRows = 12;  // nine unknowns and what they leave
-constexpr std::size_t kMostRows = 400;  // of a longer table some are left out
-constexpr int kPieces = 40;             // differences are over this part of the table
-constexpr double kDifferences = 6.0;    // their weight: the lever is what the lengths are for
+constexpr std::size_t kMostRows = 400;       // of a longer table some are left out
+constexpr int kPieces = 40;                  // differences are over this part of the table
+constexpr double kDifferences = 6.0;         // their weight: the lever is what the lengths are for
 constexpr int kStarts = 300;
-constexpr int kBest = 16;              // of them are fitted to the end
-constexpr double kLeastLink = 0.05;    // a shorter link, or lever of the driven pin, is none of a machine [m]
-constexpr double kAnyPlace = 1.0;      // standard deviation of a pin that was not measured, about the joint [m]
-constexpr double kAnyLink = 0.4;       // mean and standard deviation of a link's length [m]
-constexpr double kReading = 1e-4;      // of a stroke: what is left is not taken for less [m]
+constexpr int kBest = 16;             // of them are fitted to the end
+constexpr double kLeastLink = 0.05;   // a shorter link, or lever of the driven pin, is none of a machine [m]
+constexpr double kAnyPlace = 1.0;     // standard deviation of a pin that was not measured, about the joint [m]
+constexpr double kAnyLink = 0.4;      // mean and standard deviation of a link's length [m]
+constexpr double kReading = 1e-4;     // of a stroke: what is left is not taken for less [m]
 constexpr double kInseparable = 0.9;  // correlation
-// Numerical: kLeastTableRows, kMostRows, kPieces, kDifferences, kStarts, kBest, kLeastLink, kAnyPlace, kAnyLink, kReading, kInseparable
+// Numerical: kLeastTableRows, kMostRows, kPieces, kDifferences, kStarts, kBest, kLeastLink, kAnyPlace, kAnyLink,
+// kReading, kInseparable
 
 BucketLinkage linkageOf(const Vector& x, double branch, double sense) {
   return {{x.segment<2>(Unknowns::kBaseX), x.segment<2>(Unknowns::kGuideX), x.segment<2>(Unknowns::kRodX), sense},
@@ -105,13 +106,13 @@ class Problem {
   }
   bool closes(const Vector& x) const {
     const BucketLinkage linkage = linkageOf(x, branch_, sense_);
-    const double least = std::min({std::abs(x[Unknowns::kGuide]), std::abs(x[Unknowns::kCoupler]),
-                                   x.segment<2>(Unknowns::kRodX).norm()});
+    const double least = std::min(
+        {std::abs(x[Unknowns::kGuide]), std::abs(x[Unknowns::kCoupler]), x.segment<2>(Unknowns::kRodX).norm()});
     if (least < kLeastLink) return false;
     return std::all_of(rows_.begin(), rows_.end(),
                        [&](const Row& row) { return linkage.at(row.cosine, row.sine).closed; });
   }
-  /// Of rows alone, rms and largest [m].
+  /// Residuals of the rows alone, rms and largest [m].
   std::array<double, 2> left(const Vector& x) const {
     const BucketLinkage linkage = linkageOf(x, branch_, sense_);
     double sum = 0.0, worst = 0.0;
@@ -187,7 +188,7 @@ void refine(Problem& problem, Candidate& candidate) {
   candidate.cost = problem.closes(candidate.x) ? problem.left(candidate.x)[0] : kInfinity;
 }
 
-/// Of several that leave as little as readings are good for, the one that is most like what was known before.
+/// Selects, among fits whose residuals are within the readings' accuracy, the one nearest to the prior.
 const Candidate& mostProbable(Problem& problem, std::vector<Candidate>& all) {
   const auto less = [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; };
   problem.setNoise(std::max(kReading, std::min_element(all.begin(), all.end(), less)->cost));
@@ -231,8 +232,8 @@ void fillEstimates(const Problem& problem, const LinkageBasis& basis, const std:
 }  // namespace
 
 const std::array<const char*, LinkageUnknowns::kCount> LinkageUnknowns::kKeys{
-    "base_x_m",         "base_z_m", "rocker_link_base_x_m", "rocker_link_base_z_m", "rocker_link_length_m",
-    "coupler_length_m", "rod_x_m",  "rod_z_m",              "closed_length_m"};
+    "base_x_m", "base_z_m", "rocker_link_base_x_m", "rocker_link_base_z_m", "rocker_link_length_m", "coupler_length_m",
+    "rod_x_m",  "rod_z_m",  "closed_length_m"};
 
 BucketLinkage LinkageFit::linkage(double sense) const { return linkageOf(value, branch, sense); }
 
@@ -290,8 +291,9 @@ LinkageFit fitLinkage(const StrokeTable& table, const LinkageBasis& basis, const
     return basis.measured[static_cast<std::size_t>(x)] && basis.measured[static_cast<std::size_t>(x) + 1];
   };
   if (!known(Unknowns::kBaseX) && !known(Unknowns::kGuideX) && !known(Unknowns::kRodX))
-    fit.remarks.push_back("the table does not show how all pins are turned about the joint together: levers are right, "
-                          "directions of pin forces are not; measure both coordinates of one pin");
+    fit.remarks.push_back(
+        "the table does not show how all pins are turned about the joint together: levers are right, "
+        "directions of pin forces are not; measure both coordinates of one pin");
   return fit;
 }
 

@@ -30,7 +30,7 @@ struct LinkageUnknowns {
   static const std::array<const char*, kCount> kKeys;
 };
 
-/// What is known before the table. sense: 1 where the joint turns about +y, -1 about -y.
+/// Prior knowledge of the linkage. sense: 1 where the joint turns about +y, -1 about -y.
 struct LinkageBasis {
   /// Measured with a tape [m]; nothing: not known.
   std::array<std::optional<double>, LinkageUnknowns::kCount> measured;
@@ -39,12 +39,12 @@ struct LinkageBasis {
 };
 
 struct LinkageFit {
-  std::string problem;             ///< why there is nothing
-  LinkageUnknowns::Vector value;   ///< [m]
-  double branch{};                 ///< BucketLinkageParameters::branch
+  std::string problem;            ///< why there is nothing
+  LinkageUnknowns::Vector value;  ///< [m]
+  double branch{};                ///< BucketLinkageParameters::branch
   std::size_t rows{};
-  double left{}, worst{};          ///< rms and largest of the strokes' residuals [m]
-  double arm{}, arm_deviation{};   ///< rms of the lever over the table; standard deviation, rms [m/rad]
+  double left{}, worst{};         ///< rms and largest of the strokes' residuals [m]
+  double arm{}, arm_deviation{};  ///< rms of the lever over the table; standard deviation, rms [m/rad]
   std::vector<Estimate> estimates;
   std::vector<Correlation> correlations;  ///< beyond 0.9 in size
   std::vector<std::string> remarks;

@@ -73,7 +73,7 @@ std::vector<std::pair<std::string, std::string>> notFoundOf(const Calibration& c
   return found;
 }
 
-/// What helps with the keys that were not found, else what the file is for.
+/// Advice for the keys that were not found, else the use of the file.
 std::string nextStepOf(const Calibration& c) {
   constexpr double kLargeResidual = 1.3;  // as in doc/your_machine.md
   if (c.rod_gives)
@@ -142,7 +142,7 @@ struct ResidualPanel {
   const char *title, *colour;
 
   static double x(double part) { return kLeft + (kRight - kLeft) * part; }
-  /// Of the curve with its bars, 0.01 deg or more.
+  /// Largest value of the curve with its bars, 0.01 deg or more.
   double largest() const {
     double value = 0.01;
     for (std::size_t i = 0; i < curve.mean.size(); ++i)

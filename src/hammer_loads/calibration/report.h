@@ -11,8 +11,8 @@ namespace hammer_loads::calibration {
 constexpr const char* kYamlBegins = "# Crank sensor and drive of one machine, found by calibrate from";
 constexpr const char* kSvgBegins = "<svg id=\"hammer_loads_calibration\"";
 
-/// What was found, what was not and why, what to do next: some six lines for a terminal. verbose: then every estimate,
-/// correlation and remark.
+/// Found keys, keys not found with the reason, and the next step: some six lines for a terminal. verbose: then every
+/// estimate, correlation and remark.
 std::string textOf(const Calibration& calibration, bool verbose = false);
 /// Keys that are determined, each with its deviation; for `--params`.
 std::string yamlOf(const Calibration& calibration, const std::string& source);

@@ -37,8 +37,12 @@ struct Frames {
 };
 
 void addLinkageOptions(CommandLine& line, LinkageArguments& given) {
-  line.option("--linkage", given.table, "columns stroke_m,angle_rad over the whole stroke").required().type("TABLE.csv");
-  line.option("--write", given.output, "keys of the linkage, for --params beside the boom file").required().type("FILE.yaml");
+  line.option("--linkage", given.table, "columns stroke_m,angle_rad over the whole stroke")
+      .required()
+      .type("TABLE.csv");
+  line.option("--write", given.output, "keys of the linkage, for --params beside the boom file")
+      .required()
+      .type("FILE.yaml");
   line.option("--cylinder", given.cylinder, "name of the cylinder, in front of its keys").type("NAME").showDefault();
   addParamsOption(line, given.params);
   line["--params"].description("boom file: its keys of the cylinder's pins and links count as measured with a tape");
@@ -50,7 +54,7 @@ void addLinkageOptions(CommandLine& line, LinkageArguments& given) {
   line.flag("--force", given.force, "replaces a file that exists");
 }
 
-/// Of the joint in the description; the joint's origin and +y without one.
+/// Frame of the joint in the description; the joint's origin and +y without one.
 std::vector<std::string> findFrames(ParameterReader& reader, const LinkageArguments& given, Frames& frames) {
   const std::string key = given.cylinder + "_joint";
   if (given.urdf.empty()) return {};
@@ -85,7 +89,8 @@ calibration::LinkageBasis tapeOf(ParameterReader& reader, const LinkageArguments
   for (int i = 0; i < LinkageUnknowns::kCount; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const std::string key = given.cylinder + "_" + LinkageUnknowns::kKeys[at];
-    if (reader.given(key)) basis.measured[at] = reader.number(key, "m", NumberRule::within(-100.0, 100.0)) - originOf(i, frames);
+    if (reader.given(key))
+      basis.measured[at] = reader.number(key, "m", NumberRule::within(-100.0, 100.0)) - originOf(i, frames);
   }
   auto &x = basis.measured[LinkageUnknowns::kRodX], &z = basis.measured[LinkageUnknowns::kRodZ];
   if (x && z) {
@@ -117,8 +122,7 @@ std::string yamlOf(const calibration::LinkageFit& fit, const LinkageArguments& g
                      name + "linkage: bucket\n" + name + "linkage_branch: " + (fit.branch > 0.0 ? "1" : "-1") + "\n";
   LinkageUnknowns::Vector value = fit.value;
   const Eigen::Vector3d rod =
-      frames.at_zero.transpose() *
-      Eigen::Vector3d(value[LinkageUnknowns::kRodX], 0.0, value[LinkageUnknowns::kRodZ]);
+      frames.at_zero.transpose() * Eigen::Vector3d(value[LinkageUnknowns::kRodX], 0.0, value[LinkageUnknowns::kRodZ]);
   value[LinkageUnknowns::kRodX] = rod.x(), value[LinkageUnknowns::kRodZ] = rod.z();
   for (int i = 0; i < LinkageUnknowns::kCount; ++i)
     text += name + LinkageUnknowns::kKeys[static_cast<std::size_t>(i)] + ": " +
@@ -173,7 +177,8 @@ int calibrateLinkage(int argc, const char* const* argv) {
   (fit.determined() ? std::cout : std::cerr) << wordsOf(fit);
   if (!fit.determined()) return kExitFailure;
   std::ofstream stream(file.value->path(), std::ios::binary);
-  if (!((stream << yamlOf(fit, given, frames)) && stream.flush())) return failWith({given.output + ": cannot be written"});
+  if (!((stream << yamlOf(fit, given, frames)) && stream.flush()))
+    return failWith({given.output + ": cannot be written"});
   stream.close();
   const std::string why = file.value->publish();
   if (!why.empty()) return failWith({why});

@@ -70,15 +70,15 @@ class ConstantErrors {
   /// Error of the sensor's zero as the turns so far show it, as if the hammer were right [rad]; 0 where a clean machine
   /// may show as much. It is there from the first turn on, before estimate().
   double zeroSeen() const noexcept { return zero_is_seen_ ? zero_looks_ : 0.0; }
-  /// The same, whether or not a clean machine may show as much: an elastic rod shows it.
+  /// zeroSeen() whether or not a clean machine may show as much: an elastic rod shows it.
   double zeroLooks() const noexcept { return zero_looks_; }
   /// Enough turns have been seen for estimate() and deviation().
   bool knows() const noexcept;
   /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
   /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().
   double zeroNotLinear() const noexcept { return kNotLinear * estimate_[kZero] * estimate_[kZero]; }
-  /// Standard deviation of the dead centre's place in the encoder's readings [rad]: as the user gives the zero, and
-  /// after some turns as the readings show it, but for what a clean machine may show.
+  /// Standard deviation of the dead centre's place in the encoder's readings [rad]. It contains what a clean machine
+  /// may show of a zero that is right.
   double zeroDeviation() const noexcept;
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }

@@ -5,7 +5,7 @@
 
 namespace hammer_loads {
 
-/// As makeHammerNode.
+/// Counterpart of makeHammerNode.
 std::unique_ptr<LiveNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                           std::vector<std::string>& problems);
 

@@ -20,7 +20,7 @@ double strikingInertia(const StrikingRocker& rocker) noexcept {
   return rocker.inertia_about_pivot + rocker.reduced_rod_mass * squaredDistance(rocker.rod_joint);
 }
 
-/// What the tool gives to a rocker; P1's w = -psi' is counter-clockwise in (x, z).
+/// Impulse of the tool on a rocker; P1's w = -psi' is counter-clockwise in (x, z).
 struct ToolImpulse {
   double x{}, z{};         ///< BY the tool ON the rocker [N s]
   double energy{};         ///< given to the tool along z [J]
@@ -51,7 +51,7 @@ ToolImpulse toolImpulse(const StrikingRocker& rocker, double speed_before, doubl
   return tool;
 }
 
-/// Of a tool that was met before the dead centre, as close to it as matters. The rocker goes on in its direction.
+/// Blow on a tool that was met before the dead centre, as close to it as matters. The rocker goes on in its direction.
 RockerBlow earlyBlow(const StrikingRocker& rocker, const BlowInertia& inertia, double speed, double factor) noexcept {
   RockerBlow blow;
   blow.rocker_speed_before = inertia.u_before * speed;

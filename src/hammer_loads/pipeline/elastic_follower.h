@@ -49,7 +49,7 @@ class ElasticFollower {
   /// the two bodies is weighed with it, or with its own mean since the blow where that is more, by the variances: what
   /// is known no better than that is the moment of an impact within the pins.
   Beside beside(const DriveReaction& drive, double ring) noexcept;
-  /// As of the last beside(): of the rocker beside a rigid rod's [rad/s2].
+  /// Acceleration of the rocker beside that of a rigid rod at the last beside() [rad/s2].
   double vibration() const noexcept { return vibration_; }
   /// While it runs: with links as the spring has them. near_blow: transmission angle below which they are flagged
   /// [rad]; angle_deviation: of the crank [rad].

@@ -6,7 +6,7 @@
 namespace hammer_loads {
 namespace {
 
-// Of a hull whose mass is not given, and of its motion where nothing measures it.
+// Priors of a hull whose mass is not given, and of its motion where nothing measures it.
 constexpr double kUsualMass = 10.0;      // times the rocker's
 constexpr double kUsualDeviation = 0.5;  // of the mass
 constexpr double kGyration = 0.4;        // [m] about D

@@ -66,7 +66,8 @@ struct SampleResult {
   /// Which side of the blow the sample is on is not known: what belongs to its instant is of the likelier side, and not
   /// published. Sums over steps go on.
   bool beside_blow{};
-  /// A standard deviation exceeds five times withhold_above of its component's peak in a turn: likewise.
+  /// The crank is held at constant speed, and a force's standard deviation exceeds five times withhold_above of its
+  /// peak: the sample is not published. Sums over steps go on.
   bool uncertain{};
   bool isPublished() const noexcept { return !refusal && !beside_blow && !uncertain; }
   Level level{};  ///< of the model that gave the wrench: linkage where `elastic` has not shown itself

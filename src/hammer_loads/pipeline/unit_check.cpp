@@ -13,11 +13,11 @@ constexpr double kDegrees = 360.0 / kTwoPi;  // in a radian
 constexpr double kRpm = 60.0 / kTwoPi;       // in a radian a second
 constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
 constexpr double kLeastStretch = 0.01;       // [rad] of the shorter one: of the speed's noise as well
-constexpr double kStretch = 1.0;       // [rad]: shorter than a turn, so that most stretches see no jump back
-constexpr double kLongestStep = 0.25;  // [s]
-constexpr double kRepeats = 0.2;       // relative change between steps that repeat each other
-constexpr double kMoves = 1.0;  // [rad/s]: a slower angle says nothing of its unit
-constexpr int kEnough = 8;  // votes more for another unit than against
+constexpr double kStretch = 1.0;             // [rad]: shorter than a turn, so that most stretches see no jump back
+constexpr double kLongestStep = 0.25;        // [s]
+constexpr double kRepeats = 0.2;             // relative change between steps that repeat each other
+constexpr double kMoves = 1.0;               // [rad/s]: a slower angle says nothing of its unit
+constexpr int kEnough = 8;                   // votes more for another unit than against
 
 constexpr double kWindow = 8e-3;            // [s] over which a rate is taken
 constexpr double kMeanRate = 1.0;           // [s] of its mean
@@ -26,7 +26,7 @@ constexpr double kLikeRevolution = 1.25;    // factor
 constexpr double kSameLength = 0.2;         // relative change from one revolution to the next
 constexpr double kLeastCounts = 100.0;      // of a revolution
 
-/// Of a cycle's length in the angle's own unit, times the gain. Nothing: it is none of them.
+/// Unit that a cycle's length in the angle's own unit, times the gain, shows. Nothing: it is none of them.
 std::optional<CrankUnit> unitOfRevolution(double length) noexcept {
   const auto is = [&](double other) { return std::abs(std::log(length / other)) < std::log(kLikeRevolution); };
   if (is(kTwoPi)) return CrankUnit::kRadians;

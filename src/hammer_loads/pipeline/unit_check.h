@@ -88,7 +88,7 @@ class UnitCheck {
   int speed_votes_{}, bound_votes_{}, cycle_votes_{};
   CrankUnit cycle_unit_{CrankUnit::kRadians};  ///< that cycle_votes_ are for
   double last_step_{};                         ///< of the angle, but for steps back by a revolution
-  /// Of the cycles from one slow place of the crank to the next, in the angle's own unit.
+  /// Length of the cycles from one slow place of the crank to the next, in the angle's own unit.
   struct {
     double turned{}, time{};    ///< of the present window
     double mean{};              ///< rate [1/s]

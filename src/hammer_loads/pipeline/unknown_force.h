@@ -55,7 +55,7 @@ class UnknownForce {
   Greatest greatest() const noexcept {
     return {std::max(now_.moment, last_.moment), std::max(now_.force, last_.force)};
   }
-  /// Of the contacts, while D is 1 [N].
+  /// Force of the contacts while D is 1 [N].
   double contacts() const noexcept;
 
   const Mechanism* mechanism_;
