@@ -17,14 +17,14 @@ def main(arguments=None):
     given = options.parse_args(arguments)
 
     tables = {name: pandas.DataFrame(columns) for name, columns in hl.read_database(given.database).items()}
-    turns = tables["turns"].merge(tables["blows"][["run_id", "turn", "energy_J", "restitution"]],
+    turns = tables["turns"].merge(tables["blows"][["run_id", "turn", "energy", "restitution"]],
                                   on=["run_id", "turn"])
-    turns["time_s"] = (turns["stamp_ns"] - turns["stamp_ns"].min()) / 1e9
-    print(turns[["amplitude_N", "impulse_Ns", "period_s", "energy_J", "restitution"]].describe().to_string())
+    turns["time"] = (turns["stamp_ns"] - turns["stamp_ns"].min()) / 1e9
+    print(turns[["amplitude", "impulse", "period", "energy", "restitution"]].describe().to_string())
     if given.png:
         import matplotlib
         matplotlib.use("Agg")
-        axes = turns.plot(x="time_s", y=["amplitude_N", "energy_J"], subplots=True, style=".")
+        axes = turns.plot(x="time", y=["amplitude", "energy"], subplots=True, style=".")
         axes[0].get_figure().savefig(given.png)
 
 

@@ -162,7 +162,7 @@ def ideal_centre_of_mass(**rocker):
     """Centre of mass (x, z) [m] for which the blow leaves the support alone (P1), found by its impulses."""
     def impulse(com):
         blow = hl.support_impulse(com=tuple(com), speed_before=-1.0, speed_after=0.0, **rocker)
-        return blow["support_impulse_x_Ns"], blow["support_impulse_z_Ns"]
+        return blow["support_impulse_x"], blow["support_impulse_z"]
 
     return optimize.root(impulse, (-0.1, 0.0), tol=1e-12).x
 

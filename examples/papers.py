@@ -128,9 +128,9 @@ def session_values(bag=SOURCE / "test" / "data" / "mo100_1khz.bag"):
         tables = hl.read_database(path)
     median = {name: float(np.nanmedian(values)) for t in ("turns", "blows") for name, values in tables[t].items()
               if values.dtype.kind == "f"}
-    return {"energy": median["energy_J"], "speed": median["crank_speed_before_rad_s"], "H": median["amplitude_N"],
-            "S": median["impulse_Ns"], "mu": median["frequency_rad_s"], "t1": median["start_s"],
-            "T": median["period_s"], "rest": median["half_sine_rms_error"]}
+    return {"energy": median["energy"], "speed": median["crank_speed_before"], "H": median["amplitude"],
+            "S": median["impulse"], "mu": median["angular_frequency"], "t1": median["start"],
+            "T": median["period"], "rest": median["half_sine_rms_error"]}
 
 
 def turn_values(turn):
@@ -139,7 +139,7 @@ def turn_values(turn):
     blow, least = turn.hammer.blow(speed, level=turn.level), turn.extreme(1, -1.0)
     zeros = [z for z in turn.zeros(1) if z < turn.extreme(1, 1.0)[1]]
     pushes, pulls = turn.halves_of_x()
-    return {**turn.half_sine(), "speed": speed, "energy": blow["energy_J"], "x+": pushes, "x-": pulls,
+    return {**turn.half_sine(), "speed": speed, "energy": blow["energy"], "x+": pushes, "x-": pulls,
             "xmax": turn.extreme(0, 1.0)[0], "xmin": turn.extreme(0, -1.0)[0], "zmin": least[0],
             "z-": turn.integral(lambda a: turn.loads(a)[1], *zeros[-2:])}
 

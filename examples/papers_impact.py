@@ -29,7 +29,7 @@ def striking_rocker(hammer):
     ours = {"mass": p["rocker_mass_kg"], "inertia_about_pivot": p["rocker_inertia_about_pivot_kg_m2"], "com": com,
             "rod_joint": joint, "reduced_rod_mass": rod}
     paper = (ours["inertia_about_pivot"], rod, ours["mass"], (-com[0], com[1]), (-joint[0], joint[1]))
-    before = hammer.blow(SPEED_OF_1000_J, level="rocker")["rocker_speed_before_rad_s"]
+    before = hammer.blow(SPEED_OF_1000_J, level="rocker")["rocker_speed_before"]
     return ours, paper, p["striking_distance_m"], before
 
 
@@ -37,8 +37,8 @@ def impulses(rocker, lk, z, f, before, restitution):
     """I_x, I_y on the rocker by the tool, I_0x, I_0y by the support, axes of P1 [N s]."""
     blow = hl.support_impulse(striking_point=(-lk, z), friction=f, speed_before=before,
                               speed_after=-restitution * before, **rocker)
-    return np.array([-blow["tool_impulse_x_Ns"], blow["tool_impulse_z_Ns"],
-                     blow["support_impulse_x_Ns"], -blow["support_impulse_z_Ns"]])
+    return np.array([-blow["tool_impulse_x"], blow["tool_impulse_z"],
+                     blow["support_impulse_x"], -blow["support_impulse_z"]])
 
 
 def impact_table(hammer, f=0.15, offset=0.02):

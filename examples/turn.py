@@ -19,13 +19,13 @@ def main(arguments=None):
     turn = hammer.turn(given.speed, step_deg=1.0, level="linkage")
     for name, value in hammer.pulse(given.speed, level="linkage").items():
         print(f"{name}: {value:.6g}")
-    print(f"energy_J: {hammer.blow(given.speed, level='linkage')['energy_J']:.6g}")
+    print(f"energy: {hammer.blow(given.speed, level='linkage')['energy']:.6g}")
     if given.png:
         import matplotlib
         matplotlib.use("Agg")
         from matplotlib import pyplot
         figure, axes = pyplot.subplots()
-        for name in ("force_x_N", "force_z_N"):
+        for name in ("force_x", "force_z"):
             axes.plot(turn["crank_angle_deg"], turn[name] / 1e3, label=name[:-2])
         axes.set_xlabel("crank angle [deg]")
         axes.set_ylabel("on the hull [kN]")

@@ -128,7 +128,7 @@ class Loader:
         """Databases of older versions have none."""
         if not source.columns("boom_cylinders"):
             return
-        self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_deviation",
+        self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_std",
                                             "doubtful"],
                           [(run_id, *row) for row in source.rows(OF_TURNS, own)])
 

@@ -4,20 +4,20 @@ from report.damage import SLOPES
 
 SAME = "b.machine = ? AND r.machine = ? AND c.name = ? AND c.least = ? AND c.greatest = ? AND c.classes = ?"
 OF_CHANNEL = "FROM bags b JOIN runs r USING(bag_id) JOIN channels c USING(run_id) "
-CHANNELS = ("SELECT r.machine, c.name, c.least, c.greatest, c.classes, sum(r.duration_s), sum(c.samples), "
+CHANNELS = ("SELECT r.machine, c.name, c.least, c.greatest, c.classes, sum(r.duration), sum(c.samples), "
             "sum(c.skipped), sum(c.below), sum(c.above), sum(c.gaps), min(c.minimum), max(c.maximum), "
-            "sum(c.mean_deviation * c.samples), sum(CASE WHEN c.mean_deviation IS NULL THEN 0 ELSE c.samples END), "
-            "max(r.equivalent_cycles_per_hour), sum(c.range_own_deviation * c.samples), "
-            "sum(c.range_common_deviation * c.samples), "
-            "sum(CASE WHEN c.range_own_deviation IS NULL THEN 0 ELSE c.samples END) " + OF_CHANNEL + "WHERE b.machine = ? AND c.counted = 1 "
+            "sum(c.mean_std * c.samples), sum(CASE WHEN c.mean_std IS NULL THEN 0 ELSE c.samples END), "
+            "max(r.equivalent_cycles_per_hour), sum(c.range_own_std * c.samples), "
+            "sum(c.range_systematic_std * c.samples), "
+            "sum(CASE WHEN c.range_own_std IS NULL THEN 0 ELSE c.samples END) " + OF_CHANNEL + "WHERE b.machine = ? AND c.counted = 1 "
             "GROUP BY r.machine, c.name, c.least, c.greatest, c.classes ORDER BY r.machine, min(c.channel)")
-LATEST = ("SELECT c.unit, c.sn_knee_range_MPa, c.sn_knee_cycles, c.sn_slope, c.sn_slope_below, "
+LATEST = ("SELECT c.unit, c.sn_knee_range, c.sn_knee_cycles, c.sn_slope, c.sn_slope_below, "
           "c.mean_stress_sensitivity " + OF_CHANNEL + "WHERE " + SAME + " ORDER BY r.first_stamp_ns DESC LIMIT 1")
 CYCLES = ("SELECT y.steps, y.low, CAST(sum(y.count) AS BIGINT) " + OF_CHANNEL +
           "JOIN cycles y ON y.run_id = c.run_id AND y.channel = c.channel WHERE " + SAME + " GROUP BY y.steps, y.low")
 RESIDUES = ("SELECT s.class " + OF_CHANNEL + "JOIN residues s ON s.run_id = c.run_id AND s.channel = c.channel WHERE " +
             SAME + " ORDER BY r.first_stamp_ns, r.run_key, s.place")
-CURVE = ("sn_knee_range_MPa", "sn_knee_cycles", "sn_slope", "sn_slope_below", "mean_stress_sensitivity")
+CURVE = ("sn_knee_range", "sn_knee_cycles", "sn_slope", "sn_slope_below", "mean_stress_sensitivity")
 TALLY = ("samples", "skipped", "below", "above", "gaps", "minimum", "maximum")
 
 
@@ -31,7 +31,7 @@ def channel_of(store, machine, row):
     channel.add_tally({name: None if v is None else v if "imum" in name else int(v)
                        for name, v in zip(TALLY, row[6:13])})
     if row[13] is not None and row[14]:
-        channel.add_deviation(float(row[13]) / float(row[14]), float(row[14]))
+        channel.add_std(float(row[13]) / float(row[14]), float(row[14]))
     if row[16] is not None and row[18]:
         weight = float(row[18])
         channel.add_range_deviations(float(row[16]) / weight, float(row[17]) / weight, weight)
@@ -57,7 +57,7 @@ def write_channel(store, machine, channel, identity, latest):
     remaining = channel.remaining_hours(damage)[0]
     store.insert("machine_channels",
                  ["machine_channel", "machine", "identity", "name", "unit", "least", "greatest", "classes", "hours",
-                  *TALLY, "mean_deviation", "range_own_deviation", "range_common_deviation", *CURVE,
+                  *TALLY, "mean_std", "range_own_std", "range_systematic_std", *CURVE,
                   "equivalent_cycles_per_hour", "largest_range", "damage", "remaining_hours"],
                  [(at, machine, identity, channel.name, channel.unit, *count.grid(), channel.hours,
                    *(getattr(channel, name) for name in TALLY), channel.deviation, *channel.range_deviations,

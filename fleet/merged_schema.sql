@@ -15,11 +15,11 @@ CREATE TABLE runs(
   run_id INTEGER PRIMARY KEY, bag_id INTEGER NOT NULL REFERENCES bags, run_key TEXT NOT NULL UNIQUE,
   input_sha256 TEXT NOT NULL, parameters_sha256 TEXT NOT NULL, machine TEXT NOT NULL, version TEXT NOT NULL,
   revision TEXT NOT NULL, first_stamp_ns BIGINT, last_stamp_ns BIGINT, day TEXT, week TEXT,
-  duration_s DOUBLE PRECISION, level TEXT, samples BIGINT, published BIGINT, restarts BIGINT, turns BIGINT,
-  blows BIGINT, backward_passes BIGINT, consistency DOUBLE PRECISION, timing_noise_s DOUBLE PRECISION,
-  speed_noise_rad_s DOUBLE PRECISION, angle_resolution_rad DOUBLE PRECISION, drive_inertia_kg_m2 DOUBLE PRECISION,
-  drive_inertia_deviation DOUBLE PRECISION, equivalent_cycles_per_hour DOUBLE PRECISION, blank_strokes BIGINT,
-  judged_blows BIGINT, unpressed_blows BIGINT, still_time_s DOUBLE PRECISION, hull_pitch_rad DOUBLE PRECISION);
+  duration DOUBLE PRECISION, level TEXT, samples BIGINT, published BIGINT, restarts BIGINT, turns BIGINT,
+  blows BIGINT, backward_passes BIGINT, consistency DOUBLE PRECISION, timing_noise DOUBLE PRECISION,
+  speed_noise DOUBLE PRECISION, angle_resolution DOUBLE PRECISION, drive_inertia DOUBLE PRECISION,
+  drive_inertia_std DOUBLE PRECISION, equivalent_cycles_per_hour DOUBLE PRECISION, blank_firings BIGINT,
+  judged_blows BIGINT, blows_without_hold_down BIGINT, still_time DOUBLE PRECISION, hull_pitch DOUBLE PRECISION);
 CREATE INDEX runs_of_bag ON runs(bag_id);
 
 CREATE VIEW parameters AS
@@ -28,20 +28,20 @@ CREATE VIEW parameters AS
 CREATE TABLE refusals(run_id INTEGER NOT NULL, reason TEXT NOT NULL, count BIGINT NOT NULL, PRIMARY KEY(run_id, reason));
 CREATE TABLE warnings(run_id INTEGER NOT NULL, place INTEGER NOT NULL, key TEXT, text TEXT, PRIMARY KEY(run_id, place));
 
-CREATE TABLE run_figures(            -- of all turns of a run; quantity: blow_rate_Hz, or a column of turns or blows
+CREATE TABLE run_figures(            -- of all turns of a run; quantity: blow_rate, or a column of turns or blows
   run_id INTEGER NOT NULL, quantity TEXT NOT NULL, count BIGINT NOT NULL, least DOUBLE PRECISION,
   mean DOUBLE PRECISION, greatest DOUBLE PRECISION, total DOUBLE PRECISION, PRIMARY KEY(run_id, quantity));
 
 CREATE TABLE run_cylinders(          -- means over the turns of a run, doubtful: part of them whose damping no oil makes
   run_id INTEGER NOT NULL, cylinder TEXT NOT NULL, turns BIGINT NOT NULL, stiffness_ratio DOUBLE PRECISION,
-  stiffness_ratio_deviation DOUBLE PRECISION, doubtful DOUBLE PRECISION, PRIMARY KEY(run_id, cylinder));
+  stiffness_ratio_std DOUBLE PRECISION, doubtful DOUBLE PRECISION, PRIMARY KEY(run_id, cylinder));
 
 CREATE TABLE channels(
   run_id INTEGER NOT NULL, channel INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT, counted INTEGER,
   least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, samples BIGINT, skipped BIGINT, below BIGINT,
-  above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION, mean_deviation DOUBLE PRECISION,
-  range_own_deviation DOUBLE PRECISION, range_common_deviation DOUBLE PRECISION,
-  sn_knee_range_MPa DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION, sn_slope DOUBLE PRECISION,
+  above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION, mean_std DOUBLE PRECISION,
+  range_own_std DOUBLE PRECISION, range_systematic_std DOUBLE PRECISION,
+  sn_knee_range DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION, sn_slope DOUBLE PRECISION,
   sn_slope_below DOUBLE PRECISION, mean_stress_sensitivity DOUBLE PRECISION, PRIMARY KEY(run_id, channel));
 CREATE TABLE cycles(
   run_id INTEGER NOT NULL, channel INTEGER NOT NULL, steps INTEGER NOT NULL, low INTEGER NOT NULL,
@@ -59,8 +59,8 @@ CREATE TABLE machine_channels(
   machine_channel INTEGER PRIMARY KEY, machine TEXT NOT NULL, identity TEXT NOT NULL, name TEXT NOT NULL, unit TEXT,
   least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, hours DOUBLE PRECISION, samples BIGINT,
   skipped BIGINT, below BIGINT, above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION,
-  mean_deviation DOUBLE PRECISION, range_own_deviation DOUBLE PRECISION, range_common_deviation DOUBLE PRECISION,
-  sn_knee_range_MPa DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION,
+  mean_std DOUBLE PRECISION, range_own_std DOUBLE PRECISION, range_systematic_std DOUBLE PRECISION,
+  sn_knee_range DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION,
   sn_slope DOUBLE PRECISION, sn_slope_below DOUBLE PRECISION, mean_stress_sensitivity DOUBLE PRECISION,
   equivalent_cycles_per_hour DOUBLE PRECISION, largest_range DOUBLE PRECISION, damage DOUBLE PRECISION,
   remaining_hours DOUBLE PRECISION);

@@ -11,7 +11,7 @@ ROWS_AT_ONCE = 1000
 
 # Columns that older merged files of this version do not have.
 NEWER = [(table, column, "DOUBLE PRECISION") for table in ("channels", "machine_channels")
-         for column in ("range_own_deviation", "range_common_deviation")]
+         for column in ("range_own_std", "range_systematic_std")]
 
 
 def add_newer_columns(store):

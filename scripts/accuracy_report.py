@@ -28,12 +28,12 @@ def draw_blow(blow, path):
     figure, axes = plt.subplots(figsize=(9.5, 5.0), dpi=110)
     most = 0.0
     for level, color, marker in (("linkage", "#d1602b", "s"), ("elastic", "#1f5fa8", "o")):
-        time, force, deviation = (blow[level][key] for key in ("time_ms", "force_z_N", "deviation_N"))
+        time, force, deviation = (blow[level][key] for key in ("time_ms", "force_z", "deviation_N"))
         low, high = ([(f + sign * 2.0 * d) / 1e3 for f, d in zip(force, deviation)] for sign in (-1, 1))
         most = max(most, max(high), -min(low))
         axes.fill_between(time, low, high, color=color, alpha=0.18, linewidth=0, label=f"{level}: two deviations")
         axes.plot(time, [f / 1e3 for f in force], marker, color=color, markersize=3.5, label=f"{level}: published")
-    axes.plot(blow["truth"]["time_ms"], [f / 1e3 for f in blow["truth"]["force_z_N"]], color="#202020", linewidth=1.0,
+    axes.plot(blow["truth"]["time_ms"], [f / 1e3 for f in blow["truth"]["force_z"]], color="#202020", linewidth=1.0,
               label="truth")
     axes.set(xlabel="time from the first touch of the tool [ms]", ylabel="force z on the hull [kN]",
              ylim=(-1.05 * most, 1.05 * most), xlim=(blow["truth"]["time_ms"][0], blow["truth"]["time_ms"][-1]))
@@ -112,9 +112,9 @@ def life_excerpt(boom):
     return "\n".join(lines) + "\n"
 
 
-BUDGETED = [("blow/energy_J", "energy of a blow", 1.0, "J"),
-            ("pulse/turn_impulse_z_Ns", "impulse of a turn, z", 1.0, "N s"),
-            ("equivalent_range_3/hull_wrench/force_z_N", "damage-equivalent range of Fz, slope 3", 1e-3, "kN")]
+BUDGETED = [("blow/energy", "energy of a blow", 1.0, "J"),
+            ("pulse/turn_impulse_z", "impulse of a turn, z", 1.0, "N s"),
+            ("equivalent_range_3/hull_wrench/force_z", "damage-equivalent range of Fz, slope 3", 1e-3, "kN")]
 
 
 def budget_excerpt(machine):

@@ -32,11 +32,11 @@ class Log:
                 for topic, m, _ in bag.read_messages(topics=[LOADS, PULSE, BLOW, CRANK]):
                     time = m.header.stamp.secs - origin + 1e-9 * m.header.stamp.nsecs
                     if topic == LOADS:
-                        loads.append((time, m.force_x_N, m.force_z_N))
+                        loads.append((time, m.force_x, m.force_z))
                     elif topic == PULSE:
-                        pulses.append((time, m.period_s, m.amplitude_N, m.frequency_rad_s, m.start_s, m.impulse_Ns))
+                        pulses.append((time, m.period, m.amplitude, m.angular_frequency, m.start, m.impulse))
                     elif topic == BLOW:
-                        blows.append((time, m.energy_J, m.energy_deviation_J, m.restitution, m.mean_press_force_N))
+                        blows.append((time, m.energy, m.energy_std, m.restitution, m.mean_hold_down_force))
                     else:
                         self.crank_samples += 1
         self.loads = table_of(loads, ["time", "x", "z"])
@@ -68,11 +68,11 @@ def figures(log, truth):
         return float(np.nanmedian(values))
     return [
         ("blow rate, median", "blow_rate_Hz", median(1.0 / log.pulses["period"]), median(1.0 / truth.period), "Hz", 2),
-        ("blow energy, median", "energy_J", median(log.blows["energy"]), median(truth.blows["energy"]), "J", 0),
+        ("blow energy, median", "energy", median(log.blows["energy"]), median(truth.blows["energy"]), "J", 0),
         ("restitution, median", "restitution", median(log.blows["restitution"]),
          median(-truth.blows["after"] / truth.blows["before"]), "", 3),
-        ("peak force Fz, median of revolutions", "amplitude_N", median(log.pulses["amplitude"]), median(truth.peak), "N", 0),
-        ("hold-down force needed, median", "mean_press_force_N", median(log.blows["hold_down"]),
+        ("peak force Fz, median of revolutions", "amplitude", median(log.pulses["amplitude"]), median(truth.peak), "N", 0),
+        ("hold-down force needed, median", "mean_hold_down_force", median(log.blows["hold_down"]),
          median(truth.blows["impulse"][1:] / truth.period), "N", 0),
     ]
 

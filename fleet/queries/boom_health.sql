@@ -4,7 +4,7 @@ SELECT machine, cylinder, month, runs, stiffness_ratio, deviation,
     AS change_percent
 FROM (SELECT b.machine, c.cylinder, substr(r.day, 1, 7) AS month, count(*) AS runs,
         sum(c.turns * c.stiffness_ratio) / sum(c.turns) AS stiffness_ratio,
-        avg(c.stiffness_ratio_deviation) AS deviation
+        avg(c.stiffness_ratio_std) AS deviation
       FROM run_cylinders c JOIN runs r USING(run_id) JOIN bags b USING(bag_id)
       WHERE c.doubtful < 0.5
       GROUP BY b.machine, c.cylinder, substr(r.day, 1, 7)) AS by_month

@@ -48,7 +48,7 @@ TEST(BlowTrace, IsJson) {
   trace.elastic = {{-1e-3, 2e-3}, {5.0, -6.5}, {0.25, 1.0}};
   const YAML::Node node = YAML::Load(json(trace));
   EXPECT_EQ(node["elastic"]["time_ms"].as<std::vector<double>>(), (std::vector<double>{-1.0, 2.0}));
-  EXPECT_EQ(node["elastic"]["force_z_N"].as<std::vector<double>>(), (std::vector<double>{5.0, -6.5}));
+  EXPECT_EQ(node["elastic"]["force_z"].as<std::vector<double>>(), (std::vector<double>{5.0, -6.5}));
   EXPECT_EQ(node["elastic"]["deviation_N"].as<std::vector<double>>(), (std::vector<double>{0.25, 1.0}));
   EXPECT_EQ(node["truth"]["time_ms"].size(), 0U);
 }

@@ -94,7 +94,7 @@ class FullSampler {
     see(2, tipRateReading(J, y, tip.velocity[4]), 0.005);
   }
   void see(int channel, VibrationReading reading, double noise) {
-    reading.noise = reading.offset_deviation = noise;
+    reading.noise = reading.offset_std = noise;
     boom_.vibration().observe(channel, reading);
   }
 

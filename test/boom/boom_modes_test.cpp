@@ -98,15 +98,15 @@ TEST_F(ShippedBoom, KnowsNothingAtADeadCentre) {
   EXPECT_GT(boom.vibration().energy(), 0.0);
   at(0.0), at(0.0);
   EXPECT_FALSE(boom.vibration().known());
-  EXPECT_TRUE(boom.vibration().modes().dead_centre);
+  EXPECT_TRUE(boom.vibration().modes().zero_moment_arm);
   boom.vibration().advance(0.02, {torque, torque, torque});
   EXPECT_TRUE(boom.vibration().displacement().isZero(0.0));
   EXPECT_TRUE(boom.vibration().torque().isZero(0.0));
   EXPECT_EQ(boom.vibration().energy(), 0.0);
   BoomLoads loads;
   boom.loads({}, false, loads);
-  EXPECT_TRUE(loads.cylinder[0].dead_centre);
-  EXPECT_FALSE(loads.cylinder[1].dead_centre);
+  EXPECT_TRUE(loads.cylinder[0].zero_moment_arm);
+  EXPECT_FALSE(loads.cylinder[1].zero_moment_arm);
   at(0.4), at(0.4);
   EXPECT_TRUE(boom.vibration().known());
   EXPECT_EQ(boom.vibration().energy(), 0.0);

@@ -111,7 +111,7 @@ TEST_F(ShippedLinkage, TakesTheBranchThatFitsTheStroke) {
     const CylinderPosition at = cylinder.at(q);
     EXPECT_GE(at.length, given_.closed_length);
     EXPECT_LE(at.length, given_.closed_length + given_.stroke);
-    EXPECT_FALSE(at.dead_centre);
+    EXPECT_FALSE(at.zero_moment_arm);
     EXPECT_GT(at.arm, 0.1);  // extending turns the tool towards the machine
   }
 }
@@ -157,9 +157,9 @@ TEST_F(ShippedLinkage, IsADeadCentreWhereItsLinksDoNotReachEachOther) {
     const CylinderPosition at = cylinder.at(q);
     EXPECT_TRUE(std::isfinite(at.length) && std::isfinite(at.arm)) << q;
     const CylinderLoad load = cylinder.load(at, 1e4);
-    EXPECT_EQ(std::isnan(load.force), at.dead_centre);
+    EXPECT_EQ(std::isnan(load.force), at.zero_moment_arm);
     EXPECT_TRUE(std::isfinite(cylinder.jointStiffness(at)));
-    open += at.dead_centre ? 1 : 0;
+    open += at.zero_moment_arm ? 1 : 0;
   }
   EXPECT_GT(open, 0);
 }

@@ -72,7 +72,7 @@ class OnRock {
       see(j, oilTorqueReading(j, machine_.hold()[j - 1] + machine_.noise(100.0)), 200.0, 1000.0, 100.0);
   }
   void see(int channel, VibrationReading reading, double noise, double offset, double walk) {
-    reading.noise = noise, reading.offset_deviation = offset, reading.offset_walk = walk;
+    reading.noise = noise, reading.offset_std = offset, reading.offset_walk = walk;
     boom.vibration().observe(channel, reading);
   }
 

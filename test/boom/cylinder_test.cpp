@@ -48,7 +48,7 @@ TEST_F(Cylinders, LengthIsTheDistanceOfTheAnchorsAndArmItsSlope) {
       const double slope = (45.0 * difference(h) - 9.0 * difference(2 * h) + difference(3 * h)) / (60.0 * h);
       EXPECT_NEAR(at.arm, slope, 1e-11);
       EXPECT_NEAR(at.arm_rate, (cylinder.at(q + 1e-5).arm - cylinder.at(q - 1e-5).arm) / 2e-5, 1e-8);
-      EXPECT_FALSE(at.dead_centre) << p.name << " at " << q;
+      EXPECT_FALSE(at.zero_moment_arm) << p.name << " at " << q;
       EXPECT_GE(at.length, p.closed_length);
       EXPECT_LE(at.length, p.closed_length + p.stroke);
     }
@@ -64,7 +64,7 @@ TEST_F(Cylinders, ForceDoesTheOppositeWorkOfTheLoad) {
       EXPECT_NEAR(load.force * at.arm, -torque, 1e-9);
       const double area = load.force > 0.0 ? cylinder.boreArea() : cylinder.rodArea();
       EXPECT_NEAR(load.pressure * area, std::abs(load.force), 1e-9);
-      EXPECT_FALSE(load.dead_centre);
+      EXPECT_FALSE(load.zero_moment_arm);
     }
   }
 }
@@ -107,17 +107,17 @@ TEST_F(Cylinders, DeadCentreIsReportedNotDividedBy) {
   p.closed_length = 1.5, p.stroke = 0.6;
   const Cylinder cylinder = make(p);
   const CylinderPosition at = cylinder.at(0.0);
-  EXPECT_TRUE(at.dead_centre);
+  EXPECT_TRUE(at.zero_moment_arm);
   EXPECT_NEAR(cylinder.jointStiffness(at), 0.0, 1e-9);
   const CylinderLoad load = cylinder.load(at, 1e4);
-  EXPECT_TRUE(load.dead_centre);
+  EXPECT_TRUE(load.zero_moment_arm);
   EXPECT_TRUE(std::isnan(load.force));
   EXPECT_TRUE(std::isnan(load.pressure));
   // Next to it the force is finite and bounded by the ratio.
   for (double q = -0.5; q < 0.5; q += 1e-3) {
     const CylinderLoad near = cylinder.load(cylinder.at(q), 1e4);
-    if (near.dead_centre) continue;
-    EXPECT_LE(std::abs(near.force), 1e4 / (Cylinder::kDeadCentreRatio * 1.0) * (1.0 + 1e-12));
+    if (near.zero_moment_arm) continue;
+    EXPECT_LE(std::abs(near.force), 1e4 / (Cylinder::kZeroMomentArmRatio * 1.0) * (1.0 + 1e-12));
   }
 }
 

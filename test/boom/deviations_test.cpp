@@ -197,7 +197,7 @@ TEST(Deviations, AtADeadCentreAreThoseOfTheLoadAlone) {
     EXPECT_TRUE(std::isfinite(deviations.cylinder[1]));
     BoomLoads loads;
     boom.loads({}, false, loads);
-    EXPECT_EQ(boom.flags(0, loads), kDeadCentre);
+    EXPECT_EQ(boom.flags(0, loads), kZeroMomentArm);
   }
 }
 
@@ -234,8 +234,8 @@ TEST(CylinderFlags, SayWhatIsWrong) {
   EXPECT_EQ(flags(0.99 * c.greatestPush(), 0.99 * c.greatestPush()), 0);
   EXPECT_EQ(flags(-c.greatestPull(), -c.greatestPull()) & kReliefReached, kReliefReached);
   CylinderPosition dead = at;
-  dead.dead_centre = true;
-  EXPECT_EQ(cylinderFlags(c, dead, 1e3, 1e3), kDeadCentre);
+  dead.zero_moment_arm = true;
+  EXPECT_EQ(cylinderFlags(c, dead, 1e3, 1e3), kZeroMomentArm);
 }
 
 TEST(CylinderFlags, OfTheBoomTakeWeightAsSteady) {

@@ -21,7 +21,7 @@ bool finite(const Boom& boom, const BoomLoads& loads) {
   bool all = loads.hammer.allFinite() && loads.weight.allFinite() && loads.motion.allFinite() &&
              loads.vibration.allFinite() && loads.total.allFinite();
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i)
-    all = all && (loads.cylinder[i].dead_centre ||
+    all = all && (loads.cylinder[i].zero_moment_arm ||
                   (std::isfinite(loads.cylinder[i].force) && std::isfinite(loads.cylinder[i].pressure)));
   return all;
 }

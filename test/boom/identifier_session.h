@@ -104,7 +104,7 @@ class IdentifierSession {
     }
   }
   void see(int channel, VibrationReading reading, double noise, double offset, double walk) {
-    reading.noise = noise, reading.offset_deviation = offset, reading.offset_walk = walk;
+    reading.noise = noise, reading.offset_std = offset, reading.offset_walk = walk;
     boom_->vibration().observe(channel, reading);
   }
 

@@ -74,7 +74,7 @@ TEST(ModeIdentifier, ReadingsTogetherSayWhatTheySayOneByOne) {
     for (int j = 1; j < 4; ++j) {
       VibrationReading& one = readings[static_cast<std::size_t>(j - 1)];
       one = oilTorqueReading(j, run.machine_.hold()[j - 1] + 50.0 * j);
-      one.noise = 200.0, one.offset_deviation = 1000.0, one.clock = clock;
+      one.noise = 200.0, one.offset_std = 1000.0, one.clock = clock;
       one.channel = j == 3 ? 7 : j;  // one that has not been used
     }
     together.observe(readings.data(), readings.size());
@@ -110,7 +110,7 @@ TEST(ModeIdentifier, SurvivesNonsenseAndAForceThatIsAFewPercentWrong) {
   // A reading of a thousand times its size moves little; one that is no number nothing.
   const double ratio = run.identifier().frequencyRatio(0);
   VibrationReading reading = jointAngleReading(1, 100.0);
-  reading.noise = 1e-4, reading.offset_deviation = 0.01;
+  reading.noise = 1e-4, reading.offset_std = 0.01;
   run.boom_->vibration().observe(5, reading);
   EXPECT_NEAR(run.identifier().frequencyRatio(0), ratio, 0.02);
   reading.value = std::nan("");

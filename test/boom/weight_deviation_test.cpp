@@ -47,7 +47,7 @@ class WeightDeviation : public testing::Test {
 };
 
 TEST_F(WeightDeviation, OfMassesAndCentres) {
-  parameters_.link_mass_deviation = 0.05, parameters_.link_com_deviation = 0.03;
+  parameters_.link_mass_std = 0.05, parameters_.link_com_std = 0.03;
   const JointVector q = test::workingPosition();
   const auto draw = [&](const Boom& given) {
     BoomParameters drawn = parameters_;
@@ -69,10 +69,10 @@ TEST_F(WeightDeviation, OfWeighedLinks) {
   Boom given = boomOf(parameters_);
   for (const char* name : {"boom_link", "arm_link", "hammer_hull"}) {
     WeighedLink link = given.chain().body(*given.chain().linkIndex(name));
-    link.moment_x_deviation = 4.0, link.moment_z_deviation = 9.0;
+    link.moment_x_std = 4.0, link.moment_z_std = 9.0;
     parameters_.chain.weighed.push_back(link);
   }
-  parameters_.link_mass_deviation = parameters_.link_com_deviation = 0.0;
+  parameters_.link_mass_std = parameters_.link_com_std = 0.0;
   const JointVector q = test::workingPosition();
   const auto draw = [&](const Boom&) {
     BoomParameters drawn = parameters_;
@@ -87,8 +87,8 @@ TEST_F(WeightDeviation, OfWeighedLinks) {
 }
 
 TEST_F(WeightDeviation, OfJointsZeros) {
-  parameters_.link_mass_deviation = parameters_.link_com_deviation = 0.0;
-  for (CylinderParameters& c : parameters_.cylinders) c.joint_zero_deviation = 0.004;
+  parameters_.link_mass_std = parameters_.link_com_std = 0.0;
+  for (CylinderParameters& c : parameters_.cylinders) c.joint_zero_std = 0.004;
   const JointVector q = test::workingPosition();
   const auto draw = [&](Boom& boom) {
     JointVector drawn = q;

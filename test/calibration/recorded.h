@@ -38,7 +38,7 @@ inline calibration::CalibrationBasis basisOf(const Mechanism& mechanism) {
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   calibration::CalibrationBasis basis{mechanism, Level::kRocker};
   basis.torque_walk = 100.0 * inertia;
-  basis.torque_deviation = 400.0 * inertia;
+  basis.torque_std = 400.0 * inertia;
   return basis;
 }
 

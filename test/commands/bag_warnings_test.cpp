@@ -148,7 +148,7 @@ TEST_F(BagWarnings, OutputsOfAnotherVersionAreNamed) {
   {
     rosbag::Bag bag(in, rosbag::bagmode::Append);
     topic_tools::ShapeShifter old;
-    old.morph("0123456789abcdef0123456789abcdef", "hammer_loads/HullLoads", "float64 force_x_N\n", "0");
+    old.morph("0123456789abcdef0123456789abcdef", "hammer_loads/HullLoads", "float64 force_x\n", "0");
     std::vector<std::uint8_t> bytes(8, 0);
     ros::serialization::IStream stream(bytes.data(), 8);
     old.read(stream);

@@ -58,9 +58,9 @@ TEST_F(BoomBag, ReadsTheHullsImu) {
     const auto found = fixed.find(m.header.stamp.toNSec());
     if (found == fixed.end()) continue;  // beside a blow
     const auto& right = found->second.force;
-    const double x = m.force_x_N - right.x, z = m.force_z_N - right.z;
+    const double x = m.force_x - right.x, z = m.force_z - right.z;
     if (m.header.stamp < in_motion) at_rest = std::max(at_rest, std::hypot(x, z));
-    within += std::abs(x) <= 2.0 * m.force_x_deviation_N && std::abs(z) <= 2.0 * m.force_z_deviation_N;
+    within += std::abs(x) <= 2.0 * m.force_x_std && std::abs(z) <= 2.0 * m.force_z_std;
   }
   std::printf("%zu of %zu within, at rest %g N\n", within, loads.size(), at_rest);
   EXPECT_LT(at_rest, 10.0);
@@ -84,7 +84,7 @@ TEST_F(BoomBag, ReadsTheCylindersPressures) {
       for (std::size_t k = 0; k < 3; ++k) {
         const double area = 0.25 * kPi * cylinders[k].bore * cylinders[k].bore;
         const double rod_area = area - 0.25 * kPi * cylinders[k].rod * cylinders[k].rod;
-        const double force = (k == 2 ? kMore : 1.0) * without[i].cylinder_force_N[k];
+        const double force = (k == 2 ? kMore : 1.0) * without[i].cylinder_force[k];
         in.writePressures(without[i].header.stamp, cylinders[k].name, (force + kRod * rod_area) / area, kRod);
       }
     }
@@ -97,12 +97,12 @@ TEST_F(BoomBag, ReadsTheCylindersPressures) {
   for (std::size_t i = 5; i < with.size(); ++i) {
     ASSERT_TRUE(with[i].flags & JointLoads::FLAG_MEASURED) << i;
     ASSERT_FALSE(without[i].flags & JointLoads::FLAG_MEASURED);
-    hammer_cylinder.add(with[i].cylinder_force_N[2], kMore * without[i].cylinder_force_N[2]);
+    hammer_cylinder.add(with[i].cylinder_force[2], kMore * without[i].cylinder_force[2]);
     for (std::size_t j = 0; j < 4; ++j) {
-      const double model = with[i].hammer_torque_Nm[j] + with[i].weight_torque_Nm[j] + with[i].motion_torque_Nm[j] +
-                           with[i].vibration_torque_Nm[j];
-      ASSERT_NEAR(with[i].total_torque_Nm[j], model + with[i].contact_torque_Nm[j], 1e-6);
-      ASSERT_EQ(without[i].contact_torque_Nm[j], 0.0);
+      const double model = with[i].hammer_torque[j] + with[i].weight_torque[j] + with[i].motion_torque[j] +
+                           with[i].vibration_torque[j];
+      ASSERT_NEAR(with[i].total_torque[j], model + with[i].contact_torque[j], 1e-6);
+      ASSERT_EQ(without[i].contact_torque[j], 0.0);
     }
   }
   EXPECT_LT(hammer_cylinder.rms(), 0.2 * (kMore - 1.0));
@@ -140,8 +140,8 @@ TEST_F(BoomBag, TellsWhatTheSteelOfAMachineOnSofterOilCarries) {
   for (const JointLoads& loads : test::messagesIn<JointLoads>(path("out.bag"), "/hammer_loads/joint_loads")) {
     const StampNs stamp = stampOf(loads.header.stamp);
     for (std::size_t i = 0; stamp > from && i < 3; ++i) {
-      const double weight = loads.weight_torque_Nm[i + 1];
-      torque[i].add(loads.total_torque_Nm[i + 1] - weight, -truth.at(stamp)->hold[static_cast<int>(i)] - weight);
+      const double weight = loads.weight_torque[i + 1];
+      torque[i].add(loads.total_torque[i + 1] - weight, -truth.at(stamp)->hold[static_cast<int>(i)] - weight);
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {

@@ -58,7 +58,7 @@ Truth truthOf(const std::string& session) {
   }
   for (std::size_t i = 0; i < blows.size(); ++i)
     truth.blows.push_back({blows.number(i, "t_s"), blows.number(i, "blow_energy_J"), blows.number(i, "tool_impulse_Ns"),
-                           blows.number(i, "turn_peak_force_z_N"), blows.number(i, "turn_impulse_z_Ns")});
+                           blows.number(i, "turn_peak_force_z_N"), blows.number(i, "turn_impulse_z")});
   return truth;
 }
 
@@ -84,7 +84,7 @@ Output outputOf(const std::string& path) {
       output.wrenches.push_back(
           {sinceStart(w->header.stamp), w->wrench.force.x, w->wrench.force.z, w->wrench.torque.y});
     } else if (const auto b = item.instantiate<Blow>()) {
-      output.blows.push_back({sinceStart(b->header.stamp), b->energy_J, b->tool_impulse_z_Ns});
+      output.blows.push_back({sinceStart(b->header.stamp), b->energy, b->tool_impulse_z});
     } else if (const auto p = item.instantiate<Pulse>()) {
       pulses[sinceStart(p->header.stamp)] = *p;
     }
@@ -92,8 +92,8 @@ Output outputOf(const std::string& path) {
   for (BlowAt& blow : output.blows) {
     const auto pulse = pulses.find(blow.time);  // stamped with the blow that ends its turn
     if (pulse == pulses.end()) continue;
-    blow.turn_peak = pulse->second.amplitude_N;
-    blow.turn_impulse_z = pulse->second.turn_impulse_z_Ns;
+    blow.turn_peak = pulse->second.amplitude;
+    blow.turn_impulse_z = pulse->second.turn_impulse_z;
   }
   return output;
 }

@@ -21,8 +21,8 @@ TEST_F(Tables, SayWhatTheOutputBagSays) {
   const test::Outcome outcome = run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   Database database(path("out.sqlite"), Database::Use::kRead, 0);
-  Database::Statement turns(database, "SELECT stamp_ns, amplitude_N, turn, half_sine_rms_error FROM turns");
-  Database::Statement blows(database, "SELECT stamp_ns, energy_J, turn, mean_press_force_N, flags FROM blows");
+  Database::Statement turns(database, "SELECT stamp_ns, amplitude, turn, half_sine_rms_error FROM turns");
+  Database::Statement blows(database, "SELECT stamp_ns, energy, turn, mean_hold_down_force, flags FROM blows");
   const auto expect_row = [](Database::Statement& row, const ros::Time& stamp, double value, std::uint64_t turn,
                              double last) {
     ASSERT_TRUE(row.step());
@@ -35,11 +35,11 @@ TEST_F(Tables, SayWhatTheOutputBagSays) {
   rosbag::Bag bag(path("out.bag"));
   for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
     if (const auto p = item.instantiate<Pulse>())
-      expect_row(turns, p->header.stamp, p->amplitude_N, p->turn, p->half_sine_rms_error);
+      expect_row(turns, p->header.stamp, p->amplitude, p->turn, p->half_sine_rms_error);
     if (const auto b = item.instantiate<Blow>()) {
-      expect_row(blows, b->header.stamp, b->energy_J, b->turn, b->mean_press_force_N);
+      expect_row(blows, b->header.stamp, b->energy, b->turn, b->mean_hold_down_force);
       EXPECT_EQ(blows.integer(4), b->flags);
-      not_known += std::isnan(b->mean_press_force_N);
+      not_known += std::isnan(b->mean_hold_down_force);
     }
     samples += item.isType<HullLoads>();
   }
@@ -49,7 +49,7 @@ TEST_F(Tables, SayWhatTheOutputBagSays) {
   EXPECT_EQ(number("out.sqlite", "SELECT published FROM runs"), static_cast<double>(samples));
   EXPECT_EQ(number("out.sqlite", "SELECT turns FROM runs"), number("out.sqlite", "SELECT count(*) FROM turns"));
   EXPECT_EQ(number("out.sqlite", "SELECT blows FROM runs"), number("out.sqlite", "SELECT count(*) FROM blows"));
-  EXPECT_NEAR(number("out.sqlite", "SELECT duration_s FROM runs"), 29.8, 0.2);
+  EXPECT_NEAR(number("out.sqlite", "SELECT duration FROM runs"), 29.8, 0.2);
 }
 
 /// Loads of turns and counted cycles, as their messages have them.
@@ -72,7 +72,7 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
     EXPECT_EQ(number("out.sqlite", "SELECT t.maximum" + where), turn.maximum[i]) << turn.channel[i];
     EXPECT_EQ(number("out.sqlite", "SELECT t.mean" + where), turn.mean[i]) << turn.channel[i];
   }
-  EXPECT_EQ(ask("out.sqlite", "SELECT unit FROM channels WHERE name = 'hull_wrench/torque_y_Nm'"),
+  EXPECT_EQ(ask("out.sqlite", "SELECT unit FROM channels WHERE name = 'hull_wrench/torque_y'"),
             std::vector<std::string>{"Nm"});
   for (const ChannelCycles& channel : cycles.channel) {
     const auto of_channel = [&](const std::string& table) {
@@ -151,19 +151,19 @@ TEST_F(Tables, TracesAreSamplesOfTheirTurn) {
   EXPECT_EQ(ask("out.sqlite", "SELECT DISTINCT kind FROM traces ORDER BY kind"),
             (std::vector<std::string>{"typical", "worst"}));
   EXPECT_EQ(ask("out.sqlite", "SELECT DISTINCT turn FROM traces WHERE kind = 'worst'"),
-            ask("out.sqlite", "SELECT turn FROM turns ORDER BY amplitude_N DESC LIMIT 1"));
+            ask("out.sqlite", "SELECT turn FROM turns ORDER BY amplitude DESC LIMIT 1"));
   // The typical turn lies in the middle half of all.
   EXPECT_NEAR(number("out.sqlite",
-                     "SELECT avg(t.amplitude_N <= (SELECT amplitude_N FROM turns WHERE turn = "
+                     "SELECT avg(t.amplitude <= (SELECT amplitude FROM turns WHERE turn = "
                      "(SELECT turn FROM traces WHERE kind = 'typical'))) FROM turns t"),
               0.5, 0.25);
   for (const char* kind : {"typical", "worst"}) {
     const std::string of_kind = std::string(" FROM traces JOIN turns USING(run_id, turn) WHERE kind = '") + kind + "'";
-    EXPECT_EQ(number("out.sqlite", "SELECT sum(time_s <= 0.0 OR time_s > period_s)" + of_kind), 0.0);
+    EXPECT_EQ(number("out.sqlite", "SELECT sum(time_s <= 0.0 OR time_s > period)" + of_kind), 0.0);
     // Samples 10 ms apart; a sample is at most the peak, which is found between samples.
-    EXPECT_NEAR(number("out.sqlite", "SELECT count(*) * 0.01 - period_s" + of_kind), 0.0, 0.011);
-    EXPECT_LE(number("out.sqlite", "SELECT max(force_z_N) / amplitude_N" + of_kind), 1.0 + 1e-9);
-    EXPECT_GT(number("out.sqlite", "SELECT max(force_z_N) / amplitude_N" + of_kind), 0.5);
+    EXPECT_NEAR(number("out.sqlite", "SELECT count(*) * 0.01 - period" + of_kind), 0.0, 0.011);
+    EXPECT_LE(number("out.sqlite", "SELECT max(force_z) / amplitude" + of_kind), 1.0 + 1e-9);
+    EXPECT_GT(number("out.sqlite", "SELECT max(force_z) / amplitude" + of_kind), 0.5);
   }
 }
 
@@ -181,7 +181,7 @@ TEST_F(Tables, SeveralBagsAreOneRecording) {
   ASSERT_EQ(tables(a + " " + b, "parts.sqlite").exit_code, 0);
   const std::string sha = test::runCommand("sh -c 'cat $0 $1 | sha256sum'", a + " " + b).out.substr(0, 64);
   EXPECT_EQ(ask("parts.sqlite", "SELECT input_sha256 FROM runs"), std::vector<std::string>{sha});
-  const std::string turns = "SELECT turn || ' ' || stamp_ns || ' ' || amplitude_N FROM turns";
+  const std::string turns = "SELECT turn || ' ' || stamp_ns || ' ' || amplitude FROM turns";
   EXPECT_EQ(ask("parts.sqlite", turns), ask("whole.sqlite", turns));
 }
 

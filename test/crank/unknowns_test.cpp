@@ -24,14 +24,14 @@ struct Filtered {
   test::StrikingCrank crank{mechanism.linkage(), 0.737, 0.6};
   CrankFilter filter;
 
-  explicit Filtered(double latency_deviation = 0.0)
-      : filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings(latency_deviation)) {
+  explicit Filtered(double latency_std = 0.0)
+      : filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings(latency_std)) {
     crank.blow = [](int number) { return test::StrikingCrank::Blow{number % 2 == 0 ? 0.9 : 1.05, true, 0.0}; };
   }
-  static CrankFilterSettings settings(double latency_deviation) {
+  static CrankFilterSettings settings(double latency_std) {
     CrankFilterSettings settings = test::filterSettings(1e-9, 1e-3);
-    settings.constant_deviations[ConstantErrors::kLatency] = latency_deviation;
-    settings.initial_inertia_deviation = settings.inertia_walk = 0.0;  // 0.6, as it is: nothing is learned
+    settings.constant_deviations[ConstantErrors::kLatency] = latency_std;
+    settings.initial_inertia_std = settings.inertia_walk = 0.0;  // 0.6, as it is: nothing is learned
     return settings;
   }
   void sample(int i, double late, const Reading& reading) {

@@ -102,9 +102,9 @@ TEST(SymbolTable, EveryKeyExistsAndNoHammerKeyIsMissing) {
   std::vector<std::string> problems;
   ParameterMap parameters = readParameterFile((kRoot / "config/hammer_mo100.yaml").string(), problems).value();
   for (const auto& [key, parameter] : parameters) {
-    const bool is_deviation = key.find("_deviation") != std::string::npos ||
+    const bool is_std = key.find("_std") != std::string::npos ||
                               key.find("_std_") != std::string::npos;  // of a symbol that has its row
-    EXPECT_TRUE(is_deviation || names.count(key) == 1U) << key;
+    EXPECT_TRUE(is_std || names.count(key) == 1U) << key;
   }
   merge(readParameterFile((kRoot / "config/pipeline.yaml").string(), problems).value(), parameters);
   for (const std::string& name : names) EXPECT_EQ(parameters.count(name), 1U) << name;
@@ -117,8 +117,8 @@ TEST(SymbolTable, HoldsEveryNumberOfTheMessagesItSpeaksOf) {
   for (const char* message : {"Blow", "PinForces", "Pulse"}) EXPECT_EQ(messages.count(message), 1U) << message;
   for (const std::string& message : messages) {
     for (const std::string& field : matches(textOf("msg/" + message + ".msg"), "float64 (\\w+)")) {
-      const bool is_deviation = field.find("_deviation") != std::string::npos;  // of a number that has its row
-      if (!is_deviation || names.count(message + "." + field) == 1U) fields.insert(message + "." + field);
+      const bool is_std = field.find("_std") != std::string::npos;  // of a number that has its row
+      if (!is_std || names.count(message + "." + field) == 1U) fields.insert(message + "." + field);
     }
   }
   EXPECT_EQ(names, fields);

@@ -67,8 +67,8 @@ TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {
   Blow blow;
   blow.header.frame_id = "hammer_hull";
   blow.turn = 7;
-  blow.crank_speed_before_rad_s = 11.5;
-  blow.mean_press_force_N = -2.25;
+  blow.crank_speed_before = 11.5;
+  blow.mean_hold_down_force = -2.25;
   blow.struck = Blow::STRUCK_TOOL;
   blow.flags = Blow::FLAG_IMPOSSIBLE;
   NumberFields fields = numberFieldsOf<Blow>();
@@ -78,14 +78,14 @@ TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {
   EXPECT_EQ(columns.front().name, "turn");
   EXPECT_TRUE(columns.front().is_integer);
   EXPECT_EQ(values.front(), 7.0);
-  EXPECT_EQ(columns[1].name, "crank_speed_before_rad_s");
+  EXPECT_EQ(columns[1].name, "crank_speed_before");
   EXPECT_FALSE(columns[1].is_integer);
   EXPECT_EQ(values[1], 11.5);
   const std::size_t last = columns.size() - 1;
   EXPECT_EQ(columns[last - 1].name, "struck");
   EXPECT_TRUE(columns[last - 1].is_integer);
   EXPECT_EQ(values[last - 1], 1.0);
-  EXPECT_EQ(columns[last - 2].name, "mean_press_force_N");
+  EXPECT_EQ(columns[last - 2].name, "mean_hold_down_force");
   EXPECT_EQ(values[last - 2], -2.25);
   EXPECT_EQ(columns[last].name, "flags") << "a constant is no column";
   EXPECT_TRUE(columns[last].is_integer);

@@ -222,14 +222,14 @@ class YourMachine(unittest.TestCase):
             self.assertLess(rms, RMS, name)
 
     def test_deviations_hold(self):
-        told = values(self.here / "work", "hull_loads", "force_z_N", "force_z_deviation_N")
+        told = values(self.here / "work", "hull_loads", "force_z", "force_z_std")
         told = told[:, told[0] > loader.STANDS + 1.0]
         within = abs(self.machine.work.wrench(told[0])[1] - told[1]) < 2.0 * told[2]
         print("%.1f %% within two deviations" % (100 * within.mean()))
         self.assertGreater(within.mean(), 0.88)
 
     def test_blows_are_the_true_ones(self):
-        told = values(self.here / "work", "blow", "energy_J", "energy_deviation_J")
+        told = values(self.here / "work", "blow", "energy", "energy_std")
         told = told[:, told[0] > loader.STANDS + 1.0]
         true = np.array(self.machine.work.blows).T
         true = true[:, (true[0] > told[0][0] - 0.05) & (true[0] < told[0][-1] + 0.05)]

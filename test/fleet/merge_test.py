@@ -27,7 +27,7 @@ class Merge(MergeTest):
         for (a, b), n in across.items():
             closed[b - a, a] = closed.get((b - a, a), 0) + n
         self.assertTrue(across)
-        at = self.ask("SELECT machine_channel FROM machine_channels WHERE name = 'hull_wrench/force_z_N'")[0][0]
+        at = self.ask("SELECT machine_channel FROM machine_channels WHERE name = 'hull_wrench/force_z'")[0][0]
         self.assertEqual({(s, l): n for s, l, n in self.ask(
             f"SELECT steps, low, count FROM machine_cycles WHERE machine_channel = {at}")}, closed)
         self.assertEqual([c for c, in self.ask(

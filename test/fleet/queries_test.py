@@ -38,7 +38,7 @@ class Queries(MergeTest):
                       [(row["key"], row["value"], row["machine"]) for row in self.answer("changed_parameters")])
         self.assertEqual([row["week"] for row in self.answer("energy_by_week")], ["2023-W46", "2023-W46"])
         energy = sum(float(row["energy_MJ"]) for row in self.answer("energy_by_week"))
-        self.assertAlmostEqual(energy, self.ask("SELECT sum(total) / 1e6 FROM run_figures WHERE quantity = 'energy_J'")[0][0])
+        self.assertAlmostEqual(energy, self.ask("SELECT sum(total) / 1e6 FROM run_figures WHERE quantity = 'energy'")[0][0])
         self.assertEqual(len(self.answer("lowest_hold_down")), 2)
         self.assertEqual(self.answer("blank_turns"), [])
         self.assertEqual(self.answer("life_left"), [])
@@ -77,8 +77,8 @@ class Queries(MergeTest):
     def test_misuse_by_machine(self):
         self.merge(self.add("m", "mauve", of=sample.Machine("mauve", misuse=(3, 100, 5, None)), seconds=80.0))
         row = next(row for row in self.answer("misuse") if row["machine"] == "mauve")
-        self.assertAlmostEqual(float(row["blank_strokes_per_hour"]), 3 * 3600 / 80, delta=0.5)
-        self.assertAlmostEqual(float(row["unpressed_blows_per_hour"]), 5 * 3600 / 80, delta=0.5)
+        self.assertAlmostEqual(float(row["blank_firings_per_hour"]), 3 * 3600 / 80, delta=0.5)
+        self.assertAlmostEqual(float(row["blows_without_hold_down_per_hour"]), 5 * 3600 / 80, delta=0.5)
         self.assertEqual(row["still_s_per_hour"], "")
 
     def test_boom_health_by_month(self):

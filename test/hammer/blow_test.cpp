@@ -31,7 +31,7 @@ TEST(Blow, MeasuredByAnUnchangedCrankIsThatAtItsSpeed) {
   EXPECT_NEAR(measured.energy, known.energy, 1e-9);
   EXPECT_NEAR(measured.tool_impulse_z, known.tool_impulse_z, 1e-9);
   EXPECT_NEAR(measured.support_impulse_z, known.support_impulse_z, 1e-9);
-  EXPECT_EQ(measured.restitution_deviation, 0.0);
+  EXPECT_EQ(measured.restitution_std, 0.0);
   EXPECT_EQ(measured.drive_impulse_y, 0.0);
 }
 
@@ -49,8 +49,8 @@ TEST(Blow, MeasuredImpulsesAreTheMomentaOfAllLinks) {
     EXPECT_NEAR(to.z - from.z, b.tool_impulse_z - b.support_impulse_z, 1e-9);
     EXPECT_NEAR(to.about_d - from.about_d, distance * b.tool_impulse_z - b.support_impulse_y, 1e-9);
     EXPECT_NEAR(b.drive_impulse_y, -0.6 * 0.5 * 13.0 * (factor - 1.0), 1e-12);
-    EXPECT_GT(b.energy_deviation, 0.0);
-    EXPECT_NEAR(b.restitution_deviation, 0.01 * 0.94 / 1.95, 3e-3);
+    EXPECT_GT(b.energy_std, 0.0);
+    EXPECT_NEAR(b.restitution_std, 0.01 * 0.94 / 1.95, 3e-3);
   }
 }
 
@@ -68,7 +68,7 @@ TEST(Blow, AToolMetEarlySlowsDriveAndLinksTogether) {
   EXPECT_TRUE(std::isnan(b.restitution));
   const double by_speed = 2.0 * 0.1 / kSpeed, by_factor = 2.0 * 0.01 * kFactor / (1.0 - kFactor * kFactor);
   const double by_inertia = 0.02 * kDrive / inertia;
-  EXPECT_NEAR(b.energy_deviation, b.energy * std::hypot(by_speed, by_factor, by_inertia), 0.05 * b.energy_deviation);
+  EXPECT_NEAR(b.energy_std, b.energy * std::hypot(by_speed, by_factor, by_inertia), 0.05 * b.energy_std);
 }
 
 TEST(Blow, LeavesThePercussionCentresSupportWithoutImpulse) {

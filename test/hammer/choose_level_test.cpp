@@ -69,7 +69,7 @@ TEST(ChooseLevel, ARodThatGivesNeedsElastic) {
   // A rod that no source gives rings as a first guess does, unless it is said to be rigid.
   HammerParameters unknown = drawingWithRod({});
   EXPECT_EQ(chooseLevel(test::mechanismOf(unknown), 0.5, 5.0, kG).level, Level::kLinkage);
-  unknown.rod_deviation = usualDeviation(unknown.rod);
+  unknown.rod_std = usualDeviation(unknown.rod);
   EXPECT_EQ(chooseLevel(test::mechanismOf(unknown), 0.5, 5.0, kG).level, Level::kElastic);
 }
 

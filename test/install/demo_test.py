@@ -36,7 +36,7 @@ def rows(demo, query):
 def true_blows(demo):
     """(stamp [s], energy [J])"""
     with open(demo[0] / "true_blows.csv", newline="") as file:
-        return [(float(row["stamp_s"]), float(row["energy_J"])) for row in csv.DictReader(file)]
+        return [(float(row["stamp_s"]), float(row["energy"])) for row in csv.DictReader(file)]
 
 
 def test_the_page_has_no_warning(demo):
@@ -54,7 +54,7 @@ def test_every_true_blow_is_found_and_no_other(demo):
 
 def test_the_energy_is_the_true_one(demo):
     true = statistics.median(energy for _, energy in true_blows(demo))
-    found = statistics.median(energy for energy, in rows(demo, "SELECT energy_J FROM blows"))
+    found = statistics.median(energy for energy, in rows(demo, "SELECT energy FROM blows"))
     print("median energy %.1f J, true %.1f J" % (found, true))
     assert abs(found / true - 1.0) < ENERGY_ERROR
 

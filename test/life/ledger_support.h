@@ -27,7 +27,7 @@ constexpr std::int64_t kStart = 20000 * kDay + 7 * 3600 * kSecond;  ///< 2024-10
 using Problem = std::optional<std::string>;
 inline const Problem kWritten;  ///< none
 
-inline const std::vector<std::string> kInputs{"hull_wrench/force_z_N", "joint_loads/arm_joint/total_torque_Nm"};
+inline const std::vector<std::string> kInputs{"hull_wrench/force_z", "joint_loads/arm_joint/total_torque"};
 
 inline LifeSettings settings(std::int64_t classes = 200) {
   LifeSettings s;

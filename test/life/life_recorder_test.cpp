@@ -15,8 +15,8 @@ namespace {
 using namespace test;
 constexpr std::int64_t kSecond = 1000000000;
 
-const std::vector<std::string> kInputs{"hull_wrench/force_x_N", "hull_wrench/force_z_N",
-                                       "section_loads/foot/torque_y_Nm"};
+const std::vector<std::string> kInputs{"hull_wrench/force_x", "hull_wrench/force_z",
+                                       "section_loads/foot/torque_y"};
 
 LifeSettings settings() {
   const LoadGrid force = LoadGrid::make(-1000.0, 1000.0, 400).value.value();
@@ -31,7 +31,7 @@ LifeSettings settings() {
 
 TEST(LifeRecorder, AHotSpotIsTheSumOfItsLoadsAtEachInstant) {
   LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
-  EXPECT_EQ(recorder.channels(), (std::vector<std::string>{"hull_wrench/force_z_N", "stress/toe_MPa"}));
+  EXPECT_EQ(recorder.channels(), (std::vector<std::string>{"hull_wrench/force_z", "stress/toe"}));
   std::mt19937 random(1);
   std::normal_distribution<double> load(0.0, 300.0);
   Series force, stress;
@@ -95,10 +95,10 @@ TEST(LifeRecorder, RangesOfTurnsCarryTheErrorsOfTheirTwoEnds) {
 
 TEST(LifeRecorder, UnknownChannelsAreNamed) {
   LifeSettings s = settings();
-  s.channels.push_back({"hull_wrench/force_y_N", s.channels[0].grid});
+  s.channels.push_back({"hull_wrench/force_y", s.channels[0].grid});
   s.hot_spots[0].influences.push_back({"no/such_N", 1.0});
   EXPECT_EQ(LifeRecorder::make(s, kInputs).problems,
-            (std::vector<std::string>{"hull_wrench/force_y_N: is no channel of this machine",
+            (std::vector<std::string>{"hull_wrench/force_y: is no channel of this machine",
                                       "no/such_N: is no channel of this machine"}));
 }
 

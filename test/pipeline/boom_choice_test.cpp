@@ -70,9 +70,9 @@ TEST(BoomFollower, ADeadPointIsTakenAsRigid) {
   compliant.sample(kLoad);
   const BoomState& state = compliant.sample(kLoad);
   ASSERT_FALSE(state.fault);
-  EXPECT_TRUE(state.dead_centre);
+  EXPECT_TRUE(state.zero_moment_arm);
   EXPECT_FALSE(state.choice.compliant);
-  EXPECT_TRUE(state.loads.cylinder[1].dead_centre);
+  EXPECT_TRUE(state.loads.cylinder[1].zero_moment_arm);
   EXPECT_TRUE(state.loads.total.allFinite());
   Follower rigid(BoomModel::kRigid, *made.value);
   rigid.sample(kLoad);

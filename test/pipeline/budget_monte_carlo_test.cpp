@@ -115,7 +115,7 @@ TEST(BudgetMonteCarlo, SharesAreThoseOfDrawnHammers) {
   Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   settings.pipeline.level = Level::kLinkage;
   HammerParameters parameters = settings.mechanism.parameters();
-  parameters.rod_deviation = {};  // the recorded rod is rigid, and draws say nothing of another
+  parameters.rod_std = {};  // the recorded rod is rigid, and draws say nothing of another
   settings.mechanism = test::mechanismOf(parameters);
   simulation::MachineSettings machine = test::shippedMachine(settings, 6.0, 5);
   machine.level = Level::kLinkage;

@@ -25,7 +25,7 @@ Settings drawing(const std::map<std::string, double>& known) {
   Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   HammerParameters p = settings.mechanism.parameters();
   p.deviations = {};
-  p.rod_deviation = {};
+  p.rod_std = {};
   p.crank_mass = p.crank_inertia_about_com = p.rod_mass = p.rod_inertia_about_com = 0.0;
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
     const auto found = known.find(kHammerConstants[i].key);
@@ -67,14 +67,14 @@ double variance(const BudgetFigure& figure, const std::string& source) {
 TEST(Budget, SharesAreSquaresOfWhatConstantsDo) {
   const std::map<std::string, double> known{{"rocker_mass_kg", 0.03}, {"rocker_inertia_about_pivot_kg_m2", 0.03}};
   const auto figures = figuresOf(drawing(known));
-  const BudgetFigure& impulse = figures.at("pulse/turn_impulse_z_Ns");
+  const BudgetFigure& impulse = figures.at("pulse/turn_impulse_z");
   // The impulse of links that swing as they did is first moment times speed: in proportion to the mass, not to the
   // inertia, which is the crank's to know by its own speed.
   const double by_mass = std::sqrt(variance(impulse, "rocker_mass_kg"));
   EXPECT_NEAR(by_mass, 0.03 * std::abs(impulse.value), 0.1 * 0.03 * std::abs(impulse.value));
   EXPECT_LT(std::sqrt(variance(impulse, "rocker_inertia_about_pivot_kg_m2")), 0.2 * by_mass);
   // A blow's energy is that of the rocker's rotation.
-  const BudgetFigure& energy = figures.at("blow/energy_J");
+  const BudgetFigure& energy = figures.at("blow/energy");
   EXPECT_GT(variance(energy, "rocker_inertia_about_pivot_kg_m2"), variance(energy, "rocker_mass_kg"));
   double all = 0.0;
   for (const BudgetFigure::Source& source : impulse.sources) all += source.variance;
@@ -103,7 +103,7 @@ TEST(Budget, ARodThatNoFileGivesIsNoReading) {
   Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   shipped.pipeline.level = Level::kLinkage;
   const auto figures = figuresOf(shipped);
-  for (const char* name : {"blow/restitution", "blow/energy_J", "pulse/turn_impulse_z_Ns"}) {
+  for (const char* name : {"blow/restitution", "blow/energy", "pulse/turn_impulse_z"}) {
     const BudgetFigure& figure = figures.at(name);
     EXPECT_GT(variance(figure, "rod_stiffness_N_m"), 5.0 * variance(figure, "readings")) << name;
     double all = 0.0;
@@ -127,7 +127,7 @@ TEST(Budget, RangesReachAsFarAsInTheLedger) {
   accuracy::SessionPlayer player(shipped.mechanism, shipped.pipeline, {}, session);
   BudgetRecorder budget(player.pipeline);
   life::LifeSettings counted;
-  counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-1e5, 1e5, 4096).value}};
+  counted.channels = {{"hull_wrench/force_z", *life::LoadGrid::make(-1e5, 1e5, 4096).value}};
   counted.period = 1;
   LifeFollower follower(player.pipeline, counted);
   player.playTo(kInfinity, [&](double, const SampleResult&) { budget.follow(), follower.follow(); });

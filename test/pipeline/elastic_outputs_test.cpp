@@ -241,7 +241,7 @@ TEST(ElasticOutputs, ABlowThatNothingExplainsHasAnyRestitution) {
         for (const simulation::BlowTruth& blow : session.blows) {
           if (std::abs(blow.time - stamp) > 0.02 || !(blow.retainer_impulse > 50.0)) continue;
           const double right = -blow.strike.rocker_speed_after / blow.strike.rocker_speed_before;
-          restitution.add(end.blow.restitution - right, end.blow.restitution_deviation);
+          restitution.add(end.blow.restitution - right, end.blow.restitution_std);
           impulse.add(end.blow.tool_impulse_z - blow.retainer_impulse, end.blow_errors.tool_impulse_z.deviation());
         }
       }

@@ -28,7 +28,7 @@ TEST(ElasticRanges, ARingBetweenSparseSamplesIsCounted) {
     settings.level = Level::kElastic;
     accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     life::LifeSettings counted;
-    counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
+    counted.channels = {{"hull_wrench/force_z", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
     counted.period = 1;
     constexpr double kFrom = 4.0, kTo = 10.0;
     std::size_t allocated = 0;

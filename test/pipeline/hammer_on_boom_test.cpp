@@ -205,7 +205,7 @@ TEST(HammerOnBoomSession, PressuresReplaceTheCylindersForces) {
     ASSERT_NE(result.boom, nullptr);
     ASSERT_TRUE(result.boom->measured);
     for (int j = 0; j < 3; ++j) ASSERT_NEAR(result.boom->loads.total[j + 1], -t.hold[j], 2e-3 * 3e4) << t.time;
-    ASSERT_TRUE(result.boom->press_force_lost) << "it hangs free";
+    ASSERT_TRUE(result.boom->hold_down_force_lost) << "it hangs free";
   });
 }
 

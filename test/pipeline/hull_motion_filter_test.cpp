@@ -148,7 +148,7 @@ VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise,
   const simulation::Session session = simulation::recordSession(m);
   const Settings settings =
       test::withExactHammer(accuracy::shippedBoom(format("{boom: rigid, hull_motion: imu, imu_x_m: %g, imu_z_m: %g, "
-                                                         "imu_position_deviation_m: %g}",
+                                                         "imu_position_std_m: %g}",
                                                          x + file.off_x, z + file.off_z, file.deviation)));
   accuracy::SessionPlayer player(settings.mechanism, settings.pipeline, settings.boom, session);
   VectorErrors e;

@@ -22,7 +22,7 @@ namespace {
 /// Of all blows together.
 struct Blows {
   double worst{};                           ///< energy off, of the true one
-  double deviation{}, largest_deviation{};  ///< of the energy as estimated: mean and largest, of the true one
+  double deviation{}, largest_std{};  ///< of the energy as estimated: mean and largest, of the true one
   std::size_t struck{};                     ///< in truth
   std::size_t count{}, known{}, within{};   ///< known: their energy; within: two deviations
   double impulse_bias{};                    ///< of the tool's impulse, of the true one
@@ -43,14 +43,14 @@ Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, doub
       if (std::abs(t.time - b.time) > 0.01 || b.time < 3.0) continue;
       ++blows.count;
       blows.impulse_bias += b.tool_impulse / t.strike.tool_impulse - 1.0;
-      blows.impulse_within += std::abs(b.tool_impulse - t.strike.tool_impulse) < 2.0 * b.tool_impulse_deviation;
+      blows.impulse_within += std::abs(b.tool_impulse - t.strike.tool_impulse) < 2.0 * b.tool_impulse_std;
       if (std::isnan(b.energy)) continue;
       ++blows.known;
       const double error = std::abs(b.energy / t.strike.energy - 1.0);
-      const double deviation = b.energy_deviation / t.strike.energy;
+      const double deviation = b.energy_std / t.strike.energy;
       blows.worst = std::max(blows.worst, error);
       blows.deviation += deviation;
-      blows.largest_deviation = std::max(blows.largest_deviation, deviation);
+      blows.largest_std = std::max(blows.largest_std, deviation);
       blows.within += error < 2.0 * deviation;
     }
   blows.deviation /= static_cast<double>(blows.known);
@@ -79,8 +79,8 @@ std::array<double, 2> coveredBeforeCalibrate(double rate, double zero) {
         if (truth == session.blows.end() || time < 3.0 || time > 17.0) continue;
         const RockerBlow& blow = result.ends[k].blow;
         const double restitution = -truth->strike.rocker_speed_after / truth->strike.rocker_speed_before;
-        covered[0] += std::abs(blow.energy - truth->strike.energy) < 2.0 * blow.energy_deviation;
-        covered[1] += std::abs(blow.restitution - restitution) < 2.0 * blow.restitution_deviation;
+        covered[0] += std::abs(blow.energy - truth->strike.energy) < 2.0 * blow.energy_std;
+        covered[1] += std::abs(blow.restitution - restitution) < 2.0 * blow.restitution_std;
         ++count;
       }
     }
@@ -169,7 +169,7 @@ TEST(MeasuredBlow, OfARestitutionDrawnAnew) {
         EXPECT_GT(blows.count, 30u) << name;
         EXPECT_LT(blows.worst, 0.025) << name;
         EXPECT_LT(blows.deviation, 0.02) << name;
-        EXPECT_LT(blows.largest_deviation, 0.08) << name;
+        EXPECT_LT(blows.largest_std, 0.08) << name;
         EXPECT_GT(blows.within, 0.9 * static_cast<double>(blows.count)) << name;
       }
     }

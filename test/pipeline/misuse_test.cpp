@@ -25,7 +25,7 @@ simulation::Session atWork(double blank_share) {
 }
 
 /// Rocker strokes that found no tool, by the true angle: the crank passes two dead centres for each.
-double blankStrokesOf(const simulation::Session& session) {
+double blankFiringsOf(const simulation::Session& session) {
   return 0.5 * static_cast<double>(session.truth.back().turn - static_cast<std::int64_t>(session.blows.size()));
 }
 
@@ -33,22 +33,22 @@ TEST(Misuse, BlankStrokesAreThoseOfTheMachine) {
   const Settings settings = test::settingsWith("level: rocker\n", false);
   const simulation::Session good = atWork(0.0), some = atWork(0.1);
   const Counts of_good = misuseOf(good, settings, false), of_some = misuseOf(some, settings, false);
-  EXPECT_EQ(of_good.blank_strokes, 0U);
-  EXPECT_GT(blankStrokesOf(some), 4.0) << "what there is to count";
-  EXPECT_NEAR(static_cast<double>(of_some.blank_strokes), blankStrokesOf(some), 1.0);
+  EXPECT_EQ(of_good.blank_firings, 0U);
+  EXPECT_GT(blankFiringsOf(some), 4.0) << "what there is to count";
+  EXPECT_NEAR(static_cast<double>(of_some.blank_firings), blankFiringsOf(some), 1.0);
   EXPECT_NEAR(of_good.work_time, 20.0, 1.0);
 }
 
 /// Without boom and pressures nothing is known of the press force and the place: not zero.
 TEST(Misuse, WhatNothingMeasuresIsNotKnown) {
   const Counts alone = misuseOf(atWork(0.0), test::settingsWith("level: rocker\n", false), false);
-  EXPECT_FALSE(alone.unpressed());
+  EXPECT_FALSE(alone.withoutHoldDown());
   EXPECT_FALSE(alone.still());
 }
 
-Counts onRock(double press_force, double stiffness, bool pressures = true) {
+Counts onRock(double hold_down_force, double stiffness, bool pressures = true) {
   simulation::MachineSettings machine = test::machineOnBoom(1.0, 50.0);
-  machine.on_boom.rock = {stiffness, 3.0, press_force};
+  machine.on_boom.rock = {stiffness, 3.0, hold_down_force};
   const simulation::Session session = simulation::recordSession(machine);
   return misuseOf(session, test::settingsWith("boom: compliant\nhull_motion: model\nboom_stiffness: identified\n"),
                   true, pressures);
@@ -57,10 +57,10 @@ Counts onRock(double press_force, double stiffness, bool pressures = true) {
 TEST(Misuse, BlowsWithoutPressForceAreSeenByPressures) {
   const Counts pressed = onRock(12000.0, 3e7), hangs = onRock(0.0, 0.0);
   ASSERT_GT(pressed.judged_blows, 25U);
-  EXPECT_EQ(*pressed.unpressed(), 0U);
+  EXPECT_EQ(*pressed.withoutHoldDown(), 0U);
   ASSERT_GT(hangs.judged_blows, 25U);
-  EXPECT_GE(*hangs.unpressed(), hangs.judged_blows * 9 / 10);
-  EXPECT_FALSE(onRock(0.0, 0.0, false).unpressed()) << "no pressures";
+  EXPECT_GE(*hangs.withoutHoldDown(), hangs.judged_blows * 9 / 10);
+  EXPECT_FALSE(onRock(0.0, 0.0, false).withoutHoldDown()) << "no pressures";
 }
 
 constexpr double kTurnPeriod = 0.2;
@@ -110,9 +110,9 @@ TEST(Misuse, AHullThatComesBackAfterItsRecoilIsPressed) {
   };
   turn(false, true);
   turn(true, false);
-  EXPECT_EQ(*misuse.counts().unpressed(), 0U);
+  EXPECT_EQ(*misuse.counts().withoutHoldDown(), 0U);
   turn(false, false);
-  EXPECT_EQ(*misuse.counts().unpressed(), 1U);
+  EXPECT_EQ(*misuse.counts().withoutHoldDown(), 1U);
   turn(std::nullopt, false);
   EXPECT_EQ(misuse.counts().judged_blows, 3U);
 }

@@ -16,19 +16,19 @@ constexpr char kByPressures[] = "hull_motion: model\nboom_stiffness: identified\
 constexpr char kByImuToo[] = "hull_motion: imu\nboom_stiffness: identified\n";
 
 struct Rock {
-  double press_force;       ///< [N]
+  double hold_down_force;       ///< [N]
   double stiffness;         ///< [N/m]
   double oil{1.0};          ///< over the boom file's
   unsigned pose{};          ///< 0: as the other sessions; else drawn
   double pressures{500.0};  ///< their rate [Hz]
   friend std::ostream& operator<<(std::ostream& out, const Rock& r) {
-    return out << r.press_force << " N on " << r.stiffness << " N/m, oil " << r.oil << ", pose " << r.pose;
+    return out << r.hold_down_force << " N on " << r.stiffness << " N/m, oil " << r.oil << ", pose " << r.pose;
   }
 };
 
 simulation::MachineSettings machineOn(const Rock& rock) {
   simulation::MachineSettings m = test::machineOnBoom(rock.oil, 50.0);
-  m.on_boom.rock = {rock.stiffness, 3.0, rock.press_force};
+  m.on_boom.rock = {rock.stiffness, 3.0, rock.hold_down_force};
   m.on_boom.pressures.rate = rock.pressures;
   if (rock.pose == 0) return m;
   std::mt19937 random(rock.pose);
@@ -41,7 +41,7 @@ simulation::MachineSettings machineOn(const Rock& rock) {
 const simulation::Session& sessionOn(const Rock& rock) {
   static std::map<std::string, simulation::Session> recorded;
   const std::string key =
-      format("%g %g %g %u %g", rock.press_force, rock.stiffness, rock.oil, rock.pose, rock.pressures);
+      format("%g %g %g %u %g", rock.hold_down_force, rock.stiffness, rock.oil, rock.pose, rock.pressures);
   const auto [at, is_new] = recorded.try_emplace(key);
   if (is_new) at->second = simulation::recordSession(machineOn(rock));
   return at->second;

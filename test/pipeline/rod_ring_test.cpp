@@ -75,7 +75,7 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
   settings.level = level;
   Pipeline pipeline(mechanism, settings);
   life::LifeSettings counted;
-  counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
+  counted.channels = {{"hull_wrench/force_z", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
   counted.period = 1000;
   LifeFollower life(pipeline, counted);
   RingFound found;
@@ -97,11 +97,11 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
         const double restitution = -b.strike.rocker_speed_after / b.strike.rocker_speed_before;
         const double off = end.blow.restitution - restitution;
         found.restitution_bias += off;
-        found.restitution_said += end.blow.restitution_deviation;
-        found.restitution_covered += std::abs(off) <= 2.0 * end.blow.restitution_deviation;
+        found.restitution_said += end.blow.restitution_std;
+        found.restitution_covered += std::abs(off) <= 2.0 * end.blow.restitution_std;
         found.energy_bias += end.blow.energy / b.strike.energy - 1.0;
-        found.energy_said += end.blow.energy_deviation / b.strike.energy;
-        found.energy_covered += std::abs(end.blow.energy - b.strike.energy) <= 2.0 * end.blow.energy_deviation;
+        found.energy_said += end.blow.energy_std / b.strike.energy;
+        found.energy_covered += std::abs(end.blow.energy - b.strike.energy) <= 2.0 * end.blow.energy_std;
         const double error = end.pulse->turn_impulse_z - b.turn_impulse_z;
         ++turns;
         found.impulse_bias += error / b.turn_impulse_z;
@@ -195,7 +195,7 @@ TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
   EXPECT_LT(rigid.said, 0.35 * elastic.said);
   EXPECT_LT(rigid.range_said[0], 0.2);
   HammerParameters p = usual.parameters();
-  p.rod_deviation = {};
+  p.rod_std = {};
   EXPECT_EQ(ringOf({}, Level::kLinkage, *Mechanism::make(p).value).said, 0.0);
 }
 

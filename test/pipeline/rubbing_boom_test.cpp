@@ -16,7 +16,7 @@ simulation::Session rubbingSession(double friction) {
 std::string knownFriction(double friction, double deviation) {
   std::string keys = "boom_stiffness: identified\n";
   for (const char* name : simulation::kBoomCylinders)
-    keys += format("%s_friction: %.9g\n%s_friction_deviation: %.9g\n%s_friction_force_deviation_N: 0.0\n", name,
+    keys += format("%s_friction: %.9g\n%s_friction_std: %.9g\n%s_friction_force_std_N: 0.0\n", name,
                    friction, name, deviation, name);
   return keys;
 }
@@ -89,9 +89,9 @@ TEST(LaggingPressures, ALagThatIsFoundIsNoReasonForDeviationsAsOfOneThatIsNot) {
     }
   }
   const std::string no_seals =
-      "boom_cylinder_friction_deviation: 0.0\narm_cylinder_friction_deviation: 0.0\n"
-      "hammer_cylinder_friction_deviation: 0.0\nboom_cylinder_friction_force_deviation_N: 0.0\n"
-      "arm_cylinder_friction_force_deviation_N: 0.0\nhammer_cylinder_friction_force_deviation_N: 0.0\n";
+      "boom_cylinder_friction_std: 0.0\narm_cylinder_friction_std: 0.0\n"
+      "hammer_cylinder_friction_std: 0.0\nboom_cylinder_friction_force_std_N: 0.0\n"
+      "arm_cylinder_friction_force_std_N: 0.0\nhammer_cylinder_friction_force_std_N: 0.0\n";
   const BoomErrors e = errorsOf("hoses", session, "boom_stiffness: identified\n" + no_seals, {true, true});
   EXPECT_LT(e.worstTorque(), 0.02);
   std::printf("deviations %.1f times the errors\n", e.widest());

@@ -7,13 +7,13 @@ namespace {
 struct OverBus {
   double hose, bus;  // [s]
   test::Pose pose;
-  double oil, press_force;  // 0: the hull hangs free
+  double oil, hold_down_force;  // 0: the hull hangs free
 };
 
 accuracy::BoomErrors over(const OverBus& line, double rate, double count, unsigned seed = 73) {
   simulation::MachineSettings machine = test::machineOnBoom(line.oil, 100.0, line.pose);
   machine.seed = seed;
-  if (line.press_force > 0.0) machine.on_boom.rock = {3e7, 3.0, line.press_force};
+  if (line.hold_down_force > 0.0) machine.on_boom.rock = {3e7, 3.0, line.hold_down_force};
   machine.on_boom.pressures.hose_lag = line.hose;
   machine.on_boom.pressures.rate = rate;
   machine.on_boom.pressures.count = count;

@@ -78,8 +78,8 @@ TEST(SoftCylinder, IsNamedByWhatTheBoomFileAllowsFor) {
   EXPECT_EQ(findOil(machine, kImu, {true, false}).named, "");
   std::string exact = kImu, wide = kImu;
   for (const char* name : simulation::kBoomCylinders) {
-    exact += format("%s_stiffness_deviation: 0.01\n", name);
-    wide += format("%s_stiffness_deviation: 0.5\n", name);
+    exact += format("%s_stiffness_std: 0.01\n", name);
+    wide += format("%s_stiffness_std: 0.5\n", name);
   }
   EXPECT_EQ(findOil(machine, exact, {true, false}).named.rfind("arm_cylinder: ", 0), 0U);
   EXPECT_EQ(findOil(drawnMachine(2, {1.0, 0.5, 1.0}), wide, {true, false}).named, "");

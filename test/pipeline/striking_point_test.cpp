@@ -28,7 +28,7 @@ TEST_P(StrikingPointOfTheNode, GivesTheImpulsesOfARigidBodyImpact) {
   Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   HammerParameters p = settings.mechanism.parameters();
   p.striking_offset = GetParam().offset, p.striking_friction = GetParam().friction;
-  p.rod_deviation = {};
+  p.rod_std = {};
   settings.mechanism = test::mechanismOf(p);
   settings.pipeline.level = GetParam().level;
   const bool massless = GetParam().level == Level::kRocker;

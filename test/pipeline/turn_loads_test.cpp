@@ -135,7 +135,7 @@ TEST(TurnLoads, OfJointsAreThoseOfTheSamples) {
   run(test::settingsWith("boom: rigid\n"), sessionAt(1000.0),
       [&](const SampleResult& result, const LifeFollower& follower) {
         const auto joint =
-            std::find(follower.channels().begin(), follower.channels().end(), "joint_loads/arm_joint/total_torque_Nm");
+            std::find(follower.channels().begin(), follower.channels().end(), "joint_loads/arm_joint/total_torque");
         ASSERT_NE(joint, follower.channels().end());
         const auto channel = static_cast<std::size_t>(joint - follower.channels().begin());
         for (std::size_t i = 0; i < result.turn_ends; ++i) {

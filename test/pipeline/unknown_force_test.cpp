@@ -31,10 +31,10 @@ UnknownForce struck(const Mechanism& mechanism, double vibration) {
 
 TEST(UnknownForce, IsZeroForAnExactRod) {
   HammerParameters p = test::mo100Parameters();
-  p.rod_deviation = {};
+  p.rod_std = {};
   const Mechanism exact = test::mechanismOf(p);
   EXPECT_TRUE(struck(exact, 2000.0).squares(linksAtOffset(exact, 0.3)).isZero(0.0));
-  p.rod_deviation = usualDeviation(p.rod);
+  p.rod_std = usualDeviation(p.rod);
   const Mechanism usual = test::mechanismOf(p);
   EXPECT_GT(struck(usual, 2000.0).squares(linksAtOffset(usual, 0.3)).minCoeff(), 0.0);
 }
@@ -42,7 +42,7 @@ TEST(UnknownForce, IsZeroForAnExactRod) {
 /// F = F0 + (dF/dpsi'') d/I, by a difference of the wrench of level rocker at two accelerations of the crank.
 TEST(UnknownForce, LoadsTheHullAsTheRockersAcceleration) {
   HammerParameters p = test::mo100Parameters();
-  p.rod_deviation = usualDeviation(p.rod);
+  p.rod_std = usualDeviation(p.rod);
   const Mechanism mechanism = test::mechanismOf(p);
   const HullModel model(mechanism, Level::kRocker);
   for (const double offset : {0.1, 0.5, 1.5}) {
@@ -66,9 +66,9 @@ TEST(UnknownForce, LoadsTheHullAsTheRockersAcceleration) {
 /// Narrower with a measured clearance, gone before the next blow, and not of what the readings show.
 TEST(UnknownForce, FollowsWhatTheFileLeavesOpen) {
   HammerParameters p = test::mo100Parameters();
-  p.rod_deviation = usualDeviation(p.rod);
+  p.rod_std = usualDeviation(p.rod);
   const Mechanism usual = test::mechanismOf(p);
-  p.rod_deviation.play = 1e-5;
+  p.rod_std.play = 1e-5;
   const Mechanism measured = test::mechanismOf(p);
   const LinkMotion links = linksAtOffset(usual, 0.3);
   const auto clearanceOf = [&](const Mechanism& mechanism) {
@@ -117,7 +117,7 @@ Covered coveredOf(const test::WornMachineSettings& machine, const Mechanism& fil
         if (std::abs(blow.time - time) > 0.02) continue;
         ++covered.blows;
         covered.energies +=
-            std::abs(result.ends[k].blow.energy - blow.energy) <= 2.0 * result.ends[k].blow.energy_deviation;
+            std::abs(result.ends[k].blow.energy - blow.energy) <= 2.0 * result.ends[k].blow.energy_std;
       }
     }
     const bool touches =

@@ -100,7 +100,7 @@ class Figures(unittest.TestCase):
 
     def test_of_the_package_s_own_pulse(self):
         found, own = Turn.at_speed(SHIPPED, papers.SPEED).half_sine(), SHIPPED.pulse(papers.SPEED, level="rocker")
-        for key, name in (("H", "amplitude_N"), ("S", "impulse_Ns"), ("mu", "frequency_rad_s"), ("t1", "start_s")):
+        for key, name in (("H", "amplitude"), ("S", "impulse"), ("mu", "angular_frequency"), ("t1", "start")):
             self.assertAlmostEqual(found[key] / own[name], 1.0, delta=1e-10, msg=key)
 
     def test_printed_values_are_those_of_a_coarse_curve(self):

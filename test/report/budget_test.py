@@ -24,7 +24,7 @@ def with_budget(path, rows, restarts=0):
 
 
 class Budget(ReportTest):
-    ROWS = [("blow/energy_J", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy_J", 900.0, 20.0, "readings", 0.36)]
+    ROWS = [("blow/energy", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy", 900.0, 20.0, "readings", 0.36)]
 
     def test_largest_first_and_what_halving_it_gives(self):
         path = self.directory / "a.sqlite"
@@ -43,7 +43,7 @@ class Budget(ReportTest):
 
     def test_bars_are_as_long_as_the_shares(self):
         path = self.directory / "a.sqlite"
-        with_budget(path, self.ROWS + [("equivalent_range_3/joint_loads/boom_joint/total_torque_Nm", 9.0, 1.0, "readings", 1.0)])
+        with_budget(path, self.ROWS + [("equivalent_range_3/joint_loads/boom_joint/total_torque", 9.0, 1.0, "readings", 1.0)])
         parts = [(given["title"], float(given["style"].split(": ")[1].rstrip("%")))
                  for tag, given in self.page_of(path).tags if tag == "i" and "style" in given]
         self.assertEqual([part for part in parts if not part[0].startswith("the rest")],
@@ -62,13 +62,13 @@ class Budget(ReportTest):
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         machine, = json.loads(outcome.stdout)["machines"]
         found = {figure["quantity"]: figure for figure in machine["figures"]}
-        for quantity in ("pulse/turn_impulse_z_Ns", "pulse/amplitude_N", "blow/energy_J",
-                         "equivalent_range_3/hull_wrench/force_z_N"):
+        for quantity in ("pulse/turn_impulse_z", "pulse/amplitude", "blow/energy",
+                         "equivalent_range_3/hull_wrench/force_z"):
             shares = [source["share"] for source in found[quantity]["sources"]]
             self.assertAlmostEqual(sum(shares), 1.0, delta=1e-9)
             self.assertEqual(shares, sorted(shares, reverse=True))
             self.assertGreater(found[quantity]["deviation"], found[quantity]["deviation_with_largest_halved"])
-        self.assertIn("rocker_mass_kg", [s["source"] for s in found["pulse/turn_impulse_z_Ns"]["sources"]])
+        self.assertIn("rocker_mass_kg", [s["source"] for s in found["pulse/turn_impulse_z"]["sources"]])
 
     def test_what_would_be_nothing_is_one_line(self):
         shares = [("rocker_mass_kg", 0.9991), ("readings", 5e-4), ("supply", 3e-4), ("crank_mass_kg", 1e-4)]

@@ -13,7 +13,7 @@ from report.certificate import deviation_key, rounded
 
 
 class Certificate(ReportTest):
-    ROWS = [("blow/energy_J", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy_J", 900.0, 20.0, "readings", 0.36)]
+    ROWS = [("blow/energy", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy", 900.0, 20.0, "readings", 0.36)]
 
     def command(self, *arguments):
         certificate = self.directory / "certificate"
@@ -27,13 +27,13 @@ class Certificate(ReportTest):
         self.assertEqual(rounded(0.18302, 0.01746), ("0.183", "0.017"))
         self.assertEqual(rounded(-11996.4, 17258.0), ("-12000", "17000"))
 
-    def test_deviation_keys_stand_before_the_unit(self):
-        keys = {"rocker_mass_deviation_kg", "rod_damping_ratio_deviation"}
-        self.assertEqual(deviation_key("rocker_mass_kg", keys), "rocker_mass_deviation_kg")
-        self.assertEqual(deviation_key("rod_damping_ratio", keys), "rod_damping_ratio_deviation")
+    def test_std_keys_stand_before_the_unit(self):
+        keys = {"rocker_mass_std_kg", "rod_damping_ratio_std"}
+        self.assertEqual(deviation_key("rocker_mass_kg", keys), "rocker_mass_std_kg")
+        self.assertEqual(deviation_key("rod_damping_ratio", keys), "rod_damping_ratio_std")
         self.assertIsNone(deviation_key("rocker_length_m", keys))
 
-    def test_expanded_uncertainty_is_twice_the_deviation(self):
+    def test_expanded_uncertainty_is_twice_the_std(self):
         path, page = self.directory / "a.sqlite", self.directory / "a.html"
         with_budget(path, self.ROWS)
         outcome = self.command(path, "--html", page)
@@ -54,15 +54,15 @@ class Certificate(ReportTest):
 
     def test_every_input_of_more_than_a_hundredth_is_listed(self):
         path = self.directory / "a.sqlite"
-        with_budget(path, [("pulse/amplitude_N", 8e3, 300.0, "rod_stiffness_N_m", 0.82),
-                           ("pulse/amplitude_N", 8e3, 300.0, "rocker_mass_kg", 0.175),
-                           ("pulse/amplitude_N", 8e3, 300.0, "rod_mass_kg", 0.005),
-                           ("blow/energy_J", 900.0, 20.0, "rocker_mass_kg", 0.98),
-                           ("blow/energy_J", 900.0, 20.0, "crank_length_m", 0.015),
-                           ("blow/energy_J", 900.0, 20.0, "rod_mass_kg", 0.005)])
+        with_budget(path, [("pulse/amplitude", 8e3, 300.0, "rod_stiffness_N_m", 0.82),
+                           ("pulse/amplitude", 8e3, 300.0, "rocker_mass_kg", 0.175),
+                           ("pulse/amplitude", 8e3, 300.0, "rod_mass_kg", 0.005),
+                           ("blow/energy", 900.0, 20.0, "rocker_mass_kg", 0.98),
+                           ("blow/energy", 900.0, 20.0, "crank_length_m", 0.015),
+                           ("blow/energy", 900.0, 20.0, "rod_mass_kg", 0.005)])
         db = sqlite3.connect(str(path))
         db.executemany("INSERT INTO parameters VALUES(1,?,?,?)", [
-            ("rod_stiffness_N_m", "6e8", "0"), ("rod_stiffness_deviation_N_m", "4e8", "4e8"), ("crank_length_m", "0.05", "0.048")])
+            ("rod_stiffness_N_m", "6e8", "0"), ("rod_stiffness_std_N_m", "4e8", "4e8"), ("crank_length_m", "0.05", "0.048")])
         db.commit()
         db.close()
         _, inputs = self.page(path)
@@ -100,7 +100,7 @@ class Certificate(ReportTest):
         self.assertIn("no hammer file was given", words)
 
     @unittest.skipUnless(program("process_bag"), "needs the built commands")
-    def test_inputs_whose_deviation_no_file_gives_have_the_usual_one(self):
+    def test_inputs_whose_std_no_file_gives_have_the_usual_one(self):
         """Half of a rod's mass, 0.3 mm of a length."""
         hammer, page = self.directory / "hammer.yaml", self.directory / "d.html"
         lines = (SOURCE / "config" / "hammer_mo100.yaml").read_text(encoding="utf-8").splitlines()

@@ -55,7 +55,7 @@ class Damage(unittest.TestCase):
                                           (1, 3, 1.536363), (2, 1, 2.3), (2, -2, 1.4), (2, -9, 1.4)):
             self.assertAlmostEqual(at_alternating(amplitude, mean, 0.3)[0], expected, delta=2e-6)
 
-    def test_deviation_is_the_difference(self):
+    def test_std_is_the_difference(self):
         """All ranges larger by one deviation."""
         cycles, shift = [(50.0, 3.0, 10.0), (120.0, -8.0, 2.5)], 1e-5
         moved = [(r + shift, m, n) for r, m, n in cycles]
@@ -89,7 +89,7 @@ class Recording(ReportTest):
 LEDGER = """
 CREATE TABLE epochs(epoch INTEGER PRIMARY KEY, machine TEXT, equivalent_cycles_per_hour REAL);
 CREATE TABLE channels(channel INTEGER PRIMARY KEY, epoch INTEGER, name TEXT, least REAL, greatest REAL,
-  classes INTEGER, sn_knee_range_MPa REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL,
+  classes INTEGER, sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL,
   mean_stress_sensitivity REAL);
 CREATE TABLE runs(run INTEGER PRIMARY KEY, name TEXT, epoch INTEGER, pieces INTEGER, parameters TEXT,
   messages INTEGER);
@@ -102,8 +102,8 @@ CREATE TABLE cycles(channel INTEGER, day INTEGER, steps INTEGER, low INTEGER, co
 CREATE TABLE residues(channel INTEGER, run INTEGER, place INTEGER, class INTEGER, PRIMARY KEY(channel, run, place));
 CREATE TABLE marks(mark INTEGER, run INTEGER, PRIMARY KEY(mark, run));
 INSERT INTO epochs VALUES(1, 'mo100', 3600.0);
-INSERT INTO channels VALUES(1, 1, 'hull_wrench/force_z_N', -2e5, 2e5, 512, NULL, NULL, NULL, NULL, NULL);
-INSERT INTO channels VALUES(2, 1, 'stress/weld_MPa', -4e2, 4e2, 256, 80.0, 1e7, 3.0, 5.0, 0.3);
+INSERT INTO channels VALUES(1, 1, 'hull_wrench/force_z', -2e5, 2e5, 512, NULL, NULL, NULL, NULL, NULL);
+INSERT INTO channels VALUES(2, 1, 'stress/weld', -4e2, 4e2, 256, 80.0, 1e7, 3.0, 5.0, 0.3);
 INSERT INTO runs VALUES(1, 'a', 1, 3, '', 3000);
 INSERT INTO runs VALUES(2, 'b', 1, 1, '', 3000);
 INSERT INTO days VALUES(1, 1, 1, '2026-01-31', 7200000000000, 36000);

@@ -93,7 +93,7 @@ class Damaged(ReportTest):
         return what
 
     def test_numbers_without_end_leave_one_line_at_most(self):
-        for statement in ("UPDATE turns SET amplitude_N = 9e999 WHERE turn > 5", "UPDATE blows SET energy_J = 9e999",
+        for statement in ("UPDATE turns SET amplitude = 9e999 WHERE turn > 5", "UPDATE blows SET energy = 9e999",
                           "UPDATE turn_loads SET maximum = 1e308, minimum = -1e308"):
             self.file.write_bytes(self.good)
             execute(self.file, statement)

@@ -29,7 +29,7 @@ class Page(ReportTest):
 
     def test_statistics_are_those_of_all_turns(self):
         rows = self.page_of(self.file).table("Over all turns")
-        peaks = [row[0] / 1000 for row in self.ask("SELECT amplitude_N FROM turns")]
+        peaks = [row[0] / 1000 for row in self.ask("SELECT amplitude FROM turns")]
         shown = rows["Peak force [kN]"]
         self.assertAlmostEqual(number(shown["Median"]), statistics.median(peaks), delta=1e-3 * max(peaks))
         self.assertAlmostEqual(number(shown["Greatest"]), max(peaks), delta=1e-3 * max(peaks))
@@ -42,7 +42,7 @@ class Page(ReportTest):
         long_file = self.directory / "long.sqlite"
         sample.make(long_file, seconds=1000.0, boom=False)
         db = sqlite3.connect(str(long_file))
-        least, greatest = db.execute("SELECT min(energy_J), max(energy_J) FROM blows").fetchone()
+        least, greatest = db.execute("SELECT min(energy), max(energy) FROM blows").fetchone()
         turns = db.execute("SELECT count(*) FROM blows").fetchone()[0]
         db.close()
         band = [point for piece in self.page_of(long_file).drawn("Blow energy:").curves("band first") for point in piece]
@@ -69,7 +69,7 @@ class Page(ReportTest):
         rows = page.table("Loads over all turns")
         least, mean, greatest = self.ask(
             "SELECT min(t.minimum), avg(mean), max(t.maximum) FROM turn_loads t JOIN channels USING(run_id, channel) "
-            "WHERE name = 'section_loads/boom_foot/torque_y_Nm'")[0]
+            "WHERE name = 'section_loads/boom_foot/torque_y'")[0]
         shown = rows["section_loads/boom_foot/torque_y"]
         for name, value in (("Least", least), ("Mean of turns", mean), ("Greatest", greatest)):
             self.assertAlmostEqual(number(shown[name]), value / 1000, delta=1e-3 * abs(greatest) / 1000)
@@ -87,7 +87,7 @@ class Page(ReportTest):
         """Its curve is that of the table."""
         picture = self.page_of(self.file).pictures[0]
         self.assertTrue(picture.title.startswith("Typical turn"), picture.title)
-        forces = [force / 1000 for force, in self.ask("SELECT force_z_N FROM traces WHERE kind = 'typical' AND run_id = 1")]
+        forces = [force / 1000 for force, in self.ask("SELECT force_z FROM traces WHERE kind = 'typical' AND run_id = 1")]
         curve, = picture.curves("line first")
         self.assertAlmostEqual(max(y for _, y in curve), max(forces), delta=2e-3 * max(forces))
         self.assertAlmostEqual(min(y for _, y in curve), min(forces), delta=2e-3 * max(forces))
@@ -213,7 +213,7 @@ class LittleData(ReportTest):
         for table, kept in (("runs", ("run_id", "run_key", "input_sha256", "parameters_sha256", "machine", "version",
                                       "revision", "parameters_yaml")), ("turns", ("run_id", "turn")),
                             ("blows", ("run_id", "turn")), ("turn_loads", ("run_id", "turn", "channel")),
-                            ("traces", ("run_id", "kind", "turn", "place", "time_s")),
+                            ("traces", ("run_id", "kind", "turn", "place", "time")),
                             ("channels", ("run_id", "channel", "name", "counted", "least", "greatest", "classes"))):
             names = [row[1] for row in db.execute(f"PRAGMA table_info({table})")]
             db.execute(f"UPDATE {table} SET " + ", ".join(f"{n} = NULL" for n in names if n not in kept))

@@ -11,10 +11,10 @@ import sqlite3
 
 APPLICATION_ID, VERSION = 0x484C5242, 1
 SECOND = 1000000000
-PULSE = ["period_s", "amplitude_N", "frequency_rad_s", "start_s", "impulse_Ns", "turn_impulse_x_Ns",
-         "turn_impulse_z_Ns", "half_sine_rms_error"]
-BLOW = ["rocker_speed_before_rad_s", "rocker_speed_after_rad_s", "restitution", "energy_J", "tool_impulse_x_Ns",
-        "tool_impulse_z_Ns", "support_impulse_x_Ns", "support_impulse_z_Ns", "mean_press_force_N"]
+PULSE = ["period", "amplitude", "angular_frequency", "start", "impulse", "turn_impulse_x",
+         "turn_impulse_z", "half_sine_rms_error"]
+BLOW = ["rocker_speed_before", "rocker_speed_after", "restitution", "energy", "tool_impulse_x",
+        "tool_impulse_z", "support_impulse_x", "support_impulse_z", "mean_hold_down_force"]
 
 
 def columns(names):
@@ -24,11 +24,11 @@ def columns(names):
 SCHEMA = f"""
 CREATE TABLE runs(run_id INTEGER PRIMARY KEY, run_key TEXT NOT NULL UNIQUE, input_sha256 TEXT NOT NULL,
   parameters_sha256 TEXT NOT NULL, machine TEXT NOT NULL, version TEXT NOT NULL, revision TEXT NOT NULL,
-  parameters_yaml TEXT NOT NULL, first_stamp_ns INTEGER, last_stamp_ns INTEGER, duration_s REAL, level TEXT,
+  parameters_yaml TEXT NOT NULL, first_stamp_ns INTEGER, last_stamp_ns INTEGER, duration REAL, level TEXT,
   samples INTEGER, published INTEGER, restarts INTEGER, turns INTEGER, blows INTEGER, backward_passes INTEGER,
-  consistency REAL, timing_noise_s REAL, speed_noise_rad_s REAL, angle_resolution_rad REAL,
-  drive_inertia_kg_m2 REAL, drive_inertia_deviation REAL, equivalent_cycles_per_hour REAL, blank_strokes INTEGER,
-  judged_blows INTEGER, unpressed_blows INTEGER, still_time_s REAL, hull_pitch_rad REAL);
+  consistency REAL, timing_noise REAL, speed_noise REAL, angle_resolution REAL,
+  drive_inertia REAL, drive_inertia_std REAL, equivalent_cycles_per_hour REAL, blank_firings INTEGER,
+  judged_blows INTEGER, blows_without_hold_down INTEGER, still_time REAL, hull_pitch REAL);
 CREATE TABLE parameters(run_id INTEGER, key TEXT, value TEXT, shipped TEXT, PRIMARY KEY(run_id, key));
 CREATE TABLE refusals(run_id INTEGER, reason TEXT, count INTEGER);
 CREATE TABLE warnings(run_id INTEGER, place INTEGER, key TEXT, text TEXT);
@@ -36,7 +36,7 @@ CREATE TABLE turns(run_id INTEGER, turn INTEGER, stamp_ns INTEGER, {columns(PULS
 CREATE TABLE blows(run_id INTEGER, turn INTEGER, stamp_ns INTEGER, {columns(BLOW)}, PRIMARY KEY(run_id, turn));
 CREATE TABLE channels(run_id INTEGER, channel INTEGER, name TEXT, unit TEXT, counted INTEGER, least REAL,
   greatest REAL, classes INTEGER, samples INTEGER, skipped INTEGER, below INTEGER, above INTEGER, gaps INTEGER,
-  minimum REAL, maximum REAL, mean_deviation REAL, sn_knee_range_MPa REAL, sn_knee_cycles REAL, sn_slope REAL,
+  minimum REAL, maximum REAL, mean_std REAL, sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL,
   sn_slope_below REAL, mean_stress_sensitivity REAL, PRIMARY KEY(run_id, channel));
 CREATE TABLE turn_loads(run_id INTEGER, turn INTEGER, channel INTEGER, minimum REAL, maximum REAL, mean REAL,
   PRIMARY KEY(run_id, turn, channel)) WITHOUT ROWID;
@@ -44,21 +44,21 @@ CREATE TABLE cycles(run_id INTEGER, channel INTEGER, steps INTEGER, low INTEGER,
   PRIMARY KEY(run_id, channel, steps, low)) WITHOUT ROWID;
 CREATE TABLE residues(run_id INTEGER, channel INTEGER, place INTEGER, class INTEGER,
   PRIMARY KEY(run_id, channel, place)) WITHOUT ROWID;
-CREATE TABLE boom_cylinders(run_id INTEGER, turn INTEGER, cylinder TEXT, joint_angle_rad REAL, stiffness_ratio REAL,
-  stiffness_ratio_deviation REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder));
-CREATE TABLE boom_modes(run_id INTEGER, turn INTEGER, mode INTEGER, frequency_Hz REAL, frequency_deviation_Hz REAL,
-  damping_ratio REAL, damping_ratio_deviation REAL, PRIMARY KEY(run_id, turn, mode));
-CREATE TABLE traces(run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time_s REAL, force_x_N REAL,
-  force_z_N REAL, torque_y_Nm REAL, force_z_deviation_N REAL, crank_angle_rad REAL);
+CREATE TABLE boom_cylinders(run_id INTEGER, turn INTEGER, cylinder TEXT, joint_angle REAL, stiffness_ratio REAL,
+  stiffness_ratio_std REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder));
+CREATE TABLE boom_modes(run_id INTEGER, turn INTEGER, mode INTEGER, frequency REAL, frequency_std REAL,
+  damping_ratio REAL, damping_ratio_std REAL, PRIMARY KEY(run_id, turn, mode));
+CREATE TABLE traces(run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time REAL, force_x REAL,
+  force_z REAL, torque_y REAL, force_z_std REAL, crank_angle REAL);
 """
 
 # Share of the pulse, offset; the first three are counted, and so is the stress.
-WRENCH = [("hull_wrench/force_x_N", 0.18, 0.0, 200e3), ("hull_wrench/force_z_N", 1.0, 0.0, 200e3),
-          ("hull_wrench/torque_y_Nm", 0.05, 0.0, 50e3)]
+WRENCH = [("hull_wrench/force_x", 0.18, 0.0, 200e3), ("hull_wrench/force_z", 1.0, 0.0, 200e3),
+          ("hull_wrench/torque_y", 0.05, 0.0, 50e3)]
 JOINTS = ["boom_joint", "arm_joint", "hammer_joint"]
 PARTS = ["hammer", "weight", "motion", "vibration", "total"]
 SECTIONS = ["boom_foot", "boom_head", "arm_foot", "arm_head"]
-STRESS = ("stress/boom_foot_MPa", 1.5e-3, 40.0, 400.0)
+STRESS = ("stress/boom_foot", 1.5e-3, 40.0, 400.0)
 
 
 def channel_list(boom):
@@ -69,9 +69,9 @@ def channel_list(boom):
     for i, joint in enumerate(JOINTS):
         for j, part in enumerate(PARTS):
             result.append((f"joint_loads/{joint}/{part}_torque_Nm", (3 - i) * (0.4 + 0.2 * j), (j == 1) * 4e3, None))
-        result.append((f"joint_loads/{joint}_cylinder/cylinder_force_N", 2.0 - 0.5 * i, 5e4, None))
+        result.append((f"joint_loads/{joint}_cylinder/cylinder_force", 2.0 - 0.5 * i, 5e4, None))
     for i, section in enumerate(SECTIONS):
-        for field, share in (("force_x_N", 0.3), ("force_z_N", 0.9), ("torque_y_Nm", 1.7 - 0.3 * i)):
+        for field, share in (("force_x", 0.3), ("force_z", 0.9), ("torque_y", 1.7 - 0.3 * i)):
             result.append((f"section_loads/{section}/{field}", share, 2e3 * i, None))
     result.append(STRESS)
     return result
@@ -122,7 +122,7 @@ class Machine:
         self.name, self.peak_N, self.rate_Hz, self.noise = name, peak_N, rate_Hz, noise
         self.consistency, self.jitter_s, self.stiff, self.curve = consistency, jitter_s, stiff, curve
         self.oil = oil or {}  # by cylinder: stiffness over the boom file's, change from run to run, doubtful
-        self.misuse = misuse  # blank strokes, blows judged, of these unpressed, seconds at one place
+        self.misuse = misuse  # blank firing, blows judged, of these unpressed, seconds at one place
         self.parameters = {"rocker_mass_kg": ("35.2", "35.2"), "hammer": (name, "mo100"),
                            "crank_ratio": ("1.0", "1.0"), **(parameters or {})}
 
@@ -173,7 +173,7 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
         db.execute(f"INSERT INTO channels VALUES({','.join('?' * 21)})",
                    (run_id, i, name, name.rsplit("_", 1)[1], int(bool(scale)), -scale if scale else None, scale,
                     classes if scale else None, int(1000 * seconds), 0, 0, 0, restarts, low, high,
-                    0.01 * machine.peak_N if name.endswith("force_z_N") else None,
+                    0.01 * machine.peak_N if name.endswith("force_z") else None,
                     *((80.0, 1e7, 3.0, 5.0, None) if stress else (None,) * 5)))
         if not scale:
             continue

@@ -9,8 +9,8 @@ import unittest
 from support import REPORT, Reader, ReportTest, value as number
 import sample_database as sample
 
-IMPOSSIBLE = ("UPDATE blows SET restitution = -0.3, energy_J = -6.35e5 WHERE turn IN (10, 20, 30)",
-              "UPDATE blows SET restitution = NULL, energy_J = NULL WHERE turn IN (40, 50)")
+IMPOSSIBLE = ("UPDATE blows SET restitution = -0.3, energy = -6.35e5 WHERE turn IN (10, 20, 30)",
+              "UPDATE blows SET restitution = NULL, energy = NULL WHERE turn IN (40, 50)")
 
 
 class Work(ReportTest):
@@ -51,27 +51,27 @@ class Work(ReportTest):
             self.assertAlmostEqual(60.0 * last, end, delta=0.7)
 
     def test_blows_per_hour_and_energy_of_all(self):
-        blows, seconds = self.ask("SELECT blows, duration_s FROM runs")[0]
+        blows, seconds = self.ask("SELECT blows, duration FROM runs")[0]
         figures = self.figures(self.page_of(self.file))
         self.assertAlmostEqual(number(figures["blows per hour of work"]), blows / seconds * 3600.0, delta=1.0)
-        energy = self.ask("SELECT sum(energy_J) FROM blows")[0][0]
+        energy = self.ask("SELECT sum(energy) FROM blows")[0][0]
         self.assertAlmostEqual(number(figures["energy of all blows"]), energy / 1e3, delta=1e-3 * energy / 1e3)
 
     def test_median_and_spread(self):
-        energies = sorted(e for e, in self.ask("SELECT energy_J FROM blows"))
+        energies = sorted(e for e, in self.ask("SELECT energy FROM blows"))
         median, spread = self.figures(self.page_of(self.file))["blow energy, median \u00b1 spread"].split("\u00b1")
         self.assertAlmostEqual(number(median), statistics.median(energies), delta=0.1)
         inside = [e for e in energies if abs(e - number(median)) <= number(spread)]
         self.assertAlmostEqual(len(inside) / len(energies), 0.6827, delta=0.05)
 
-    def test_deviation_of_the_measurement_where_it_is_known(self):
-        self.ask("ALTER TABLE blows ADD COLUMN energy_deviation_J REAL", "UPDATE blows SET energy_deviation_J = 7.0")
+    def test_std_of_the_measurement_where_it_is_known(self):
+        self.ask("ALTER TABLE blows ADD COLUMN energy_std REAL", "UPDATE blows SET energy_std = 7.0")
         figures = self.figures(self.page_of(self.file))
         self.assertTrue(figures["blow energy, median \u00b1 deviation"].endswith("\u00b1 7.0 J"), figures)
 
-    def test_noise_within_the_deviation_looks_like_it(self):
+    def test_noise_within_the_std_looks_like_it(self):
         """An axis of values is not finer than the standard deviation of their measurement."""
-        self.ask("ALTER TABLE blows ADD COLUMN restitution_deviation REAL", "UPDATE blows SET restitution_deviation = 0.3")
+        self.ask("ALTER TABLE blows ADD COLUMN restitution_std REAL", "UPDATE blows SET restitution_std = 0.3")
         picture = self.page_of(self.file).drawn("Restitution:")
         heights = [y for piece in picture.curves("band first") for _, y in piece]
         axis = picture.y_range()
@@ -80,8 +80,8 @@ class Work(ReportTest):
 
     def test_histograms_hold_every_blow(self):
         page = self.page_of(self.file)
-        for caption, sql in (("Blows by blow energy", "SELECT energy_J FROM blows"),
-                             ("Blows by peak force", "SELECT amplitude_N / 1000 FROM turns")):
+        for caption, sql in (("Blows by blow energy", "SELECT energy FROM blows"),
+                             ("Blows by peak force", "SELECT amplitude / 1000 FROM turns")):
             values = [v for v, in self.ask(sql)]
             rows = page.table(caption)
             self.assertEqual(sum(number(row["Blows"]) for row in rows.values()), len(values))
@@ -94,7 +94,7 @@ class Work(ReportTest):
         page = self.page_of(self.file)
         self.assertGreater(min(y for piece in page.drawn("Blow energy:").curves("band first") for _, y in piece), 0.0)
         rows = page.table("Over all turns")
-        good = self.ask("SELECT count(*), min(energy_J), sum(energy_J) FROM blows WHERE energy_J > 0")[0]
+        good = self.ask("SELECT count(*), min(energy), sum(energy) FROM blows WHERE energy > 0")[0]
         self.assertEqual(number(rows["Blow energy [J]"]["Values"]), good[0])
         self.assertAlmostEqual(number(rows["Blow energy [J]"]["Least"]), good[1], delta=1e-3 * good[1])
         self.assertGreater(number(rows["Restitution"]["Least"]), 0.0)
@@ -113,9 +113,9 @@ class Work(ReportTest):
 
     def test_runs_of_one_machine_are_compared(self):
         sample.make(self.file, seconds=60.0, runs=3)
-        self.ask("UPDATE blows SET energy_J = 1.2 * energy_J WHERE run_id = 3",
+        self.ask("UPDATE blows SET energy = 1.2 * energy WHERE run_id = 3",
                  "INSERT INTO warnings VALUES(2, 0, 'jitter', 'crank stamps jitter')")
-        medians = [statistics.median(e for e, in self.ask(f"SELECT energy_J FROM blows WHERE run_id = {run}"))
+        medians = [statistics.median(e for e, in self.ask(f"SELECT energy FROM blows WHERE run_id = {run}"))
                    for run in (1, 2, 3)]
         header, *rows = self.page_of(self.file).tables["Runs below each other"][0]
         at = header.index("Blow energy [J]")
@@ -149,7 +149,7 @@ class Costs(ReportTest):
         self.file = self.directory / "site.sqlite"
         sample.make(self.file, sample.Machine(curve=False), seconds=200.0, first_ns=1700002700 * sample.SECOND)
         db = sqlite3.connect(str(self.file))
-        channel = db.execute("SELECT channel FROM channels WHERE name = 'hull_wrench/force_z_N'").fetchone()[0]
+        channel = db.execute("SELECT channel FROM channels WHERE name = 'hull_wrench/force_z'").fetchone()[0]
         db.execute("UPDATE turn_loads SET minimum = 0.0, maximum = CASE WHEN turn <= 30 THEN 80e3 ELSE 40e3 END "
                    "WHERE channel = ?", (channel,))
         db.commit()
@@ -180,9 +180,9 @@ class Costs(ReportTest):
         totals = []
         for run in (1, 2):
             closed = db.execute("SELECT y.steps, y.count FROM cycles y JOIN channels c USING(run_id, channel) "
-                                "WHERE run_id = ? AND name = 'hull_wrench/force_z_N'", (run,)).fetchall()
+                                "WHERE run_id = ? AND name = 'hull_wrench/force_z'", (run,)).fetchall()
             ends = [r for r, in db.execute("SELECT class FROM residues JOIN channels USING(run_id, channel) WHERE run_id = ? "
-                                           "AND name = 'hull_wrench/force_z_N' ORDER BY place", (run,))]
+                                           "AND name = 'hull_wrench/force_z' ORDER BY place", (run,))]
             halves = [(abs(a - b), 0.5) for a, b in zip(ends, ends[1:])]
             totals.append(sum(n * steps ** self.SLOPE for steps, n in closed + halves))
         db.close()
@@ -200,10 +200,10 @@ class Costs(ReportTest):
         file = self.directory / "curve.sqlite"
         sample.make(file, seconds=100.0)
         db = sqlite3.connect(str(file))
-        width, knee = db.execute("SELECT (greatest - least) / classes, sn_knee_range_MPa FROM channels "
-                                 "WHERE name = 'stress/boom_foot_MPa'").fetchone()
+        width, knee = db.execute("SELECT (greatest - least) / classes, sn_knee_range FROM channels "
+                                 "WHERE name = 'stress/boom_foot'").fetchone()
         cycles = db.execute("SELECT steps, count FROM cycles JOIN channels USING(run_id, channel) "
-                            "WHERE name = 'stress/boom_foot_MPa'").fetchall()
+                            "WHERE name = 'stress/boom_foot'").fetchall()
         db.close()
         damage = lambda f: sum(n * (s * width * f / knee) ** (3.0 if s * width * f >= knee else 5.0)  # noqa: E731
                                for s, n in cycles)
@@ -218,13 +218,13 @@ class Misuse(ReportTest):
         file = self.directory / "site.sqlite"
         sample.make(file, sample.Machine(misuse=(6, 500, 20, 12.5)), seconds=100.0, runs=2)
         db = sqlite3.connect(str(file))
-        db.execute("UPDATE runs SET unpressed_blows = NULL, still_time_s = NULL WHERE run_id = 2")
-        hours = [h for h, in db.execute("SELECT duration_s / 3600 FROM runs ORDER BY run_id")]
+        db.execute("UPDATE runs SET blows_without_hold_down = NULL, still_time = NULL WHERE run_id = 2")
+        hours = [h for h, in db.execute("SELECT duration / 3600 FROM runs ORDER BY run_id")]
         db.commit()
         db.close()
         rows = self.page_of(file).table("Misuse")
-        self.assertEqual(number(rows["Blank strokes"]["Count"]), 12)
-        self.assertAlmostEqual(number(rows["Blank strokes"]["Per hour"]), 12 / sum(hours), delta=0.5)
+        self.assertEqual(number(rows["Blank firing"]["Count"]), 12)
+        self.assertAlmostEqual(number(rows["Blank firing"]["Per hour"]), 12 / sum(hours), delta=0.5)
         self.assertEqual(number(rows["Blows without press force"]["Count"]), 20)
         self.assertAlmostEqual(number(rows["Blows without press force"]["Per hour"]), 20 / hours[0], delta=1.0)
         self.assertIn("of 500 blows", rows["Blows without press force"]["Meaning"])
@@ -234,7 +234,7 @@ class Misuse(ReportTest):
         file = self.directory / "site.sqlite"
         sample.make(file, sample.Machine(misuse=(0, 0, None, None)), seconds=50.0)
         rows = self.page_of(file).table("Misuse")
-        self.assertEqual(rows["Blank strokes"]["Count"], "0")
+        self.assertEqual(rows["Blank firing"]["Count"], "0")
         self.assertEqual(rows["Blows without press force"]["Count"], "not known")
         self.assertEqual(rows["Hammering at one place [s]"]["Count"], "not known")
 
@@ -242,7 +242,7 @@ class Misuse(ReportTest):
         file = self.directory / "site.sqlite"
         sample.make(file, seconds=50.0)
         db = sqlite3.connect(str(file))
-        for column in ("blank_strokes", "judged_blows", "unpressed_blows", "still_time_s"):
+        for column in ("blank_firings", "judged_blows", "blows_without_hold_down", "still_time"):
             db.execute(f"ALTER TABLE runs RENAME COLUMN {column} TO older_{column}")
         db.commit()
         db.close()

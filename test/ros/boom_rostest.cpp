@@ -105,12 +105,12 @@ TEST_F(BoomTest, EveryCrankSampleGivesEveryOutput) {
     const JointLoads& loads = machine_->loads.messages.at(stamp);
     EXPECT_EQ(loads.joint_name, kJoints);
     for (std::size_t j = 0; j < kJoints.size(); ++j) {
-      const double sum = loads.hammer_torque_Nm[j] + loads.weight_torque_Nm[j] + loads.motion_torque_Nm[j] +
-                         loads.vibration_torque_Nm[j];
-      EXPECT_NEAR(loads.total_torque_Nm[j], sum, 1e-9);
+      const double sum = loads.hammer_torque[j] + loads.weight_torque[j] + loads.motion_torque[j] +
+                         loads.vibration_torque[j];
+      EXPECT_NEAR(loads.total_torque[j], sum, 1e-9);
     }
-    for (const double force : loads.cylinder_force_N) EXPECT_TRUE(std::isfinite(force)) << stamp;
-    EXPECT_EQ(machine_->vibration.messages.at(stamp).natural_frequency_Hz.size(), 3U);
+    for (const double force : loads.cylinder_force) EXPECT_TRUE(std::isfinite(force)) << stamp;
+    EXPECT_EQ(machine_->vibration.messages.at(stamp).natural_frequency.size(), 3U);
     largest = std::max(largest, std::abs(arm.wrench.torque.y));
     if (HasFailure()) return;
   }

@@ -66,17 +66,17 @@ TEST_F(Messages, HoldTheStateInItsOrder) {
   EXPECT_EQ(loads.cylinder_name, (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
   for (int j = 0; j < 4; ++j) {
     const auto i = static_cast<std::size_t>(j);
-    EXPECT_EQ(loads.hammer_torque_Nm.at(i), state.loads.hammer[j]);
-    EXPECT_EQ(loads.weight_torque_Nm.at(i), state.loads.weight[j]);
-    EXPECT_EQ(loads.motion_torque_Nm.at(i), state.loads.motion[j]);
-    EXPECT_EQ(loads.vibration_torque_Nm.at(i), state.loads.vibration[j]);
-    EXPECT_EQ(loads.total_torque_Nm.at(i), state.loads.total[j]);
+    EXPECT_EQ(loads.hammer_torque.at(i), state.loads.hammer[j]);
+    EXPECT_EQ(loads.weight_torque.at(i), state.loads.weight[j]);
+    EXPECT_EQ(loads.motion_torque.at(i), state.loads.motion[j]);
+    EXPECT_EQ(loads.vibration_torque.at(i), state.loads.vibration[j]);
+    EXPECT_EQ(loads.total_torque.at(i), state.loads.total[j]);
   }
   EXPECT_NE(state.loads.vibration[1], 0.0);
-  ASSERT_EQ(loads.cylinder_force_N.size(), 3U);
+  ASSERT_EQ(loads.cylinder_force.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(loads.cylinder_force_N[i], state.loads.cylinder[i].force);
-    EXPECT_EQ(loads.cylinder_pressure_Pa[i], state.loads.cylinder[i].pressure);
+    EXPECT_EQ(loads.cylinder_force[i], state.loads.cylinder[i].force);
+    EXPECT_EQ(loads.cylinder_pressure[i], state.loads.cylinder[i].pressure);
   }
 }
 
@@ -89,25 +89,25 @@ TEST_F(Messages, HoldWhatTheSteelCarries) {
   fillSections(state, sections);
   EXPECT_EQ(sections.section_name, (Names{"boom_foot", "boom_middle", "arm_middle"}));
   ASSERT_EQ(sections.load.size(), 3U);
-  ASSERT_EQ(sections.load_deviation.size(), 3U);
+  ASSERT_EQ(sections.load_std.size(), 3U);
   EXPECT_EQ(sections.load[1].torque.y, state.steel.section[1].torque.y());
   EXPECT_EQ(sections.load[2].force.x, state.steel.section[2].force.x());
-  EXPECT_TRUE(std::isnan(sections.load_deviation[0].force.z)) << "the crank's errors are not known here";
+  EXPECT_TRUE(std::isnan(sections.load_std[0].force.z)) << "the crank's errors are not known here";
   JointReactions reactions;
   prepareReactions(follower_.boom(), reactions);
   fillReactions(state, reactions);
   EXPECT_EQ(reactions.joint_name, kFour);
   EXPECT_EQ(reactions.load[3].force.z, state.steel.joint[3].force.z());
   EXPECT_EQ(reactions.cylinder_name, (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
-  EXPECT_EQ(reactions.base_force_N[0].x, state.steel.pins[0].base.x());
-  EXPECT_EQ(reactions.guide_force_N[2].x, state.steel.pins[2].guide.x());
-  EXPECT_NE(reactions.guide_force_N[2].x, 0.0);
-  EXPECT_EQ(reactions.guide_force_N[0].x, 0.0);
-  EXPECT_EQ(reactions.rod_force_N[2].z, state.steel.pins[2].rod.z());
+  EXPECT_EQ(reactions.base_force[0].x, state.steel.pins[0].base.x());
+  EXPECT_EQ(reactions.guide_force[2].x, state.steel.pins[2].guide.x());
+  EXPECT_NE(reactions.guide_force[2].x, 0.0);
+  EXPECT_EQ(reactions.guide_force[0].x, 0.0);
+  EXPECT_EQ(reactions.rod_force[2].z, state.steel.pins[2].rod.z());
   EXPECT_EQ(jointLoads().cylinder_flags[0], state.cylinder_flags[0]);
   EXPECT_EQ(vibration().damping_ratio[0], 0.05);
   EXPECT_FALSE(vibration().identified);
-  EXPECT_NEAR(vibration().natural_frequency_deviation_Hz[1], 0.15 * state.frequency[1], 1e-12);
+  EXPECT_NEAR(vibration().natural_frequency_std[1], 0.15 * state.frequency[1], 1e-12);
 }
 
 TEST_F(Messages, TellTheVibrationAndWhy) {
@@ -115,7 +115,7 @@ TEST_F(Messages, TellTheVibrationAndWhy) {
   sample(kStamp);
   const BoomVibration before = vibration();
   EXPECT_TRUE(before.compliant);
-  EXPECT_TRUE(std::isnan(before.rigid_error) && std::isnan(before.pulse_length_s));
+  EXPECT_TRUE(std::isnan(before.rigid_error) && std::isnan(before.pulse_length));
   EXPECT_TRUE(std::isnan(before.hold_down_factor));
   EXPECT_EQ(before.hold_down_limit, "");
   EXPECT_EQ(before.header.frame_id, "hammer_hull");
@@ -124,16 +124,16 @@ TEST_F(Messages, TellTheVibrationAndWhy) {
   sample(kStamp + 1000000);
   const BoomState& state = follower_.state();
   const BoomVibration& after = vibration();
-  EXPECT_EQ(after.displacement_m.z, state.tip.displacement[2]);
-  EXPECT_EQ(after.rotation_rad.y, state.tip.displacement[4]);
-  EXPECT_EQ(after.acceleration_m_s2.x, state.tip.acceleration[0]);
-  ASSERT_EQ(after.natural_frequency_Hz.size(), 3U);
-  EXPECT_EQ(after.natural_frequency_Hz[2], state.frequency[2]);
-  EXPECT_EQ(after.reduced_mass_kg, state.reduced.mass);
-  EXPECT_EQ(after.reduced_stiffness_N_m, state.reduced.stiffness);
+  EXPECT_EQ(after.displacement.z, state.tip.displacement[2]);
+  EXPECT_EQ(after.rotation.y, state.tip.displacement[4]);
+  EXPECT_EQ(after.acceleration.x, state.tip.acceleration[0]);
+  ASSERT_EQ(after.natural_frequency.size(), 3U);
+  EXPECT_EQ(after.natural_frequency[2], state.frequency[2]);
+  EXPECT_EQ(after.reduced_mass, state.reduced.mass);
+  EXPECT_EQ(after.reduced_stiffness, state.reduced.stiffness);
   EXPECT_EQ(after.rigid_error, state.choice.rigid_error);
   EXPECT_EQ(after.rigid_tolerance, 0.05);
-  EXPECT_NEAR(after.pulse_length_s, 0.018, 1e-15);
+  EXPECT_NEAR(after.pulse_length, 0.018, 1e-15);
   EXPECT_EQ(after.hold_down_factor, state.hold_down->least);
   EXPECT_EQ(after.hold_down_limit, "boom_cylinder");
 }
@@ -158,7 +158,7 @@ TEST_F(Messages, AllocateNothing) {
   for (int i = 1; i < 1000; ++i) {
     sample(kStamp + i * 1000000);
     fillWrench(kStamp, follower_.wrenchAtLink(2, kLoad), wrench);
-    sum += jointLoads().total_torque_Nm[1] + vibration().reduced_mass_kg + wrench.wrench.torque.y;
+    sum += jointLoads().total_torque[1] + vibration().reduced_mass + wrench.wrench.torque.y;
   }
   EXPECT_EQ(test::allocations, before);
   EXPECT_TRUE(std::isfinite(sum));

@@ -102,7 +102,7 @@ class LedgerTest(unittest.TestCase):
         self.assertGreater(len(counts), 4)
         self.assertGreater(counts[-1].turns, 10)
         self.assertEqual([c.name for c in counts[-1].channel],
-                         ['hull_wrench/force_x_N', 'hull_wrench/force_z_N', 'hull_wrench/torque_y_Nm'])
+                         ['hull_wrench/force_x', 'hull_wrench/force_z', 'hull_wrench/torque_y'])
         live = contents(self.ledger)
         self.assertGreater(sum(row[-1] for row in live['cycles']), 20)
         again = os.path.join(self.directory, 'again.sqlite')

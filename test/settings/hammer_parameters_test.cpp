@@ -73,7 +73,7 @@ TEST_P(EveryHammerKey, IsAloneAccusedBesideRightDeviations) {
   }
   // A value that is none of a hammer may break a rule of two keys.
   for (const std::string& problem : problemsWith({{GetParam(), "1e9"}}, allDeviations()))
-    EXPECT_EQ(problem.find("_deviation"), std::string::npos) << problem;
+    EXPECT_EQ(problem.find("_std"), std::string::npos) << problem;
 }
 
 INSTANTIATE_TEST_SUITE_P(Hammer, EveryHammerKey, testing::ValuesIn(hammerKeys()),
@@ -123,7 +123,7 @@ TEST(HammerParameters, StrikingOffsetAndFrictionAreOptional) {
   EXPECT_EQ(absent.striking_offset, 0.0);
   EXPECT_EQ(absent.striking_friction, 0.0);
   const HammerParameters given =
-      parametersWith("striking_offset_m: -0.012\nstriking_friction: 0.2\nstriking_offset_deviation_m: 0.0005\n");
+      parametersWith("striking_offset_m: -0.012\nstriking_friction: 0.2\nstriking_offset_std_m: 0.0005\n");
   EXPECT_EQ(given.striking_offset, -0.012);
   EXPECT_EQ(given.striking_friction, 0.2);
   EXPECT_EQ(given.deviations[*indexOfConstant("striking_offset_m")], 5e-4);
@@ -137,8 +137,8 @@ TEST(HammerParameters, StrikingOffsetAndFrictionAreOptional) {
 }
 
 TEST(HammerParameters, DeviationsNotGivenAreTheUsualOnesWithANote) {
-  const TemporaryFile none(hammerYaml()), exact(hammerYaml() + "rocker_mass_deviation_kg: 0.0\n"),
-      impossible(hammerYaml() + "rocker_mass_deviation_kg: 50.0\n");
+  const TemporaryFile none(hammerYaml()), exact(hammerYaml() + "rocker_mass_std_kg: 0.0\n"),
+      impossible(hammerYaml() + "rocker_mass_std_kg: 50.0\n");
   const Checked<Settings> usual = loadFiles(configDirectory(), {none.path()});
   const Checked<Settings> given = loadFiles(configDirectory(), {exact.path()});
   ASSERT_TRUE(usual.value && given.value);
@@ -146,12 +146,12 @@ TEST(HammerParameters, DeviationsNotGivenAreTheUsualOnesWithANote) {
   const HammerParameters& read = usual.value->mechanism.parameters();
   EXPECT_EQ(read.deviations[kLength], 3e-4);
   EXPECT_EQ(read.deviations[kMass], 0.02 * read.rocker_mass);
-  EXPECT_NE(usual.notes[0].find("rocker_mass_deviation_kg"), std::string::npos);
+  EXPECT_NE(usual.notes[0].find("rocker_mass_std_kg"), std::string::npos);
   EXPECT_EQ(given.value->mechanism.parameters().deviations[kMass], 0.0);
-  EXPECT_EQ(given.notes[0].find("rocker_mass_deviation_kg"), std::string::npos);
+  EXPECT_EQ(given.notes[0].find("rocker_mass_std_kg"), std::string::npos);
   const Lines problems = loadFiles(configDirectory(), {impossible.path()}).problems;
   ASSERT_EQ(problems.size(), 1U);
-  EXPECT_TRUE(beginsWith(problems[0], "rocker_mass_deviation_kg: 50 kg, no hammer")) << problems[0];
+  EXPECT_TRUE(beginsWith(problems[0], "rocker_mass_std_kg: 50 kg, no hammer")) << problems[0];
 }
 
 TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
@@ -195,20 +195,20 @@ TEST(HammerParameters, TheRodIsInDoubtUnlessTheFileSaysOtherwise) {
     return loadFiles(configDirectory(), {file.path()}).value->mechanism.parameters();
   };
   const HammerParameters usual = parametersOf(""), known = parametersOf("rod_stiffness_N_m: 1e9\n");
-  EXPECT_EQ(usual.rod_deviation.stiffness, 4e8);
-  EXPECT_EQ(usual.rod_deviation.play, 1e-4);
-  EXPECT_EQ(usual.rod_deviation.friction_radius, 1e-3);
-  EXPECT_EQ(known.rod_deviation.stiffness, 2e8);
-  EXPECT_TRUE(priorOf(usual.rod, usual.rod_deviation).gives);
+  EXPECT_EQ(usual.rod_std.stiffness, 4e8);
+  EXPECT_EQ(usual.rod_std.play, 1e-4);
+  EXPECT_EQ(usual.rod_std.friction_radius, 1e-3);
+  EXPECT_EQ(known.rod_std.stiffness, 2e8);
+  EXPECT_TRUE(priorOf(usual.rod, usual.rod_std).gives);
   const HammerParameters weighed =
-      parametersOf("rod_stiffness_deviation_N_m: 1e8\nrod_damping_ratio_deviation: 0.1\npin_play_deviation_m: 5e-5\n");
-  EXPECT_EQ(weighed.rod_deviation.stiffness, 1e8);
-  EXPECT_EQ(weighed.rod_deviation.damping_ratio, 0.1);
-  EXPECT_EQ(weighed.rod_deviation.play, 5e-5);
-  EXPECT_EQ(parametersOf("pin_friction_radius_std_m: 2e-4\n").rod_deviation.friction_radius, 2e-4);
-  const HammerParameters rigid = parametersOf("rod_stiffness_deviation_N_m: 0\npin_play_deviation_m: 0\n");
-  EXPECT_FALSE(priorOf(rigid.rod, rigid.rod_deviation).gives);
-  EXPECT_EQ(problemsWith({}, "rod_stiffness_deviation_N_m: -1\n").size(), 1U);
+      parametersOf("rod_stiffness_std_N_m: 1e8\nrod_damping_ratio_std: 0.1\npin_play_std_m: 5e-5\n");
+  EXPECT_EQ(weighed.rod_std.stiffness, 1e8);
+  EXPECT_EQ(weighed.rod_std.damping_ratio, 0.1);
+  EXPECT_EQ(weighed.rod_std.play, 5e-5);
+  EXPECT_EQ(parametersOf("pin_friction_radius_std_m: 2e-4\n").rod_std.friction_radius, 2e-4);
+  const HammerParameters rigid = parametersOf("rod_stiffness_std_N_m: 0\npin_play_std_m: 0\n");
+  EXPECT_FALSE(priorOf(rigid.rod, rigid.rod_std).gives);
+  EXPECT_EQ(problemsWith({}, "rod_stiffness_std_N_m: -1\n").size(), 1U);
 }
 
 TEST(HammerParameters, RefusesAnImpossibleLinkageWithItsNumbers) {

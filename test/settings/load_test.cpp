@@ -117,13 +117,13 @@ TEST(Load, DumpHoldsEveryShippedKeyOnce) {
 
 TEST(Load, GivenChannelsReplaceTheShippedOnes) {
   const std::string arm =
-      "life_channels: [hull_z, arm]\narm_channel: hull_wrench/force_x_N\narm_full_scale_least: -1\n"
+      "life_channels: [hull_z, arm]\narm_channel: hull_wrench/force_x\narm_full_scale_least: -1\n"
       "arm_full_scale_greatest: 1\n";
   const TemporaryFile file(arm);
   const Checked<Settings> settings = loadShippedWith({file.path()});
   ASSERT_EQ(settings.problems, Lines{});
   ASSERT_EQ(settings.value->life.channels.size(), 2U);
-  EXPECT_EQ(settings.value->life.channels[0].name, "hull_wrench/force_z_N");
+  EXPECT_EQ(settings.value->life.channels[0].name, "hull_wrench/force_z");
   EXPECT_EQ(settings.value->life.channels[1].key, "arm");
   EXPECT_EQ(settings.value->yaml.find("hull_x"), std::string::npos);
   const TemporaryFile dump(settings.value->yaml);
@@ -132,9 +132,9 @@ TEST(Load, GivenChannelsReplaceTheShippedOnes) {
 }
 
 TEST(Load, CountedChannelsMustBeLoadsOfTheMachine) {
-  EXPECT_EQ(problemsOf("hull_x_channel: joint_loads/arm_joint/total_torque_Nm\n"),
-            Lines{"hull_x_channel: \"joint_loads/arm_joint/total_torque_Nm\", must be a load of this machine: "
-                  "hull_wrench/force_x_N, hull_wrench/force_z_N, hull_wrench/torque_y_Nm (FILE:1)"});
+  EXPECT_EQ(problemsOf("hull_x_channel: joint_loads/arm_joint/total_torque\n"),
+            Lines{"hull_x_channel: \"joint_loads/arm_joint/total_torque\", must be a load of this machine: "
+                  "hull_wrench/force_x, hull_wrench/force_z, hull_wrench/torque_y (FILE:1)"});
 }
 
 TEST(Load, RefusesWhatIsNoYamlMap) {

@@ -104,8 +104,8 @@ arm_link_mass_kg: 250.0
 arm_link_com_x_m: 0.8
 arm_link_com_z_m: 0.1
 arm_link_inertia_kg_m2: 100.0
-arm_link_moment_x_deviation_kg_m: 1.0
-arm_link_moment_z_deviation_kg_m: 2.0
+arm_link_moment_x_std_kg_m: 1.0
+arm_link_moment_z_std_kg_m: 2.0
 )";
   ASSERT_TRUE(problems("damping_ratio:", arm + "damping_ratio:").empty());
   Boom weighed = test::loadBoom(urdf_, {file_.string()}).value.value();
@@ -124,7 +124,7 @@ arm_link_moment_z_deviation_kg_m: 2.0
     for (int j = 0; j < 4; ++j)
       EXPECT_NEAR(weighed.steadyTorque(j), otherwise.steadyTorque(j), 1e-9 * 5e4);  // of the largest
   }
-  EXPECT_EQ(weighed.parameters().chain.weighed.front().moment_z_deviation, 2.0);
+  EXPECT_EQ(weighed.parameters().chain.weighed.front().moment_z_std, 2.0);
 
   EXPECT_EQ(problems("damping_ratio:", withReplaced(arm, {{"arm_link", "bucket"}}) + "damping_ratio:").size(), 1U);
   EXPECT_EQ(problems("damping_ratio:", withReplaced(arm, {{"250.0", "-250.0"}}) + "damping_ratio:").size(), 1U);
@@ -137,8 +137,8 @@ TEST_F(BoomFile, OptionalKeysOfACylinder) {
   expectOne("damping_ratio:", "arm_cylinder_friction: 0.6\ndamping_ratio:",
             "arm_cylinder_friction: 0.6, must be from 0 to 0.5");
   expectOne("damping_ratio:", "arm_cylinder_joint_zero_rad: 0.9\ndamping_ratio:", "arm_cylinder_joint_zero_rad: 0.9");
-  expectOne("damping_ratio:", "arm_cylinder_stiffness_deviation: 2\ndamping_ratio:", "arm_cylinder_stiffness_dev");
-  expectOne("damping_ratio:", "link_mass_deviation: 2\ndamping_ratio:", "link_mass_deviation: 2");
+  expectOne("damping_ratio:", "arm_cylinder_stiffness_std: 2\ndamping_ratio:", "arm_cylinder_stiffness_dev");
+  expectOne("damping_ratio:", "link_mass_std: 2\ndamping_ratio:", "link_mass_std: 2");
   ASSERT_TRUE(problems("damping_ratio:",
                        "arm_cylinder_friction: 0.02\narm_cylinder_pressure_offset_Pa: -2.0e+4\ndamping_ratio:")
                   .empty());
@@ -146,7 +146,7 @@ TEST_F(BoomFile, OptionalKeysOfACylinder) {
   EXPECT_EQ(boom.cylinders()[1].parameters().friction, 0.02);
   EXPECT_EQ(boom.cylinders()[1].parameters().pressure_offset, -2e4);
   EXPECT_EQ(boom.cylinders()[0].parameters().friction, 0.0);
-  EXPECT_EQ(boom.cylinders()[0].parameters().friction_deviation, 0.03);
+  EXPECT_EQ(boom.cylinders()[0].parameters().friction_std, 0.03);
 }
 
 TEST_F(BoomFile, SectionsMayBeLeftOut) {
@@ -240,7 +240,7 @@ TEST_F(BoomFile, WithoutCylindersTheBoomIsRigid) {
   const JointVector zero = JointVector::Zero(4);
   made.value->moveCompliant({zero, zero, zero}, Eigen::Vector3d::Zero());
   EXPECT_FALSE(made.value->vibration().known());
-  EXPECT_FALSE(made.value->vibration().modes().dead_centre);
+  EXPECT_FALSE(made.value->vibration().modes().zero_moment_arm);
   made.value->vibration().advance(0.1, {zero, zero, zero});
   EXPECT_TRUE(made.value->vibration().torque().isZero(0.0));
 }

@@ -43,7 +43,7 @@ TEST(ReadLife, TheShippedFileCountsTheHullsWrench) {
   const Read shipped = read("{}");
   EXPECT_EQ(shipped.problems, std::vector<std::string>{});
   ASSERT_EQ(shipped.settings.channels.size(), 3U);
-  EXPECT_EQ(shipped.settings.channels[1].name, "hull_wrench/force_z_N");
+  EXPECT_EQ(shipped.settings.channels[1].name, "hull_wrench/force_z");
   EXPECT_EQ(shipped.settings.channels[1].grid.classes(), 4096U);
   EXPECT_EQ(shipped.settings.channels[1].grid.greatest(), 200000.0);
   EXPECT_EQ(shipped.settings.period, 60000000000);
@@ -55,8 +55,8 @@ TEST(ReadLife, StressByModulusAreaOrCoefficient) {
   const Read plain = read(kToe);
   EXPECT_EQ(plain.problems, std::vector<std::string>{});
   const life::HotSpot& toe = plain.settings.hot_spots.at(0);
-  EXPECT_EQ(life::hotSpotChannel(toe), "stress/toe_MPa");
-  EXPECT_EQ(toe.influences.at(0).channel, "hull_wrench/torque_y_Nm");
+  EXPECT_EQ(life::hotSpotChannel(toe), "stress/toe");
+  EXPECT_EQ(toe.influences.at(0).channel, "hull_wrench/torque_y");
   EXPECT_DOUBLE_EQ(toe.influences.at(0).factor, 5e-4);  // 1 N m over 0.002 m3 is 500 Pa
   EXPECT_DOUBLE_EQ(toe.influences.at(1).factor, 1e-4);
   EXPECT_FALSE(toe.curve);
@@ -78,12 +78,12 @@ TEST(ReadLife, WhatIsWrongIsNamed) {
       Lines{"toe_loads: \"hull_q\", must be among life_channels"});
   EXPECT_EQ(problems("hot_spots: [toe]\ntoe_loads: [hull_x]\ntoe_hull_x_modulus_m3: 1\ntoe_full_scale_least_MPa: 0\n"
                      "toe_full_scale_greatest_MPa: 1"),
-            Lines{"toe_hull_x_modulus_m3: given for hull_wrench/force_x_N, must be for a moment (..._Nm)"});
+            Lines{"toe_hull_x_modulus_m3: given for hull_wrench/force_x, must be for a moment (..._Nm)"});
   EXPECT_EQ(problems(kToe + "toe_sn_slope: 3\ntoe_mean_stress: none\n").size(),
             4U);  // a curve's other keys; no use of it
   EXPECT_EQ(problems(kToe + kCurve), Lines{"toe_mean_stress: missing, must be one of none, fkm"});
   EXPECT_EQ(problems("hull_x_full_scale_greatest: -300000.0").size(), 1U);
-  EXPECT_EQ(problems("hull_x_channel: hull_wrench/force_z_N").size(), 1U);
+  EXPECT_EQ(problems("hull_x_channel: hull_wrench/force_z").size(), 1U);
   EXPECT_EQ(problems("life_ledger: m.sqlite"), Lines{"life_ledger: \"m.sqlite\", must be an absolute path, or none"});
   EXPECT_EQ(problems("life_classes: 1").size(), 1U);
   EXPECT_EQ(problems("toe_full_scale_least_MPa: 0").size(), 1U);  // of no hot spot

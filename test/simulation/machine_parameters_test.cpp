@@ -177,7 +177,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
             "link_bending_frequency_Hz: 16,"
             " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, machine_seal_constant: 0.013, joint_noise_rad: 0.0001, "
             "restitution_drawn: true,"
-            " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, press_force_N: 700}"));
+            " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, hold_down_force_N: 700}"));
   ASSERT_TRUE(loaded.value) << loaded.problems.front();
   const MachineSettings& machine = loaded.value->machine;
   EXPECT_TRUE(machine.on_boom.on);
@@ -199,7 +199,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   EXPECT_EQ(machine.on_boom.seals.constant, 0.013);
   EXPECT_EQ(machine.on_boom.rock.stiffness, 2e7);
   EXPECT_EQ(machine.on_boom.rock.damping, 1.5);
-  EXPECT_EQ(machine.on_boom.rock.press_force, 700.0);
+  EXPECT_EQ(machine.on_boom.rock.hold_down_force, 700.0);
   EXPECT_EQ(machine.joint_noise, 1e-4);
   EXPECT_EQ(machine.hammer.drive_reaction_ratio, 1.0);
   const Checked<SimulatorSettings> wrong = loadSimulator(

@@ -21,7 +21,7 @@ constexpr std::uint64_t kMonth = 2592000000;
 constexpr std::int64_t kMs = 1000000;
 constexpr std::uint64_t kSamplesOfTurn = 216;
 constexpr std::uint64_t kMemorySamples = 400;
-const std::vector<std::string> kInputs{"hull_wrench/force_z_N"};
+const std::vector<std::string> kInputs{"hull_wrench/force_z"};
 
 /// A pulse a turn, each turn of its own height, with noise: 10 million values, repeated with another offset.
 std::vector<double> loads() {

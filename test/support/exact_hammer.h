@@ -13,7 +13,7 @@ namespace hammer_loads::test {
 inline Settings withExactHammer(Settings settings) {
   HammerParameters p = settings.mechanism.parameters();
   p.deviations = {};
-  p.rod_deviation = {};
+  p.rod_std = {};
   p.crank_mass = p.crank_inertia_about_com = p.rod_mass = p.rod_inertia_about_com = 0.0;
   settings.mechanism = mechanismOf(p);
   return heldHull(std::move(settings));

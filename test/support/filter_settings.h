@@ -13,8 +13,8 @@ inline CrankFilterSettings filterSettings(double angle_resolution = 0.0, double 
   s.torque_walk = 74.0;
   s.speed_walk = 0.3;
   s.inertia_walk = 5e-4;
-  s.initial_torque_deviation = 300.0;
-  s.initial_inertia_deviation = 0.3;
+  s.initial_torque_std = 300.0;
+  s.initial_inertia_std = 0.3;
   s.max_speed = 300.0;
   return s;
 }

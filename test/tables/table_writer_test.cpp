@@ -29,8 +29,8 @@ TEST(TableWriter, KeepsTheBoomsHealth) {
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement rows(
       database,
-      "SELECT turn, joint_angle_rad, stiffness_ratio, stiffness_ratio_deviation, doubtful, mode, frequency_Hz, "
-      "frequency_deviation_Hz, damping_ratio, damping_ratio_deviation FROM boom_cylinders JOIN boom_modes "
+      "SELECT turn, joint_angle, stiffness_ratio, stiffness_ratio_std, doubtful, mode, frequency_Hz, "
+      "frequency_std, damping_ratio, damping_ratio_std FROM boom_cylinders JOIN boom_modes "
       "USING(run_id, turn) WHERE run_id = 1 AND cylinder = 'arm_cylinder'");
   ASSERT_TRUE(rows.step());
   const double expected[] = {7, -0.5, 0.9, 0.01, 1, 2, 8.5, 0.1, 0.05};
@@ -44,10 +44,10 @@ TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
   const test::TemporaryFile file("");
   writeTables(file.path(), [](TableWriter& writer) {
     RunRecord record;
-    record.blank_strokes = 3;
+    record.blank_firings = 3;
     writer.run(1, record);
     record.judged_blows = 50;
-    record.unpressed_blows = 7;
+    record.blows_without_hold_down = 7;
     record.still_time = 12.5;
     record.hull_pitch = -0.25;
     writer.run(2, record);
@@ -55,7 +55,7 @@ TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement rows(
       database,
-      "SELECT blank_strokes, judged_blows, unpressed_blows, still_time_s, unpressed_blows IS "
+      "SELECT blank_firings, judged_blows, blows_without_hold_down, still_time, blows_without_hold_down IS "
       "NULL, hull_pitch_rad FROM runs ORDER BY run_id");
   ASSERT_TRUE(rows.step());
   EXPECT_EQ(rows.integer(0), 3);

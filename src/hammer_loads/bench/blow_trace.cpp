@@ -21,7 +21,7 @@ ForceTrace estimated(const simulation::Session& session, const simulation::Machi
   for (const WrenchAt& w : runSession(session, machine.start_stamp, settings.mechanism, pipeline).wrenches) {
     if (w.time < touch + kTraceFrom || w.time > touch + kTraceTo) continue;
     trace.time.push_back(w.time - touch);
-    trace.force_z.push_back(w.force_z), trace.deviation.push_back(w.force_z_deviation);
+    trace.force_z.push_back(w.force_z), trace.deviation.push_back(w.force_z_std);
   }
   return trace;
 }
@@ -42,7 +42,7 @@ std::string list(const char* name, const std::vector<double>& values, double uni
 }
 
 std::string jsonOf(const ForceTrace& trace) {
-  return "{" + list("time_ms", trace.time, 1e-3) + ", " + list("force_z_N", trace.force_z, 1.0) + ", " +
+  return "{" + list("time_ms", trace.time, 1e-3) + ", " + list("force_z", trace.force_z, 1.0) + ", " +
          list("deviation_N", trace.deviation, 1.0) + "}";
 }
 

@@ -104,7 +104,7 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
     sections_within += std::abs(bending - right) <= 2.0 * boom.deviations.section[s].torque.y();
   }
   contact.add(boom.contact.force.z(), truth.rock.force_z);
-  lost_as_shown += boom.press_force_lost == (truth.rock.force_z < kLeastContact);
+  lost_as_shown += boom.hold_down_force_lost == (truth.rock.force_z < kLeastContact);
   unknown += boom.contact_unknown;
   frequency = boom.frequency.size() > 0 ? boom.frequency[0] : 0.0;
 }

@@ -20,7 +20,7 @@ using Change = void (*)(simulation::MachineSettings&);
 struct BoomKind {
   const char* name;
   double oil;          // over the boom file's
-  double press_force;  // on rock [N]; 0: the hull hangs
+  double hold_down_force;  // on rock [N]; 0: the hull hangs
   double drive;        // of the operator [rad/s]
   Change change;       // of a machine with clean sensors and a boom without flaws; null: none
 };
@@ -72,7 +72,7 @@ simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose, const
   m.seed = 40 + pose;
   m.on_boom.oil_stiffness = kind.oil;
   if (kind.change != nullptr) kind.change(m);
-  if (kind.press_force > 0.0) m.on_boom.rock = {3e7, 3.0, kind.press_force};
+  if (kind.hold_down_force > 0.0) m.on_boom.rock = {3e7, 3.0, kind.hold_down_force};
   std::mt19937 random(pose);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
   m.boom[1].mean = between(-0.9, 0.1), m.boom[2].mean = between(0.5, 1.9);
@@ -127,7 +127,7 @@ std::vector<BoomRow> boomTable() {
         takeWorst(boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, way.sensors, kJudgedFrom,
                              kJudgedTo),
                   row);
-      if (!(kind.press_force > 0.0) || !way.sensors.pressures) row.contact = kNaN;
+      if (!(kind.hold_down_force > 0.0) || !way.sensors.pressures) row.contact = kNaN;
       rows.push_back(row);
     }
   }

@@ -32,7 +32,7 @@ HammerParameters drawn(HammerParameters p, std::uint64_t seed, double off) {
 
 /// The machines that are drawn have rigid rods, and the file says so.
 Mechanism withRigidRod(HammerParameters p) {
-  p.rod_deviation = {};
+  p.rod_std = {};
   return *Mechanism::make(p).value;
 }
 
@@ -64,7 +64,7 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
       });
       if (near == session.blows.end() || near->time < 3.0) continue;
       life.endTurn();
-      energy.addRelative(end.blow.energy, near->strike.energy, end.blow.energy_deviation);
+      energy.addRelative(end.blow.energy, near->strike.energy, end.blow.energy_std);
       if (!end.pulse || !near->whole_turn) continue;
       impulse.addRelative(end.pulse->turn_impulse_z, near->turn_impulse_z, end.pulse_errors.turn_impulse_z.deviation());
       amplitude.addRelative(end.pulse->amplitude, near->turn_peak_force_z, end.pulse_errors.amplitude.deviation());

@@ -34,7 +34,7 @@ struct Gathering {
   int count{};
   void add(const WrenchAt& estimate, const std::array<double, 3>& truth) {
     const double value[]{estimate.force_x, estimate.force_z, estimate.torque_y};
-    const double deviation[]{estimate.force_x_deviation, estimate.force_z_deviation, estimate.torque_y_deviation};
+    const double deviation[]{estimate.force_x_std, estimate.force_z_std, estimate.torque_y_std};
     for (std::size_t i = 0; i < 3; ++i) {
       const double error = value[i] - truth[i];
       square[i] += error * error, truth_square[i] += truth[i] * truth[i];
@@ -90,7 +90,7 @@ void judgeLedger(const Settings& settings, const PipelineSettings& pipeline, con
                  const MachineSettings& machine, ElasticErrors& errors) {
   SessionPlayer player(settings.mechanism, pipeline, {}, session);
   life::LifeSettings counted;
-  counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-kLargestLoad, kLargestLoad, kGrid).value}};
+  counted.channels = {{"hull_wrench/force_z", *life::LoadGrid::make(-kLargestLoad, kLargestLoad, kGrid).value}};
   std::optional<LifeFollower> ledger;
   const double to = machine.duration - kLeftOut;
   player.playTo(to, [&](double time, const SampleResult&) {

@@ -126,7 +126,7 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
   const Mechanism mechanism = *Mechanism::make(hammer).value;
   calibration::CalibrationBasis basis{mechanism, pipeline.level};
   basis.torque_walk = pipeline.torque_walk * hammer.rocker_inertia_about_pivot;
-  basis.torque_deviation = pipeline.initial_torque_deviation * hammer.rocker_inertia_about_pivot;
+  basis.torque_std = pipeline.initial_torque_std * hammer.rocker_inertia_about_pivot;
   CrankSensorPlace place;
   for (const calibration::Estimate& e : calibration::calibrate(samples, basis).estimates) {
     if (!e.determined()) continue;

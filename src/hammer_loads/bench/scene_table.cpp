@@ -37,9 +37,9 @@ struct Judge {
     });
     if (!isJudged(time) || blow == session.blows.end() || end.blow.impossible) return;
     const simulation::Strike& strike = blow->strike;
-    energy.addRelative(end.blow.energy, strike.energy, end.blow.energy_deviation);
+    energy.addRelative(end.blow.energy, strike.energy, end.blow.energy_std);
     restitution.add(end.blow.restitution + strike.rocker_speed_after / strike.rocker_speed_before,
-                    end.blow.restitution_deviation);
+                    end.blow.restitution_std);
   }
   std::array<FigureErrors::Result, 3> slow() const {
     std::vector<double> times;

@@ -11,7 +11,7 @@ namespace hammer_loads::accuracy {
 /// Wrench of a sample [N, N, N m], time since the session's start [s]; of an estimate with its deviation.
 struct WrenchAt {
   double time{}, force_x{}, force_z{}, torque_y{};
-  double force_x_deviation{}, force_z_deviation{}, torque_y_deviation{};
+  double force_x_std{}, force_z_std{}, torque_y_std{};
   double force_z_common{};  ///< the part of its deviation that is the same in all samples
 };
 
@@ -20,7 +20,7 @@ struct BlowAt {
   double time{}, energy{}, tool_impulse{};
   double turn_peak{std::numeric_limits<double>::quiet_NaN()};
   double turn_impulse_z{std::numeric_limits<double>::quiet_NaN()};
-  double energy_deviation{}, tool_impulse_deviation{};  ///< of an estimate
+  double energy_std{}, tool_impulse_std{};  ///< of an estimate
 };
 
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
@@ -71,9 +71,9 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
     e.worst_x = std::max(e.worst_x, std::abs(x)), e.worst_z = std::max(e.worst_z, std::abs(z));
     e.worst_torque = std::max(e.worst_torque, std::abs(torque));
     e.worst_force = std::max(e.worst_force, std::hypot(x, z));
-    e.covered_x += std::abs(x) <= 2.0 * w.force_x_deviation;
-    e.covered_z += std::abs(z) <= 2.0 * w.force_z_deviation;
-    e.covered_torque += std::abs(torque) <= 2.0 * w.torque_y_deviation;
+    e.covered_x += std::abs(x) <= 2.0 * w.force_x_std;
+    e.covered_z += std::abs(z) <= 2.0 * w.force_z_std;
+    e.covered_torque += std::abs(torque) <= 2.0 * w.torque_y_std;
     ++count;
   }
   e.rms_force = std::sqrt((e.rms_x + e.rms_z) / count) / peak_force;

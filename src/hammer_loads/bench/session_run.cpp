@@ -15,8 +15,8 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
       const TurnEnd& end = loads.ends[i];
       BlowAt blow{seconds(end.stamp), end.blow.energy, end.blow.tool_impulse_z};
-      blow.energy_deviation = end.blow.energy_deviation;
-      blow.tool_impulse_deviation = end.blow_errors.tool_impulse_z.deviation();
+      blow.energy_std = end.blow.energy_std;
+      blow.tool_impulse_std = end.blow_errors.tool_impulse_z.deviation();
       if (end.pulse) {
         blow.turn_peak = end.pulse->amplitude;
         blow.turn_impulse_z = end.pulse->turn_impulse_z;

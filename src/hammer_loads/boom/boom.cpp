@@ -139,7 +139,7 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   rows_in_plane_.setZero(rows);
   variance_.setZero(rows);
   deviation_.setZero(rows);
-  weight_deviation_ = zero;
+  weight_std_ = zero;
   bending_ = JointMatrix::Zero(joints, 0);
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
@@ -219,7 +219,7 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomL
     const Cylinder& cylinder = cylinders_[i];
     CylinderLoad& load = result.cylinder[i];
     load = cylinder.load(at_[i], result.total[cylinder.joint()]);
-    finite = finite && (load.dead_centre || (std::isfinite(load.force) && std::isfinite(load.pressure)));
+    finite = finite && (load.zero_moment_arm || (std::isfinite(load.force) && std::isfinite(load.pressure)));
   }
   return finite;
 }

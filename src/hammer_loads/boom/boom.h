@@ -24,9 +24,9 @@ struct BoomParameters {
   VibrationSettings vibration;
   std::optional<Supports> supports;         ///< [m]; nothing: not known
   std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
-  double link_mass_deviation{0.03};         ///< standard, of each link that is not weighed, relative [-]
-  double link_com_deviation{0.02};          ///< standard, of its centre of mass in x and z each [m]
-  // Prior: link_mass_deviation, link_com_deviation
+  double link_mass_std{0.03};         ///< standard, of each link that is not weighed, relative [-]
+  double link_com_std{0.02};          ///< standard, of its centre of mass in x and z each [m]
+  // Prior: link_mass_std, link_com_std
   double rigid_tolerance{};  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
@@ -131,7 +131,7 @@ class Boom {
   void deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexcept;
   /// Standard deviations of the weight's torques on the joints by the masses and centres of the links and the zeros of
   /// the joints' sensors [N m]: the same in all samples at a pose. As of the last deviations(), zero before.
-  const JointVector& weightDeviation() const noexcept { return weight_deviation_; }
+  const JointVector& weightDeviation() const noexcept { return weight_std_; }
   /// Standard deviations of the joints' torques by links that bend as the boom vibrates [N m]: what is beyond a link's
   /// middle moves as its joints say, its own mass less. Nothing without vibration. As of the last deviations().
   JointVector bendingDeviation() const noexcept;
@@ -185,7 +185,7 @@ class Boom {
   Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane, nor the rows, half of all, that are then 0
   Eigen::VectorXi rows_in_plane_;      ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
-  JointVector weight_deviation_;  ///< at response_at_
+  JointVector weight_std_;  ///< at response_at_
   JointMatrix bending_;           ///< at response_at_: torque of a joint per N m/s2 at the middle of a link [s2]
   JointVector response_at_;       ///< steady_position_ where it belongs; NaN: nowhere yet
   Eigen::VectorXd variance_;      ///< one entry a row of response_in_plane_

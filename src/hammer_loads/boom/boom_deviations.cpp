@@ -61,7 +61,7 @@ void Boom::findResponse() noexcept {
   if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= kOfRefreshAngle * parameters_.vibration.refresh_angle)
     return;
   response_at_ = steady_position_;
-  weight_deviation_ = findWeightDeviation();
+  weight_std_ = findWeightDeviation();
   bending_ = findBending();
   const Eigen::Index joints = chain_.joints();
   const JointVector zero = JointVector::Zero(joints);
@@ -177,20 +177,20 @@ JointVector Boom::findWeightDeviation() const noexcept {
       const auto joint = static_cast<std::size_t>(j);
       if (pose_.prismatic[joint]) {
         if (!weighed)
-          variance[j] += square(parameters_.link_mass_deviation * body.mass * pose_.axis_B[joint].dot(g_B_));
+          variance[j] += square(parameters_.link_mass_std * body.mass * pose_.axis_B[joint].dot(g_B_));
         continue;
       }
       const auto of = [&](const Eigen::Vector3d& moment_B) { return pose_.axis_B[joint].dot(moment_B.cross(g_B_)); };
       if (weighed) {
-        variance[j] += square(weighed->moment_x_deviation * of(x_B)) + square(weighed->moment_z_deviation * of(z_B));
+        variance[j] += square(weighed->moment_x_std * of(x_B)) + square(weighed->moment_z_std * of(z_B));
         continue;
       }
-      variance[j] += square(parameters_.link_mass_deviation * of(body.mass * (X_BL * body.p - pose_.p_BJ_B[joint]))) +
-                     square(parameters_.link_com_deviation * body.mass) * (square(of(x_B)) + square(of(z_B)));
+      variance[j] += square(parameters_.link_mass_std * of(body.mass * (X_BL * body.p - pose_.p_BJ_B[joint]))) +
+                     square(parameters_.link_com_std * body.mass) * (square(of(x_B)) + square(of(z_B)));
     }
   }
   for (const Cylinder& cylinder : cylinders_) {
-    const double zero = cylinder.parameters().joint_zero_deviation;
+    const double zero = cylinder.parameters().joint_zero_std;
     if (zero == 0.0) continue;
     const int k = cylinder.joint();
     for (int j = 0; j < chain_.joints(); ++j) {  // what is beyond both turns

@@ -20,7 +20,7 @@ void clear(BoomModes& modes) noexcept {
 void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
                const Eigen::Vector3d& g_B, const LogOil& oil, BoomModes& modes) noexcept {
   modes.count = static_cast<int>(cylinders.size());
-  modes.dead_centre = false;
+  modes.zero_moment_arm = false;
   modes.mass = dynamics.massMatrix(position);
   modes.stiffness.resize(modes.count);
   for (int i = 0; i < modes.count; ++i) {
@@ -28,9 +28,9 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
     const CylinderPosition at = cylinder.at(position[cylinder.joint()]);
     modes.joint[static_cast<std::size_t>(i)] = cylinder.joint();
     modes.stiffness[i] = std::exp(oil[i]) * cylinder.jointStiffness(at);
-    modes.dead_centre = modes.dead_centre || at.dead_centre;
+    modes.zero_moment_arm = modes.zero_moment_arm || at.zero_moment_arm;
   }
-  if (modes.dead_centre) modes.count = 0;
+  if (modes.zero_moment_arm) modes.count = 0;
   const int n = modes.count;
   if (n == 0) {
     clear(modes);

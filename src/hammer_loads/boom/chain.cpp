@@ -144,9 +144,9 @@ class ChainBuilder {
       checkNumber(w.name + "_com_z_m", w.com_z, " m", std::abs(w.com_z) <= figure::kMostLength, "within 1000 m");
       checkNumber(w.name + "_inertia_kg_m2", w.inertia, " kg m2", w.inertia > 0.0 && w.inertia <= figure::kMostMass,
                   "> 0 and at most 1e9 kg m2");
-      checkNumber(w.name + "_moment_x_deviation_kg_m", w.moment_x_deviation, " kg m", w.moment_x_deviation >= 0.0,
+      checkNumber(w.name + "_moment_x_std_kg_m", w.moment_x_std, " kg m", w.moment_x_std >= 0.0,
                   "a finite number >= 0");
-      checkNumber(w.name + "_moment_z_deviation_kg_m", w.moment_z_deviation, " kg m", w.moment_z_deviation >= 0.0,
+      checkNumber(w.name + "_moment_z_std_kg_m", w.moment_z_std, " kg m", w.moment_z_std >= 0.0,
                   "a finite number >= 0");
     }
   }

@@ -23,10 +23,10 @@ struct WeighedLink {
   double mass{};            ///< NAME_mass_kg [kg], > 0
   double com_x{}, com_z{};  ///< NAME_com_x_m, NAME_com_z_m: centre of mass in the link's frame [m]
   double inertia{};         ///< NAME_inertia_kg_m2: about the centre of mass, about the link's y [kg m2], > 0
-  /// NAME_moment_x_deviation_kg_m, NAME_moment_z_deviation_kg_m: standard deviations of the first moment, in the link's
+  /// NAME_moment_x_std_kg_m, NAME_moment_z_std_kg_m: standard deviations of the first moment, in the link's
   /// frame about its joint, of all that the link carries, with the masses beyond the next joint in that joint [kg m].
   /// It is what weighing shows; mass and centre alone are known less.
-  double moment_x_deviation{}, moment_z_deviation{};
+  double moment_x_std{}, moment_z_std{};
 };
 
 /// By its name; null: not among them.

@@ -53,15 +53,15 @@ void checkOptional(const CylinderParameters& p, std::vector<std::string>& proble
   constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
   // Limit: kLeastLength, kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
   within("friction_force_N", p.friction_force, " N", 0.0, 1e6);
-  if (!std::isnan(p.friction_force_deviation))
-    within("friction_force_deviation_N", p.friction_force_deviation, " N", 0.0, 1e6);
+  if (!std::isnan(p.friction_force_std))
+    within("friction_force_std_N", p.friction_force_std, " N", 0.0, 1e6);
   within("friction", p.friction, "", 0.0, kMostFriction);
-  within("friction_deviation", p.friction_deviation, "", 0.0, kMostFriction);
-  within("stiffness_deviation", p.stiffness_deviation, "", 0.0, 1.0);
+  within("friction_std", p.friction_std, "", 0.0, kMostFriction);
+  within("stiffness_std", p.stiffness_std, "", 0.0, 1.0);
   within("joint_zero_rad", p.joint_zero, " rad", -kMostZero, kMostZero);
-  within("joint_zero_deviation_rad", p.joint_zero_deviation, " rad", 0.0, kMostZero);
+  within("joint_zero_std_rad", p.joint_zero_std, " rad", 0.0, kMostZero);
   within("pressure_offset_Pa", p.pressure_offset, " Pa", -1e7, 1e7);
-  within("pressure_offset_deviation_Pa", p.pressure_offset_deviation, " Pa", 0.0, 1e7);
+  within("pressure_offset_std_Pa", p.pressure_offset_std, " Pa", 0.0, 1e7);
 }
 
 void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems) {
@@ -111,8 +111,8 @@ Checked<Cylinder> Cylinder::make(const CylinderParameters& p, double bulk_modulu
   cylinder.bulk_modulus_ = bulk_modulus;
   cylinder.bore_area_ = 0.25 * kPi * p.bore * p.bore;
   cylinder.rod_area_ = cylinder.bore_area_ - 0.25 * kPi * p.rod_diameter * p.rod_diameter;
-  if (std::isnan(p.friction_force_deviation))
-    cylinder.parameters_.friction_force_deviation = CylinderParameters::kFrictionForceDeviation * cylinder.greatestPush();
+  if (std::isnan(p.friction_force_std))
+    cylinder.parameters_.friction_force_std = CylinderParameters::kFrictionForceDeviation * cylinder.greatestPush();
   if (!cylinder.hasLimits(chain, result.problems)) return result;
   if (p.linkage)
     cylinder.findLinkage(chain, result.problems);
@@ -194,12 +194,12 @@ CylinderPosition Cylinder::at(double c, double s) const noexcept {
     position.arm = (sine_ * c - cosine_ * s) / (2.0 * position.length);
     position.arm_rate = -(0.5 * (cosine_ * c + sine_ * s) + position.arm * position.arm) / position.length;
   }
-  position.dead_centre = !(std::abs(position.arm) >= kDeadCentreRatio * shorter_side_);
+  position.zero_moment_arm = !(std::abs(position.arm) >= kZeroMomentArmRatio * shorter_side_);
   return position;
 }
 
 CylinderLoad Cylinder::load(const CylinderPosition& position, double joint_torque) const noexcept {
-  if (position.dead_centre) {
+  if (position.zero_moment_arm) {
     return {kNaN, kNaN, true};
   }
   const double force = -joint_torque / position.arm;

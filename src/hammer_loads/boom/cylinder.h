@@ -28,11 +28,11 @@ struct CylinderParameters {
   /// Of the seals, against the rod's motion: friction_force_N and friction times the oil's force [N], [-]; >= 0.
   double friction_force{}, friction{};
   /// Standard [N], [-]; not a number: kFrictionForceDeviation of the greatest push.
-  double friction_force_deviation{std::numeric_limits<double>::quiet_NaN()}, friction_deviation{kFrictionDeviation};
-  double stiffness_deviation{kStiffnessDeviation};  ///< standard, of its oil against the common one [-]
-  double joint_zero{}, joint_zero_deviation{};      ///< joint_zero_rad: reading of its joint at the description's zero
+  double friction_force_std{std::numeric_limits<double>::quiet_NaN()}, friction_std{kFrictionDeviation};
+  double stiffness_std{kStiffnessDeviation};  ///< standard, of its oil against the common one [-]
+  double joint_zero{}, joint_zero_std{};      ///< joint_zero_rad: reading of its joint at the description's zero
   /// pressure_offset_Pa: of the bore's sensor, as that of both chambers acts on the force [Pa].
-  double pressure_offset{}, pressure_offset_deviation{};
+  double pressure_offset{}, pressure_offset_std{};
 
   /// Where the boom file gives none, of the greatest push and of the force: a loader crane's cylinders rubbed with a
   /// constant 1 to 1.6 % of the push, 3 to 6 % of a large force (doc/boom_calibration.md).
@@ -46,7 +46,7 @@ struct CylinderPosition {
   double length{};     ///< L between the cylinder's pins [m]
   double arm{};        ///< dL/dq [m]; positive: extending drives the joint forward
   double arm_rate{};   ///< d2L/dq2 [m]
-  bool dead_centre{};  ///< the arm is so short that no finite force holds the joint
+  bool zero_moment_arm{};  ///< the arm is so short that no finite force holds the joint
   /// Places in a linkage: x, z of the rod's pin and of the coupler's on the link beyond, from the joint's origin, axes
   /// of the link before [m].
   Eigen::Vector2d rod_pin{0.0, 0.0}, driven_pin{0.0, 0.0};
@@ -56,7 +56,7 @@ struct CylinderPosition {
 struct CylinderLoad {
   double force{};     ///< BY the cylinder ON both anchors [N], positive pushes them apart
   double pressure{};  ///< in the chamber that carries it, above the other chamber's, >= 0 [Pa]
-  bool dead_centre{};
+  bool zero_moment_arm{};
 };
 
 /// Oil trapped beside the piston, hose included [m3].
@@ -70,7 +70,7 @@ class Cylinder {
  public:
   /// Arms below this share of the shortest fixed side (joint to either anchor; of a linkage: joint to the coupler's
   /// pin, or the guide link) are a dead centre: the force would be 50 times the torque over that side.
-  static constexpr double kDeadCentreRatio = 0.02;
+  static constexpr double kZeroMomentArmRatio = 0.02;
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, a linkage that
   /// does not close, and a geometry that needs the cylinder shorter than closed or longer than open within the joint's

@@ -17,7 +17,7 @@ ChamberPressures chamberPressures(const Cylinder& cylinder, const CylinderPositi
 
 std::uint16_t cylinderFlags(const Cylinder& cylinder, const CylinderPosition& position, double steady_torque,
                             double total_torque) noexcept {
-  if (position.dead_centre) return kDeadCentre;
+  if (position.zero_moment_arm) return kZeroMomentArm;
   constexpr double kVacuum = -1.0e5;  // [Pa]
   const ChamberPressures p = chamberPressures(cylinder, position, steady_torque, total_torque);
   const double relief = cylinder.parameters().relief_pressure;

@@ -22,7 +22,7 @@ double tippingMoment(const Eigen::Vector3d& from, const Eigen::Vector3d& to, con
 
 double cylinderFactor(const Cylinder& cylinder, double angle, double weight, double load) noexcept {
   const CylinderPosition at = cylinder.at(angle);
-  if (at.dead_centre) return weight == 0.0 && load == 0.0 ? kInfinity : 0.0;
+  if (at.zero_moment_arm) return weight == 0.0 && load == 0.0 ? kInfinity : 0.0;
   const double force_weight = -weight / at.arm, force_load = -load / at.arm;
   return std::min(factor(force_weight, force_load, cylinder.greatestPush()),
                   factor(-force_weight, -force_load, cylinder.greatestPull()));

@@ -25,12 +25,12 @@ constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 
 }  // namespace
 
-ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns, const LogOil& own_deviation)
+ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns, const LogOil& own_std)
     : damping_ratio_(damping_ratio),
       least_damping_(std::log(kLeastDamping / damping_ratio)),
       most_damping_(std::log(kMostDamping / damping_ratio)),
       learns_(learns),
-      own_deviation_(own_deviation) {
+      own_std_(own_std) {
   if (learns) setFirstGuesses();
   covariance_(kContact, kContact) = square(kUnknownContact);
   ratio_.fill(1.0);
@@ -41,7 +41,7 @@ ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns, const LogOil& 
 void ModeIdentifier::setFirstGuesses() noexcept {
   for (int k = 0; k < kMaxJoints; ++k) {
     for (int l = 0; l < kMaxJoints; ++l)
-      covariance_(at(k, kOil), at(l, kOil)) = square(kCommonDeviation) + (k == l ? square(own_deviation_[k]) : 0.0);
+      covariance_(at(k, kOil), at(l, kOil)) = square(kCommonDeviation) + (k == l ? square(own_std_[k]) : 0.0);
     covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
   }
 }
@@ -271,7 +271,7 @@ bool ModeIdentifier::finite() const noexcept {
 void ModeIdentifier::startAnew() noexcept {
   const BoomModes modes = modes_;
   const bool follows = follows_contact_;
-  *this = ModeIdentifier(damping_ratio_, learns_, own_deviation_);
+  *this = ModeIdentifier(damping_ratio_, learns_, own_std_);
   follows_contact_ = follows;
   setModes(modes);
 }

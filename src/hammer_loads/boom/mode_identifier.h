@@ -55,10 +55,10 @@ class ModeIdentifier {
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
   // Prior: kLeftFrequency, kLeftDamping
 
-  /// learns: stiffnesses and damping; else they are exact as given, and only the motion is followed. own_deviation: of
+  /// learns: stiffnesses and damping; else they are exact as given, and only the motion is followed. own_std: of
   /// each cylinder's oil against the common one, standard [-].
   explicit ModeIdentifier(double damping_ratio, bool learns = true,
-                          const LogOil& own_deviation = LogOil::Constant(CylinderParameters::kStiffnessDeviation));
+                          const LogOil& own_std = LogOil::Constant(CylinderParameters::kStiffnessDeviation));
 
   /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
   /// of the joints carry over, and what is found. stiffer: logarithms of their oil's stiffness over the last ones'.
@@ -254,7 +254,7 @@ class ModeIdentifier {
   double damping_ratio_;
   double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_, keeps_oil_{};
-  LogOil own_deviation_;
+  LogOil own_std_;
   double known_for_{};  ///< time for which every frequency has been known, until a delay is followed [s]
   double lost_for_{};   ///< time for which one has not been since then [s]
   bool explains_{true}, seeks_{};

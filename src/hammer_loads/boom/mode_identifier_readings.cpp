@@ -20,7 +20,7 @@ constexpr std::size_t kTogether = 3;                          // readings that a
 
 void ModeIdentifier::useChannel(const VibrationReading& reading) noexcept {
   const auto i = static_cast<std::size_t>(reading.channel);
-  const double first = square(reading.offset_deviation), walk = square(reading.offset_walk);
+  const double first = square(reading.offset_std), walk = square(reading.offset_walk);
   if (slot_[i] < 0) {
     ++channels_;
     slot_[i] = kMaxChannels - channels_;

@@ -25,7 +25,7 @@ Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const 
       last_(position_),
       torque_(last_) {
   for (std::size_t i = 0; i < cylinders_.size(); ++i)
-    own_oil_[static_cast<Eigen::Index>(i)] = cylinders_[i].parameters().stiffness_deviation;
+    own_oil_[static_cast<Eigen::Index>(i)] = cylinders_[i].parameters().stiffness_std;
   modes_.mass = JointMatrix::Zero(chain.joints(), chain.joints());
   modes_.inertia.resize(chain.joints(), 0);
   rest();

@@ -123,7 +123,7 @@ class Finder {
       const auto friction = [&](const Eigen::VectorXd& x) {
         return model.valueOf(x, BoomUnknown::kFrictionForce, k) + c.force * model.valueOf(x, BoomUnknown::kFriction, k);
       };
-      c.friction = friction(fit.x), c.friction_deviation = deviationOf(fit, gradientOf(friction, fit.x));
+      c.friction = friction(fit.x), c.friction_std = deviationOf(fit, gradientOf(friction, fit.x));
       result_.cylinders.push_back(c);
     }
   }
@@ -201,16 +201,16 @@ class Finder {
       case BoomUnknown::kInertia:
         return absolute(link.inertia, given.inertia, link.inertia, "kg m2");
       case BoomUnknown::kFrictionForce:
-        cylinder.friction_force_deviation = e.deviation;
+        cylinder.friction_force_std = e.deviation;
         return absolute(e.value, u.given, 1.0, "N");
       case BoomUnknown::kFriction:
-        cylinder.friction_deviation = e.deviation;
+        cylinder.friction_std = e.deviation;
         return absolute(e.value, u.given, 1.0, "");
       case BoomUnknown::kOffset:
-        cylinder.pressure_offset_deviation = e.deviation;
+        cylinder.pressure_offset_std = e.deviation;
         return absolute(e.value, u.given, 1.0, "Pa");
       case BoomUnknown::kZero:
-        cylinder.joint_zero_deviation = e.deviation;
+        cylinder.joint_zero_std = e.deviation;
         return absolute(e.value, u.given, 1.0, "rad");
       case BoomUnknown::kViscous:
         e.unit = "N s/m", e.meaning = "not of the boom file";
@@ -225,7 +225,7 @@ class Finder {
     const std::string& name = model.given().chain().link(model.linkOf(cylinder)).name;
     const Eigen::Vector2d deviation = firstMomentDeviation(model, fit, cylinder);
     if (WeighedLink* link = findLink(result_.found.chain.weighed, name))
-      link->moment_x_deviation = deviation[0], link->moment_z_deviation = deviation[1];
+      link->moment_x_std = deviation[0], link->moment_z_std = deviation[1];
   }
 
   void fillCorrelations(const BoomModel& model, const BoomFit& fit) {

@@ -27,7 +27,7 @@ bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point)
   const double arm = std::abs(boom.cylinderPosition(cylinder).arm);
   const double rate = std::abs(point.motion.velocity[joint]);
   const double least = rate - point.half_width * std::abs(point.motion.acceleration[joint]);
-  return arm * least > kLeastRodSpeed && rate > kSurelyMoves * point.rate_deviation[joint];
+  return arm * least > kLeastRodSpeed && rate > kSurelyMoves * point.rate_std[joint];
 }
 
 /// Variance of a sum of neighbours over that of as many strangers: 1 + 2 sum of the autocorrelation, until that is lost
@@ -164,7 +164,7 @@ std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints
     for (std::size_t k = 0; k < boom.cylinders().size(); ++k) {
       for (const BoomPoint& point : recordings[r].points) {
         model.move(boom, model.zero(), point);
-        if (boom.cylinderPosition(k).dead_centre || !surelyMoves(boom, k, point)) continue;
+        if (boom.cylinderPosition(k).zero_moment_arm || !surelyMoves(boom, k, point)) continue;
         rows.push_back({r, k, &point, model.measuredForce(k, point)});
       }
     }

@@ -53,20 +53,20 @@ BoomModel::BoomModel(const BoomBasis& basis, const std::vector<TipWeight>& weigh
     const auto add = [&](BoomUnknown kind, double given, double deviation) {
       if (deviation > 0.0) unknowns_.push_back({kind, k, given, deviation});
     };
-    add(BoomUnknown::kMass, 0.0, basis.mass_deviation);
-    add(BoomUnknown::kComX, 0.0, basis.com_deviation);
-    add(BoomUnknown::kComZ, 0.0, basis.com_deviation);
-    add(BoomUnknown::kInertia, 0.0, basis.inertia_deviation);
-    add(BoomUnknown::kFrictionForce, p.friction_force, basis.friction_force_deviation * cylinder.greatestPush());
-    add(BoomUnknown::kFriction, p.friction, basis.friction_deviation);
-    add(BoomUnknown::kViscous, 0.0, basis.viscous_deviation * cylinder.greatestPush());
-    add(BoomUnknown::kOffset, p.pressure_offset, basis.offset_deviation);
-    add(BoomUnknown::kGain, 0.0, basis.gain_deviation);
-    add(BoomUnknown::kZero, p.joint_zero, basis.zero_deviation);
+    add(BoomUnknown::kMass, 0.0, basis.mass_std);
+    add(BoomUnknown::kComX, 0.0, basis.com_std);
+    add(BoomUnknown::kComZ, 0.0, basis.com_std);
+    add(BoomUnknown::kInertia, 0.0, basis.inertia_std);
+    add(BoomUnknown::kFrictionForce, p.friction_force, basis.friction_force_std * cylinder.greatestPush());
+    add(BoomUnknown::kFriction, p.friction, basis.friction_std);
+    add(BoomUnknown::kViscous, 0.0, basis.viscous_std * cylinder.greatestPush());
+    add(BoomUnknown::kOffset, p.pressure_offset, basis.offset_std);
+    add(BoomUnknown::kGain, 0.0, basis.gain_std);
+    add(BoomUnknown::kZero, p.joint_zero, basis.zero_std);
   }
   for (std::size_t k = 0; k < given_.cylinders().size() && weights.size() > 1; ++k)
     for (std::size_t r = 0; r < weights.size(); ++r)
-      unknowns_.push_back({BoomUnknown::kRecording, k, 0.0, basis.recording_deviation, r});
+      unknowns_.push_back({BoomUnknown::kRecording, k, 0.0, basis.recording_std, r});
   for (std::size_t r = 0; r < weights.size(); ++r)
     if (weights[r].deviation > 0.0)
       unknowns_.push_back({BoomUnknown::kTipWeight, r, weights[r].mass, weights[r].deviation});

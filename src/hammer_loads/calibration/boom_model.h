@@ -22,16 +22,16 @@ struct BoomBasis {
   RobotDescription urdf;
   BoomParameters parameters;
   Eigen::Vector3d g_B{0.0, 0.0, -kStandardGravity};  ///< gravity in the root's axes [m/s2]
-  double mass_deviation{0.25};            ///< standard, of each link's mass, relative: drawings lack hoses, oil, valves [-]
-  double com_deviation{0.10};             ///< of each link's centre of mass in x and z each [m]
-  double inertia_deviation{0.30};         ///< of each link's inertia, relative [-]
-  double zero_deviation{0.005};           ///< of each joint's zero: 0.3 deg [rad]
-  double offset_deviation{5e4};           ///< of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
-  double recording_deviation{5e4};        ///< by which a bore's pressure differs from one recording to the next [Pa]
-  double gain_deviation{0.005};           ///< of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
-  double friction_deviation{0.05};        ///< of the part of friction that goes with the force [-]
-  double friction_force_deviation{0.02};  ///< of the part that does not, over the greatest push [-]
-  double viscous_deviation{0.02};         ///< of friction per speed, over the greatest push: 0.2 % at 0.1 m/s [s/m]
+  double mass_std{0.25};            ///< standard, of each link's mass, relative: drawings lack hoses, oil, valves [-]
+  double com_std{0.10};             ///< of each link's centre of mass in x and z each [m]
+  double inertia_std{0.30};         ///< of each link's inertia, relative [-]
+  double zero_std{0.005};           ///< of each joint's zero: 0.3 deg [rad]
+  double offset_std{5e4};           ///< of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
+  double recording_std{5e4};        ///< by which a bore's pressure differs from one recording to the next [Pa]
+  double gain_std{0.005};           ///< of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
+  double friction_std{0.05};        ///< of the part of friction that goes with the force [-]
+  double friction_force_std{0.02};  ///< of the part that does not, over the greatest push [-]
+  double viscous_std{0.02};         ///< of friction per speed, over the greatest push: 0.2 % at 0.1 m/s [s/m]
 };
 
 /// Meaning of one entry of the vector of unknowns.

@@ -14,7 +14,7 @@ constexpr std::ptrdiff_t kLeastReadings = 7;  // of which four show no noise
 /// A parabola through the readings around an instant.
 struct LocalFit {
   double value{}, rate{}, acceleration{};
-  double rate_deviation{};  ///< standard, from the residuals
+  double rate_std{};  ///< standard, from the residuals
 };
 
 std::optional<LocalFit> fitAround(const Trace& trace, double time, double half_width) {
@@ -68,7 +68,7 @@ std::optional<BoomPoint> pointAt(const BoomRecording& recording, double time, do
   point.time = time, point.half_width = half_width;
   const auto joints = static_cast<Eigen::Index>(recording.joint.size());
   for (JointVector* v :
-       {&point.motion.position, &point.motion.velocity, &point.motion.acceleration, &point.rate_deviation})
+       {&point.motion.position, &point.motion.velocity, &point.motion.acceleration, &point.rate_std})
     v->setZero(joints);
   for (Eigen::Index j = 0; j < joints; ++j) {
     const Trace& trace = recording.joint[static_cast<std::size_t>(j)];
@@ -76,7 +76,7 @@ std::optional<BoomPoint> pointAt(const BoomRecording& recording, double time, do
     const std::optional<LocalFit> fit = fitAround(trace, time, half_width);
     if (!fit) return {};
     point.motion.position[j] = fit->value, point.motion.velocity[j] = fit->rate;
-    point.motion.acceleration[j] = fit->acceleration, point.rate_deviation[j] = fit->rate_deviation;
+    point.motion.acceleration[j] = fit->acceleration, point.rate_std[j] = fit->rate_std;
   }
   for (std::size_t k = 0; k < recording.pressure.size(); ++k) {
     for (std::size_t chamber = 0; chamber < 2; ++chamber) {

@@ -44,13 +44,13 @@ class KeyLines {
 
 void putCylinder(const CylinderParameters& c, KeyLines& lines) {
   lines.put(c.name + "_friction", c.friction);
-  lines.put(c.name + "_friction_deviation", c.friction_deviation);
+  lines.put(c.name + "_friction_std", c.friction_std);
   lines.put(c.name + "_friction_force_N", c.friction_force);
-  lines.put(c.name + "_friction_force_deviation_N", c.friction_force_deviation);
+  lines.put(c.name + "_friction_force_std_N", c.friction_force_std);
   lines.put(c.name + "_joint_zero_rad", c.joint_zero);
-  lines.put(c.name + "_joint_zero_deviation_rad", c.joint_zero_deviation);
+  lines.put(c.name + "_joint_zero_std_rad", c.joint_zero_std);
   lines.put(c.name + "_pressure_offset_Pa", c.pressure_offset);
-  lines.put(c.name + "_pressure_offset_deviation_Pa", c.pressure_offset_deviation);
+  lines.put(c.name + "_pressure_offset_std_Pa", c.pressure_offset_std);
 }
 
 void putLink(const WeighedLink& link, KeyLines& lines) {
@@ -58,8 +58,8 @@ void putLink(const WeighedLink& link, KeyLines& lines) {
   lines.put(link.name + "_com_x_m", link.com_x);
   lines.put(link.name + "_com_z_m", link.com_z);
   lines.put(link.name + "_inertia_kg_m2", link.inertia);
-  lines.put(link.name + "_moment_x_deviation_kg_m", link.moment_x_deviation);
-  lines.put(link.name + "_moment_z_deviation_kg_m", link.moment_z_deviation);
+  lines.put(link.name + "_moment_x_std_kg_m", link.moment_x_std);
+  lines.put(link.name + "_moment_z_std_kg_m", link.moment_z_std);
 }
 
 struct Panel {
@@ -103,7 +103,7 @@ std::string cylinderLine(const CylinderFit& f) {
       "%%%s; friction %.0f +- %.0f N (%.1f %%)\n",
       f.name.c_str(), f.rows, f.force, percent(f.before, f.force), percent(f.left, f.force),
       percent(f.held_out, f.force), f.holds() ? "" : ": DOES NOT FIT, nothing is written", f.friction,
-      f.friction_deviation, percent(f.friction, f.force));
+      f.friction_std, percent(f.friction, f.force));
 }
 
 /// Residuals of each recording; nothing where there is one recording.

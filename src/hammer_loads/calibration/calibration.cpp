@@ -133,7 +133,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   noise.timing = 2e-4;
   noise.speed = 0.3;
   noise.torque_walk = basis.torque_walk;
-  noise.torque = basis.torque_deviation;
+  noise.torque = basis.torque_std;
   const bool centred = basis.ratio != 1.0;
   const Free free = toFind(centred);
   const JointFit rough = fitJointly(segments, model, start, noise, toFind(true), piece(progress, 0.05, 0.22));

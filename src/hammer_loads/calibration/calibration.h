@@ -13,9 +13,9 @@ struct CalibrationBasis {
   const Mechanism& mechanism;
   Level level;
   double ratio{1.0};                      ///< encoder turns per crank turn [-]
-  double rocker_inertia_deviation{0.02};  ///< relative, of the given rocker inertia [-]
+  double rocker_inertia_std{0.02};  ///< relative, of the given rocker inertia [-]
   double torque_walk{};                   ///< random walk of the net torque [N m/sqrt(s)]
-  double torque_deviation{};              ///< of the net torque [N m]
+  double torque_std{};              ///< of the net torque [N m]
   Globals in_force{Globals::Zero()};      ///< to compare with: zero and eccentricities of the parameters in force
 };
 

@@ -100,18 +100,18 @@ void addEstimates(const Found& found, Calibration& result) {
   for (const SegmentFit& one : fit.fits) samples += static_cast<double>(one.size());
   // Where counts hide it, its square is known to theirs over the square root of the samples.
   const double counts_hide = fit.noise.angle / 30.0, timing = fit.noise.timing;
-  const double timing_deviation =
+  const double timing_std =
       std::sqrt(2.0 / samples) * (timing > 0.0 ? timing + 0.5 * counts_hide * counts_hide / timing : counts_hide);
-  result.estimates.push_back({"crank_timing_noise_s", "s", timing, timing_deviation,
+  result.estimates.push_back({"crank_timing_noise_s", "s", timing, timing_std,
                               std::max(kTimingLimit * timing, 2e-5),
                               result.facts.retimed ? "after re-timing: the stamps repeat or change places"
                                                    : "of a stamp against the instant of the measurement",
-                              timing_deviation});
+                              timing_std});
   const double inertia = std::exp(fit.globals[kLogInertia]);
   const double rocker = basis.mechanism.parameters().rocker_inertia_about_pivot;
   // Only the ratio to the rocker's inertia shows; where the hammer file says how well that is known, it is in already.
   const bool rocker_in_it = found.hammer.has("rocker_inertia_about_pivot_kg_m2");
-  const double by_rocker = rocker_in_it ? 0.0 : basis.rocker_inertia_deviation;
+  const double by_rocker = rocker_in_it ? 0.0 : basis.rocker_inertia_std;
   const double relative = std::hypot(deviation(kLogInertia), by_rocker);
   result.estimates.push_back({"drive_inertia_kg_m2", "kg m2", inertia, relative * inertia, kInertiaLimit * inertia,
                               format("%.4g of the rocker's; by the readings alone, all masses as given, to %.2g",

@@ -56,7 +56,7 @@ class Problem {
       const bool link = i == Unknowns::kGuide || i == Unknowns::kCoupler, closed = i == Unknowns::kClosed;
       const auto& measured = basis.measured[static_cast<std::size_t>(i)];
       mean_[i] = measured.value_or(link ? kAnyLink : closed ? 1.0 : 0.0);
-      deviation_[i] = measured ? basis.tape_deviation : link ? kAnyLink : kAnyPlace;
+      deviation_[i] = measured ? basis.tape_std : link ? kAnyLink : kAnyPlace;
     }
   }
 
@@ -212,13 +212,13 @@ void fillEstimates(const Problem& problem, const LinkageBasis& basis, const std:
   const Eigen::VectorXd arms = problem.arms(fit.value);
   const auto rows = static_cast<double>(arms.size());
   fit.arm = arms.norm() / std::sqrt(rows);
-  fit.arm_deviation = std::sqrt((by_arm * covariance).cwiseProduct(by_arm).sum() / rows);
+  fit.arm_std = std::sqrt((by_arm * covariance).cwiseProduct(by_arm).sum() / rows);
   for (int i = 0; i < Unknowns::kCount; ++i) {
     const auto& measured = basis.measured[static_cast<std::size_t>(i)];
     Estimate e;
     e.key = cylinder + "_" + Unknowns::kKeys[static_cast<std::size_t>(i)];
     e.unit = "m", e.value = fit.value[i], e.deviation = std::sqrt(covariance(i, i));
-    e.limit = measured ? basis.tape_deviation : kAnyPlace;
+    e.limit = measured ? basis.tape_std : kAnyPlace;
     e.meaning = measured ? format("measured %.6g", *measured) : "not measured";
     fit.estimates.push_back(e);
     for (int j = 0; j < i; ++j) {

@@ -34,7 +34,7 @@ struct LinkageUnknowns {
 struct LinkageBasis {
   /// Measured with a tape [m]; nothing: not known.
   std::array<std::optional<double>, LinkageUnknowns::kCount> measured;
-  double tape_deviation{0.01};  ///< standard, of each of them [m]
+  double tape_std{0.01};  ///< standard, of each of them [m]
   double sense{1.0};
 };
 
@@ -44,14 +44,14 @@ struct LinkageFit {
   double branch{};                ///< BucketLinkageParameters::branch
   std::size_t rows{};
   double left{}, worst{};         ///< rms and largest of the strokes' residuals [m]
-  double arm{}, arm_deviation{};  ///< rms of the lever over the table; standard deviation, rms [m/rad]
+  double arm{}, arm_std{};  ///< rms of the lever over the table; standard deviation, rms [m/rad]
   std::vector<Estimate> estimates;
   std::vector<Correlation> correlations;  ///< beyond 0.9 in size
   std::vector<std::string> remarks;
 
   BucketLinkage linkage(double sense) const;
   /// The lever is known to 1 % of its rms.
-  bool determined() const { return problem.empty() && arm_deviation <= 0.01 * arm; }
+  bool determined() const { return problem.empty() && arm_std <= 0.01 * arm; }
 };
 
 /// Least squares over all starts that a linkage may have; cylinder: name in front of the keys.

@@ -90,7 +90,7 @@ void checkCylinder(const BoomModel& model, const BoomPoints& recording, std::siz
 /// Standard deviation of a joint's rate where it is quietest: of the sensor's noise, motion adds to it elsewhere.
 double quietNoise(const BoomPoints& recording, int joint) {
   std::vector<double> all;
-  for (const BoomPoint& point : recording.points) all.push_back(point.rate_deviation[joint]);
+  for (const BoomPoint& point : recording.points) all.push_back(point.rate_std[joint]);
   if (all.empty()) return 0.0;
   const auto tenth = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 10);
   std::nth_element(all.begin(), tenth, all.end());

@@ -43,7 +43,7 @@ std::string briefly(const Estimate& e) {
 std::string foundOf(const Calibration& c) {
   std::string text;
   for (const Estimate& e : c.estimates) {
-    const bool of_another = e.key.find("_deviation") != std::string::npos || e.key.find("_phase") != std::string::npos;
+    const bool of_another = e.key.find("_std") != std::string::npos || e.key.find("_phase") != std::string::npos;
     if (e.determined() && e.value != 0.0 && !of_another) text += (text.empty() ? "" : ", ") + briefly(e);
   }
   return text;

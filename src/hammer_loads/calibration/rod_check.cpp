@@ -36,8 +36,8 @@ CrankFilterSettings settingsOf(const CrankTrack& track, const CalibrationBasis& 
   s.torque_walk = basis.torque_walk;
   s.speed_walk = kSpeedWalk;
   s.inertia_walk = kInertiaWalk;
-  s.initial_torque_deviation = basis.torque_deviation;
-  s.initial_inertia_deviation = kInertiaDeviation;
+  s.initial_torque_std = basis.torque_std;
+  s.initial_inertia_std = kInertiaDeviation;
   s.max_speed = kMostSpeed;
   s.blow_factor = blowInertia(basis.mechanism, rigid(basis.level), std::exp(fit.globals[kLogInertia])).smoothFactor();
   return s;

@@ -85,7 +85,7 @@ double originOf(int unknown, const Frames& frames) {
 
 calibration::LinkageBasis tapeOf(ParameterReader& reader, const LinkageArguments& given, const Frames& frames) {
   calibration::LinkageBasis basis;
-  basis.tape_deviation = given.tape_std, basis.sense = frames.sense;
+  basis.tape_std = given.tape_std, basis.sense = frames.sense;
   for (int i = 0; i < LinkageUnknowns::kCount; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const std::string key = given.cylinder + "_" + LinkageUnknowns::kKeys[at];
@@ -103,7 +103,7 @@ calibration::LinkageBasis tapeOf(ParameterReader& reader, const LinkageArguments
 std::string wordsOf(const calibration::LinkageFit& fit) {
   std::string text = format(
       "%zu rows: strokes left %.3f mm rms, %.3f mm at worst; lever %.4f m/rad rms, known to %.2f %% (limit 1 %%)%s\n",
-      fit.rows, 1e3 * fit.left, 1e3 * fit.worst, fit.arm, 100.0 * fit.arm_deviation / fit.arm,
+      fit.rows, 1e3 * fit.left, 1e3 * fit.worst, fit.arm, 100.0 * fit.arm_std / fit.arm,
       fit.determined() ? "" : ": NOT DETERMINED, nothing is written");
   for (const calibration::Estimate& e : fit.estimates)
     text += format("%-44s %.4f m +- %.2g; %s\n", e.key.c_str(), e.value, e.deviation, e.meaning.c_str());
@@ -118,7 +118,7 @@ std::string yamlOf(const calibration::LinkageFit& fit, const LinkageArguments& g
   std::string text = std::string(kLinkageYamlBegins) + " " +
                      onOneLine(std::filesystem::path(given.table).filename().string()) + ":\n" +
                      format("# strokes left %.3f mm rms, lever known to %.2f %%. Values belong together.\n",
-                            1e3 * fit.left, 100.0 * fit.arm_deviation / fit.arm) +
+                            1e3 * fit.left, 100.0 * fit.arm_std / fit.arm) +
                      name + "linkage: bucket\n" + name + "linkage_branch: " + (fit.branch > 0.0 ? "1" : "-1") + "\n";
   LinkageUnknowns::Vector value = fit.value;
   const Eigen::Vector3d rod =

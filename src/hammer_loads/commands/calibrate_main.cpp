@@ -63,7 +63,7 @@ calibration::Globals inForce(const CrankSensor& sensor) {
 struct Arguments {
   std::vector<std::string> bags, params;
   std::string output, urdf;
-  double rocker_deviation{0.02};
+  double rocker_std{0.02};
   bool force{}, boom{}, verbose{};
   BoomCalibrationJob boom_job;
 };
@@ -79,7 +79,7 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   line["--urdf"].description("robot description, for the hull's pitch");
   addTopicOption(line, job.topics, &InputTopics::crank);
   addTopicOption(line, job.topics, &InputTopics::joint_states);
-  line.option("--rocker-inertia-deviation", given.rocker_deviation, "of the given rocker inertia, relative")
+  line.option("--rocker-inertia-deviation", given.rocker_std, "of the given rocker inertia, relative")
       .within(1e-6, 1.0, "")
       .showDefault();
   line.flag("--force", given.force, "replaces files that exist");
@@ -128,20 +128,20 @@ Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::ve
   return result;
 }
 
-calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_deviation) {
+calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_std) {
   const PipelineSettings& pipeline = settings.pipeline;
   const double inertia = settings.mechanism.parameters().rocker_inertia_about_pivot;
   return {settings.mechanism,
           pipeline.level,
           pipeline.crank_sensor.place().ratio,
-          rocker_deviation,
+          rocker_std,
           pipeline.torque_walk * inertia,
-          pipeline.initial_torque_deviation * inertia,
+          pipeline.initial_torque_std * inertia,
           inForce(pipeline.crank_sensor)};
 }
 
 /// Pieces of the recording, and more of them until no more are needed.
-calibration::Calibration calibrated(const BagInputs& inputs, const Settings& settings, double rocker_deviation,
+calibration::Calibration calibrated(const BagInputs& inputs, const Settings& settings, double rocker_std,
                                     CrankBag& bag) {
   constexpr double kReading = 0.2;  // of the time of a round
   constexpr double kGain =
@@ -153,7 +153,7 @@ calibration::Calibration calibrated(const BagInputs& inputs, const Settings& set
     bag = readCrankBag(inputs, settings, pieces, piece(progress, 0.0, kReading));
     if (!bag.problem.empty()) return {};
     calibration::Calibration found =
-        calibration::calibrate(bag.samples, basisOf(settings, rocker_deviation), piece(progress, kReading, 1.0));
+        calibration::calibrate(bag.samples, basisOf(settings, rocker_std), piece(progress, kReading, 1.0));
     report(progress, 1.0);
     const double worst = found.worstByBlows();
     if (bag.whole || found.isSettled() || worst > kGain * before) return found;
@@ -167,7 +167,7 @@ CalibrationTexts calibrateCrank(const BagInputs& inputs, const Settings& setting
                                 const std::string& source) {
   CalibrationTexts result;
   CrankBag bag;
-  const calibration::Calibration found = calibrated(inputs, settings, given.rocker_deviation, bag);
+  const calibration::Calibration found = calibrated(inputs, settings, given.rocker_std, bag);
   if (!bag.problem.empty()) {
     result.problems = {bag.problem};
     return result;

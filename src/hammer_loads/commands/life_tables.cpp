@@ -125,7 +125,7 @@ std::string csvFigures(double hours, std::uint64_t blows, const ChannelFigures& 
 std::string csvHeader() {
   std::string header = "epoch,channel,unit,day,hours,blows,cycles,largest_range";
   const auto figure = [&](const std::string& name) {
-    header += ',' + name + ',' + name + "_deviation," + name + "_common_deviation";
+    header += ',' + name + ',' + name + "_std," + name + "_systematic_std";
   };
   for (std::size_t i = 0; i < life::kSlopeCount; ++i) figure("equivalent_range_" + slopeName(i));
   figure("damage");
@@ -150,7 +150,7 @@ using Json = nlohmann::json;
 
 /// Keys are sorted by name; null is written for what is no finite number.
 Json json(const Figure& figure) {
-  return {{"value", figure.value}, {"deviation", figure.deviation}, {"common_deviation", figure.common}};
+  return {{"value", figure.value}, {"deviation", figure.deviation}, {"systematic_std", figure.common}};
 }
 Json json(const std::optional<Figure>& figure) { return figure ? json(*figure) : Json(nullptr); }
 

@@ -35,15 +35,15 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       first_guess_(drive_inertia),
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
-      supply_(settings.initial_torque_deviation),
+      supply_(settings.initial_torque_std),
       errors_(settings.constant_deviations),
-      blows_({settings.blow_factor, settings.blow_deviation}),
+      blows_({settings.blow_factor, settings.blow_std}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;
   now_.least_inertia = kLeastInertia * drive_inertia;
   now_.most_inertia = kMostInertia * drive_inertia;
   now_.factor = settings.blow_factor;
-  now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings.initial_inertia_deviation);
+  now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings.initial_inertia_std);
 }
 
 void CrankFilter::countSurprise(bool surprised) noexcept {
@@ -51,7 +51,7 @@ void CrankFilter::countSurprise(bool surprised) noexcept {
 }
 
 double CrankFilter::mostSpeed() const noexcept { return kSoundSpeeds * settings_.max_speed; }
-double CrankFilter::mostTorque() const noexcept { return kMostTorque * settings_.initial_torque_deviation; }
+double CrankFilter::mostTorque() const noexcept { return kMostTorque * settings_.initial_torque_std; }
 
 void CrankFilter::start(const CrankSample& reading) noexcept {
   const WeighedSample sample = weighed(reading);
@@ -86,10 +86,10 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   p.setZero();
   p(Belief::kAngle, Belief::kAngle) = sample.angleVariance(s.speed);
   p(Belief::kSpeed, Belief::kSpeed) = has_speed_ ? speed_variance_ : square(settings_.max_speed);
-  p(Belief::kTorque, Belief::kTorque) = square(settings_.initial_torque_deviation);
+  p(Belief::kTorque, Belief::kTorque) = square(settings_.initial_torque_std);
   // NaN-proof by min: never above the first guess
-  p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
-  p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
+  p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_std), inertia_variance);
+  p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_std);
   now_.by_constant.setZero();
   now_.by_constant.row(Belief::kAngle) = ConstantErrors::ofAngle({s.position.angle.offset, s.speed, 0.0});
   if (has_speed_)

@@ -31,13 +31,13 @@ struct CrankFilterSettings {
   double torque_walk{};                ///< random walk of the net torque [N m/sqrt(s)], > 0
   double speed_walk{};                 ///< random walk of the speed [rad/s/sqrt(s)], > 0
   double inertia_walk{};               ///< relative random walk of the drive inertia [1/sqrt(s)], >= 0
-  double initial_torque_deviation{};   ///< [N m], > 0
-  double initial_inertia_deviation{};  ///< relative [-], >= 0
+  double initial_torque_std{};   ///< [N m], > 0
+  double initial_inertia_std{};  ///< relative [-], >= 0
   double max_speed{};                  ///< bound of an unknown speed [rad/s], > 0
   double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
   ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
-  double blow_deviation{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
-  // Prior: blow_deviation
+  double blow_std{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
+  // Prior: blow_std
 };
 
 /// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
@@ -81,7 +81,7 @@ class CrankFilter {
   /// Nothing where one of the ways runs away.
   std::optional<CrankWays> waysBetween(double dt) const noexcept;
   /// Uncertainty of between(dt). torque_part: part of the torque's deviation that counts, see
-  /// PipelineSettings::torque_deviation_part.
+  /// PipelineSettings::torque_std_part.
   CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept;
   /// Uncertainty at the last accepted sample.
   CrankUncertainty uncertainty(double torque_part) const noexcept { return uncertaintyOf(now_, load(), torque_part); }

@@ -166,7 +166,7 @@ bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& 
 /// (5) A slip that has shown itself is taken off the reading.
 EncoderSlip::Step CrankFilter::followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept {
   // From the largest one way to the largest the other way: half its change times the square of the time.
-  const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
+  const double by_torque = square(dt) * settings_.initial_torque_std / now_.state.drive_inertia;
   const double speed = now_.encoderSpeed(), usual = usual_step_.mean();
   const EncoderSlip::Step step = slip_.follow(innovation.value, growth() * innovation.total, by_torque, speed * usual,
                                               speed * (dt - usual), mayHaveSlipped(sample, innovation));

@@ -175,8 +175,8 @@ void CrankFilter::forgetInertia() noexcept {
   now_.state.drive_inertia = first_guess_;
   now_.by_constant.row(Belief::kInertia).setZero();
   now_.forgetInertiaCoupling();
-  now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
-  now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
+  now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_std);
+  now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_std);
   consistency_.restart();
 }
 

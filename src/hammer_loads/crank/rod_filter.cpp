@@ -34,7 +34,7 @@ constexpr int kEnough = 8;
 }  // namespace
 
 RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(mechanism) {
-  const RodPrior prior = priorOf(mechanism.parameters().rod, mechanism.parameters().rod_deviation);
+  const RodPrior prior = priorOf(mechanism.parameters().rod, mechanism.parameters().rod_std);
   const double play = pins == Pins::kPlay ? prior.play : 0.0;
   learned_.play = pins == Pins::kPlay && prior.rod.play > 0.0 ? prior.rod.play : play;
   learned_.restitution = kFirstRestitution;

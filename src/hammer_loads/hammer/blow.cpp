@@ -133,23 +133,23 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
   blow.support_impulse_y = tool_moment - (to.about_d - from.about_d);
   blow.drive_impulse_y = driveReaction(mechanism, links, crank.drive_inertia).torque(after - crank.speed, 0.0);
   // Deviations, each cause by a difference at its own size.
-  const BlowInertia heavier = blowInertia(mechanism, links, crank.drive_inertia * (1.0 + crank.inertia_deviation));
+  const BlowInertia heavier = blowInertia(mechanism, links, crank.drive_inertia * (1.0 + crank.inertia_std));
   if (crank.early) {
     const auto change = [&](const BlowInertia& of, double speed, double factor) {
       return earlyBlow(rocker, of, speed, factor).energy - blow.energy;
     };
-    blow.energy_deviation = std::hypot(change(inertia, crank.speed + crank.speed_deviation, crank.factor),
-                                       change(inertia, crank.speed, crank.factor + crank.factor_deviation),
+    blow.energy_std = std::hypot(change(inertia, crank.speed + crank.speed_std, crank.factor),
+                                       change(inertia, crank.speed, crank.factor + crank.factor_std),
                                        change(heavier, crank.speed, crank.factor));
     return blow;
   }
-  const double by_factor = inertia.restitutionPerFactor() * crank.factor_deviation;
+  const double by_factor = inertia.restitutionPerFactor() * crank.factor_std;
   const double by_inertia = heavier.restitution(crank.factor) - restitution;
-  blow.restitution_deviation = std::hypot(by_factor, by_inertia);
-  const double energy_by_speed = blowOf(crank.speed + crank.speed_deviation, restitution).energy - blow.energy;
-  const double energy_by_rebound = blowOf(crank.speed, restitution + blow.restitution_deviation).energy -
-                                   blowOf(crank.speed, restitution - blow.restitution_deviation).energy;
-  blow.energy_deviation = std::hypot(energy_by_speed, 0.5 * energy_by_rebound);
+  blow.restitution_std = std::hypot(by_factor, by_inertia);
+  const double energy_by_speed = blowOf(crank.speed + crank.speed_std, restitution).energy - blow.energy;
+  const double energy_by_rebound = blowOf(crank.speed, restitution + blow.restitution_std).energy -
+                                   blowOf(crank.speed, restitution - blow.restitution_std).energy;
+  blow.energy_std = std::hypot(energy_by_speed, 0.5 * energy_by_rebound);
   return blow;
 }
 
@@ -162,8 +162,8 @@ void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) n
   const auto isOutside = [](double value, double deviation, double limit) {
     return value < -kDeviations * deviation || value > limit + kDeviations * deviation;
   };
-  blow.impossible = isOutside(blow.restitution, blow.restitution_deviation, 1.0) ||
-                    isOutside(blow.energy, blow.energy_deviation, most);
+  blow.impossible = isOutside(blow.restitution, blow.restitution_std, 1.0) ||
+                    isOutside(blow.energy, blow.energy_std, most);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (blow.impossible || !(blow.restitution >= 0.0 && blow.restitution <= 1.0)) blow.restitution = kNone;
   if (blow.impossible || !(blow.energy >= 0.0 && blow.energy <= most)) blow.energy = kNone;

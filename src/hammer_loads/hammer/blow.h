@@ -23,8 +23,8 @@ struct RockerBlow {
   double support_impulse_z{};    ///< as above [N s]
   double support_impulse_y{};    ///< as above, about D [N m s]; 0 of blowInSupport
   double drive_impulse_y{};      ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
-  double restitution_deviation{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
-  double energy_deviation{std::numeric_limits<double>::quiet_NaN()};       ///< as above [J]
+  double restitution_std{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
+  double energy_std{std::numeric_limits<double>::quiet_NaN()};       ///< as above [J]
   /// restitution or energy are what no blow has, by more than two deviations: both are NaN
   bool impossible{};
 };
@@ -32,11 +32,11 @@ struct RockerBlow {
 /// A blow as the crank felt it.
 struct CrankBlow {
   double speed{};              ///< of the crank just before, > 0 [rad/s]
-  double speed_deviation{};    ///< standard [rad/s]
+  double speed_std{};    ///< standard [rad/s]
   double factor{1.0};          ///< k: crank speed after over before [-]
-  double factor_deviation{};   ///< standard [-]
+  double factor_std{};   ///< standard [-]
   double drive_inertia{};      ///< Jc [kg m2], > 0
-  double inertia_deviation{};  ///< standard, relative [-]
+  double inertia_std{};  ///< standard, relative [-]
   bool early{};                ///< the tool was met before the dead centre
 };
 

@@ -112,7 +112,7 @@ LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double tur
     size += references.back().cwiseAbs2();
   }
   const HammerParameters& p = mechanism.parameters();
-  const RodPrior rod = priorOf(p.rod, p.rod_deviation);
+  const RodPrior rod = priorOf(p.rod, p.rod_std);
   Eigen::Vector3d of_rod = Eigen::Vector3d::Zero();
   if (rod.gives) of_rod = ofRod(mechanism, rod.rod, turn, gravity, interval);
   LevelChoice choice{rod.gives ? Level::kElastic : Level::kLinkage, tolerance, rod.gives, {}};

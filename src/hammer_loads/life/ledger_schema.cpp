@@ -23,7 +23,7 @@ CREATE TABLE epochs(
 CREATE TABLE channels(
   channel INTEGER PRIMARY KEY, epoch INTEGER NOT NULL REFERENCES epochs, name TEXT NOT NULL,
   least REAL NOT NULL, greatest REAL NOT NULL, classes INTEGER NOT NULL,
-  sn_knee_range_MPa REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL, mean_stress_sensitivity REAL,
+  sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL, mean_stress_sensitivity REAL,
   UNIQUE(epoch, name));
 CREATE TABLE runs(
   run INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, epoch INTEGER NOT NULL REFERENCES epochs,
@@ -167,7 +167,7 @@ void beginReading(Database& database) {
 std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch) {
   Database::Statement rows(
       database,
-      "SELECT channel, name, least, greatest, classes, sn_knee_range_MPa, sn_knee_cycles, sn_slope, "
+      "SELECT channel, name, least, greatest, classes, sn_knee_range, sn_knee_cycles, sn_slope, "
       "sn_slope_below, mean_stress_sensitivity FROM channels WHERE epoch = ?1 ORDER BY channel");
   std::vector<ChannelRow> channels;
   rows.with(epoch);

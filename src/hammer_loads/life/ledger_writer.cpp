@@ -60,7 +60,7 @@ void setJudgement(Database& database, std::int64_t epoch, const LedgerMachine& m
   Database::Statement(database, "UPDATE epochs SET equivalent_cycles_per_hour = ?2 WHERE epoch = ?1")
       .run(epoch, machine.equivalent_cycles_per_hour);
   Database::Statement update(database,
-                             "UPDATE channels SET sn_knee_range_MPa = ?3, sn_knee_cycles = ?4, sn_slope = ?5, "
+                             "UPDATE channels SET sn_knee_range = ?3, sn_knee_cycles = ?4, sn_slope = ?5, "
                              "sn_slope_below = ?6, mean_stress_sensitivity = ?7 WHERE epoch = ?1 AND name = ?2");
   for (const LedgerChannel& c : machine.channels) {
     const auto of = [&](double (SnCurve::*figure)() const) { return c.curve ? ((*c.curve).*figure)() : kNull; };

@@ -13,7 +13,7 @@ namespace hammer_loads::life {
 
 /// A load as it comes, by its name in the package's contract.
 struct CountedChannel {
-  std::string name;  ///< such as section_loads/NAME/torque_y_Nm; its unit is the name's end
+  std::string name;  ///< such as section_loads/NAME/torque_y; its unit is the name's end
   LoadGrid grid;
   std::string key{};  ///< its short name in the parameter file
 };
@@ -24,7 +24,7 @@ struct Influence {
   double factor{};      ///< [MPa per unit of the channel]
 };
 
-/// A place whose stress is a sum of loads, formed at each sample and counted as a channel `stress/NAME_MPa`.
+/// A place whose stress is a sum of loads, formed at each sample and counted as a channel `stress/NAME`.
 struct HotSpot {
   std::string name;
   std::vector<Influence> influences;
@@ -41,7 +41,7 @@ struct LifeSettings {
   std::string ledger;                   ///< file; empty: none is kept
 };
 
-/// `stress/NAME_MPa`.
+/// `stress/NAME`.
 std::string hotSpotChannel(const HotSpot& spot);
 
 /// Slopes at which damage-equivalent loads are given: welded steel, below its knee (DNV-RP-C203), composites.

@@ -102,13 +102,13 @@ inline std::optional<std::size_t> indexOfConstant(const std::string& key) {
   return std::nullopt;
 }
 
-/// Key of the constant's standard deviation: `_deviation` before the unit.
+/// Key of the constant's standard deviation: `_std` before the unit.
 inline std::string deviationKey(const HammerConstant& constant) {
   std::string key = constant.key, unit = constant.unit;
   for (char& c : unit)
     if (c == ' ') c = '_';
   const std::string end = unit.empty() ? "" : "_" + unit;
-  return key.substr(0, key.size() - end.size()) + "_deviation" + end;
+  return key.substr(0, key.size() - end.size()) + "_std" + end;
 }
 
 /// Those that the contract names for a file that gives none.

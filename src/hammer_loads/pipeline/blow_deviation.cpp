@@ -6,13 +6,13 @@ namespace hammer_loads {
 
 BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow) noexcept {
   BlowErrors errors;
-  errors.restitution.own = blow.restitution_deviation;
-  errors.energy.own = blow.energy_deviation;
+  errors.restitution.own = blow.restitution_std;
+  errors.energy.own = blow.energy_std;
   const auto add = [&](const CrankBlow& other) { addDoubt(blow, measuredBlow(model, other), errors); };
   CrankBlow faster = crank, rebound = crank, heavier = crank;
-  faster.speed += crank.speed_deviation;
-  rebound.factor += crank.factor_deviation;
-  heavier.drive_inertia *= 1.0 + crank.inertia_deviation;
+  faster.speed += crank.speed_std;
+  rebound.factor += crank.factor_std;
+  heavier.drive_inertia *= 1.0 + crank.inertia_std;
   add(faster), add(rebound), add(heavier);
   return errors;
 }
@@ -42,8 +42,8 @@ BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const
     errors.tool_impulse_z.columns[i] = (there.tool_impulse_z - blow.tool_impulse_z) / step;
     errors.support_impulse_z.columns[i] = (there.support_impulse_z - blow.support_impulse_z) / step;
   }
-  blow.restitution_deviation = errors.restitution.deviation();
-  blow.energy_deviation = errors.energy.deviation();
+  blow.restitution_std = errors.restitution.deviation();
+  blow.energy_std = errors.energy.deviation();
   return errors;
 }
 

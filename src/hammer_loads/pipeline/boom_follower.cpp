@@ -38,7 +38,7 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
   const JointVector zero = JointVector::Zero(boom_.chain().joints());
   motion_ = {zero, zero, zero};
   torque_ = {zero, zero, zero};
-  state_.frequency.resize(0), state_.frequency_deviation.resize(0), state_.damping.resize(0);
+  state_.frequency.resize(0), state_.frequency_std.resize(0), state_.damping.resize(0);
   state_.contact_torque = beside_modes_ = zero;
   state_.deviations = unknownDeviations(boom_.chain().joints());
   state_.reduced = {kInfinity, kInfinity};
@@ -242,7 +242,7 @@ void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
 
 void BoomFollower::fillVibration() noexcept {
   const BoomModes& modes = boom_.vibration().modes();
-  state_.dead_centre = modes.dead_centre;
+  state_.zero_moment_arm = modes.zero_moment_arm;
   state_.frequency = modes.omega / kTwoPi;
   fillModes();
   state_.reduced = boom_.reducedHull(Eigen::Vector3d::UnitZ());
@@ -256,15 +256,15 @@ void BoomFollower::fillVibration() noexcept {
 void BoomFollower::fillModes() noexcept {
   const Vibration& vibration = boom_.vibration();
   const auto count = state_.frequency.size();
-  state_.damping.resize(count), state_.frequency_deviation.resize(count);
+  state_.damping.resize(count), state_.frequency_std.resize(count);
   for (int k = 0; k < count; ++k) {
     state_.damping[k] = vibration.mode(k).zeta;
-    state_.frequency_deviation[k] = spread_.deviation(k).frequency * state_.frequency[k];
+    state_.frequency_std[k] = spread_.deviation(k).frequency * state_.frequency[k];
   }
   state_.identified = vibration.identifies() && vibration.identifier()->identified();
 }
 
-void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept {
+void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_hold_down_force) noexcept {
   if (!known_) return;
   if (pulse && pulse->frequency > 0.0 && follow_vibration_) {
     BoomChoice& choice = state_.choice;
@@ -273,8 +273,8 @@ void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double m
     choice.lowest_frequency = state_.frequency.size() > 0 ? state_.frequency[0] : 0.0;
     choice.judged = true;
   }
-  if (std::isfinite(mean_press_force) && (boom_.parameters().supports || !boom_.cylinders().empty())) {
-    state_.hold_down = boom_.holdDown(onTip({0.0, mean_press_force, striking_distance_ * mean_press_force}));
+  if (std::isfinite(mean_hold_down_force) && (boom_.parameters().supports || !boom_.cylinders().empty())) {
+    state_.hold_down = boom_.holdDown(onTip({0.0, mean_hold_down_force, striking_distance_ * mean_hold_down_force}));
   }
 }
 

@@ -52,7 +52,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
 void BoomFollower::takeMeasured(const BoomSample& sample, double step) noexcept {
   state_.contact_torque.setZero();
   state_.contact = {};
-  state_.measured = state_.press_force_lost = false;
+  state_.measured = state_.hold_down_force_lost = false;
   tip_.reset();
   if (pressures_.accepted() == 0) return;
   const BoomLoads& loads = state_.loads;
@@ -71,7 +71,7 @@ void BoomFollower::takeMeasured(const BoomSample& sample, double step) noexcept 
   if (!trust_.isLost()) return useMeasured();
   state_.contact_torque.setZero();
   state_.contact = {};
-  state_.measured = state_.press_force_lost = false;
+  state_.measured = state_.hold_down_force_lost = false;
   tip_.reset();
 }
 
@@ -96,7 +96,7 @@ void BoomFollower::findContact(double step) noexcept {
   trust_.follow(state_.contact, tip_->load(state_.loads.weight), striking_distance_, step);
   const auto& observer = boom_.vibration().identifier();
   const double error = observer && observer->followsContact() ? observer->contactDeviation() : 0.0;
-  state_.press_force_lost = state_.contact.force.z() < std::max(least_contact_, error);
+  state_.hold_down_force_lost = state_.contact.force.z() < std::max(least_contact_, error);
 }
 
 }  // namespace hammer_loads

@@ -20,7 +20,7 @@ int modeOfOddDamping(const Boom& boom) noexcept {
 std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept {
   const BoomState& state = follower.state();
   const Vibration& vibration = follower.boom().vibration();
-  if (!follower.known() || !state.identified || state.dead_centre || !vibration.identifier()->explains() ||
+  if (!follower.known() || !state.identified || state.zero_moment_arm || !vibration.identifier()->explains() ||
       vibration.identifier()->waitsForDelay())
     return std::nullopt;
   BoomHealth health;
@@ -36,9 +36,9 @@ std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept {
     // A stiffness is a frequency squared: what an identified one still lacks counts twice.
     c.deviation = c.stiffness * std::hypot(found->deviation, 2.0 * ModeIdentifier::kLeftFrequency);
     BoomHealth::OfMode& m = health.mode[at];
-    m.frequency = state.frequency[i], m.deviation = state.frequency_deviation[i];
+    m.frequency = state.frequency[i], m.deviation = state.frequency_std[i];
     m.damping = state.damping[i];
-    m.damping_deviation =
+    m.damping_std =
         m.damping * std::hypot(vibration.identifier()->dampingDeviation(i), ModeIdentifier::kLeftDamping);
   }
   return health;

@@ -19,7 +19,7 @@ struct BoomHealth {
   };
   struct OfMode {
     double frequency{}, deviation{};        ///< standard [Hz]
-    double damping{}, damping_deviation{};  ///< ratio; standard [-]
+    double damping{}, damping_std{};  ///< ratio; standard [-]
   };
   std::array<OfCylinder, kMaxJoints> cylinder;
   std::array<OfMode, kMaxJoints> mode;

@@ -115,9 +115,9 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
                             times * found.deviation, soft ? "softer" : "stiffer");
   text += odd >= 0 ? "but its " + dampingText(boom, odd) + ": no oil makes both, the stiffness is doubtful"
                    : format(
-                         "%s_stiffness_deviation allows for %.0f %%: %s; the boom's loads are those of the stiffness "
+                         "%s_stiffness_std allows for %.0f %%: %s; the boom's loads are those of the stiffness "
                          "found",
-                         name, 100.0 * unlike->stiffness_deviation,
+                         name, 100.0 * unlike->stiffness_std,
                          soft ? "air in its oil, hoses, worn pins or a link that gives"
                               : "its bore or hose volumes in the boom file, or air in the oil of the others");
   warnings.push_back({"cylinder stiffness", std::move(text), true});

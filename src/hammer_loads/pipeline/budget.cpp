@@ -124,11 +124,11 @@ std::vector<BudgetFigure> BudgetRecorder::figures() const {
     figures.push_back({quantity, part * sum.value, std::sqrt(columns.squaredNorm() + part * sum.own),
                        sources(columns, part * (sum.own - sum.rod), part * sum.rod)});
   };
-  add("pulse/turn_impulse_x_Ns", turn_impulse_x_);
-  add("pulse/turn_impulse_z_Ns", turn_impulse_z_);
-  add("pulse/impulse_Ns", impulse_);
-  add("pulse/amplitude_N", amplitude_);
-  add("blow/energy_J", energy_);
+  add("pulse/turn_impulse_x", turn_impulse_x_);
+  add("pulse/turn_impulse_z", turn_impulse_z_);
+  add("pulse/impulse", impulse_);
+  add("pulse/amplitude", amplitude_);
+  add("blow/energy", energy_);
   add("blow/restitution", restitution_);
   return figures;
 }

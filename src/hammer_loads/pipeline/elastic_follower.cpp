@@ -38,7 +38,7 @@ bool isOver(const RodFilter& rod) noexcept {
 ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
     : model_(&model),
       wanted_(level == Level::kElastic &&
-              priorOf(model.mechanism().parameters().rod, model.mechanism().parameters().rod_deviation).gives),
+              priorOf(model.mechanism().parameters().rod, model.mechanism().parameters().rod_std).gives),
       filters_{RodFilter(model.mechanism(), RodFilter::Pins::kTight),
                RodFilter(model.mechanism(), RodFilter::Pins::kPlay)} {}
 
@@ -245,7 +245,7 @@ HullWrench ElasticFollower::momentumDeviation(const DriveReaction& drive) const 
   return wrenchOf(squares.cwiseSqrt());
 }
 
-PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, double angle_deviation) const noexcept {
+PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, double angle_std) const noexcept {
   const RodMotion& m = filter().motion();
   const TwoBodies& bodies = filter().bodies();
   const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
@@ -253,7 +253,7 @@ PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, dou
   const double beside = besideRigidly(m.state, a, rigid);
   a.crank -= gain_[kCrank] * beside;
   a.rocker -= (rigid.rocker.u * gain_[kCrank] + gain_[kBesideRigid]) * beside;
-  const NearBlow near(near_blow, angle_deviation);
+  const NearBlow near(near_blow, angle_std);
   PinReactions pins =
       pinForcesOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), hull.gravity, near);
   if (hull.turns()) addTurningLinkage(model_->mechanism(), rigid, m.state.speed, hull, near, pins);
@@ -272,9 +272,9 @@ std::optional<CrankBlow> ElasticFollower::blow() const noexcept {
   blow.drive_inertia = filter().drive(m).inertia;
   const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
   blow.speed = strikingSpeed();
-  blow.speed_deviation = filter().deviation(RodFilter::kSpeed);
+  blow.speed_std = filter().deviation(RodFilter::kSpeed);
   blow.factor = inertia.factor(m.restitution);
-  blow.factor_deviation =
+  blow.factor_std =
       std::hypot(filter().deviation(RodFilter::kRestitution), kContactsShare) / inertia.restitutionPerFactor();
   return blow;
 }

@@ -52,8 +52,8 @@ class ElasticFollower {
   /// Acceleration of the rocker beside that of a rigid rod at the last beside() [rad/s2].
   double vibration() const noexcept { return vibration_; }
   /// While it runs: with links as the spring has them. near_blow: transmission angle below which they are flagged
-  /// [rad]; angle_deviation: of the crank [rad].
-  PinReactions pins(const HullMotion& hull, double near_blow, double angle_deviation) const noexcept;
+  /// [rad]; angle_std: of the crank [rad].
+  PinReactions pins(const HullMotion& hull, double near_blow, double angle_std) const noexcept;
   /// While it runs: of a crank whose rigid rod moves the rocker as it is before the blow [rad/s].
   double strikingSpeed() const noexcept;
   /// Of the blow that was struck while it runs: the rocker's speed at the tool and its restitution, as a crank would

@@ -15,8 +15,8 @@ CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSet
   filter.torque_walk = s.torque_walk * inertia;
   filter.speed_walk = s.speed_walk;
   filter.inertia_walk = s.inertia_walk;
-  filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
-  filter.initial_inertia_deviation = s.initial_inertia_deviation;
+  filter.initial_torque_std = s.initial_torque_std * inertia;
+  filter.initial_inertia_std = s.initial_inertia_std;
   filter.max_speed = s.max_crank_speed;
   filter.blow_factor = blowInertia(mechanism, rigid(s.level), mechanism.parameters().drive_inertia).smoothFactor();
   return filter;

@@ -182,9 +182,9 @@ Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
   return covarianceRoot<3>(of_hammer.lazyProduct(of_hammer.transpose()));
 }
 
-double deviationFromBlow(const CrankFilter& filter, double angle_deviation) noexcept {
+double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
-  return std::hypot(angle_deviation, filter.rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
+  return std::hypot(angle_std, filter.rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
 }
 
 bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noexcept {

@@ -82,8 +82,8 @@ Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept;
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept;
 
 /// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong, or that a
-/// rod which gives lets the rocker strike later. angle_deviation: its own [rad]; NaN: not known.
-double deviationFromBlow(const CrankFilter& filter, double angle_deviation) noexcept;
+/// rod which gives lets the rocker strike later. angle_std: its own [rad]; NaN: not known.
+double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept;
 
 /// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
 /// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored

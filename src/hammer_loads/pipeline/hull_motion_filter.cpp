@@ -176,7 +176,7 @@ std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcep
       turns.covariance * (by_turning * by_rate.transpose() + by_rate * by_turning.transpose());
   // A place that is off by r adds turning x r and rate x (rate x r): alike along x and z.
   const double alike =
-      square(kForceOffset) + square(settings_.position_deviation) * (square(turns.signal) + square(square(rate.y())));
+      square(kForceOffset) + square(settings_.position_std) * (square(turns.signal) + square(square(rate.y())));
   P(0, 0) += x.signal_variance + alike, P(1, 1) += z.signal_variance + alike;
   return known;
 }

@@ -34,7 +34,7 @@ HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
 HullState::HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom)
     : source_(settings.hull_motion),
       hull_mass_(hammer.hull_mass > 0.0 ? hammer.hull_mass : kUsualMass * hammer.rocker_mass),
-      hull_mass_deviation_(hammer.hull_mass > 0.0 ? hammer.hull_mass_deviation / hammer.hull_mass : kUsualDeviation),
+      hull_mass_std_(hammer.hull_mass > 0.0 ? hammer.hull_mass_std / hammer.hull_mass : kUsualDeviation),
       weight_(settings, boom),
       imu_(settings.imu),
       filter_(settings.imu, hammer) {
@@ -61,7 +61,7 @@ void HullState::carry(const HullWrench& load, double duration) noexcept {
 /// by more than the load would move it alone.
 HullMotionCovariance HullState::unmeasured() const noexcept {
   const Eigen::Vector3d scatter = (load_square_.mean() - load_.mean().cwiseAbs2()).cwiseMax(0.0);
-  const double factor = square(kResonance / hull_mass_) * (1.0 + square(hull_mass_deviation_));
+  const double factor = square(kResonance / hull_mass_) * (1.0 + square(hull_mass_std_));
   const double force = factor * (scatter[0] + scatter[1]);
   HullMotionCovariance covariance = HullMotionCovariance::Zero();
   covariance(0, 0) = covariance(1, 1) = force;

@@ -86,7 +86,7 @@ class HullState {
 
   HullMotionSource source_;
   double hull_mass_;                                                                         ///< [kg]
-  double hull_mass_deviation_;                                                               ///< relative [-]
+  double hull_mass_std_;                                                               ///< relative [-]
   RunningMean<Eigen::Vector3d> load_{look_back::kTenTurns, Eigen::Vector3d::Zero()};         ///< carry()
   RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< of its components
   HullGravity weight_;

@@ -77,7 +77,7 @@ MeasuredTorques::Doubt MeasuredTorques::doubtOf(const Vibration& vibration, doub
   doubt.stamp_noise = stamp_noise;
   if (!identifier) return doubt;
   doubt.delay = identifier->delay(Clock::kPressures);
-  doubt.delay_deviation = identifier->delayDeviation(Clock::kPressures);
+  doubt.delay_std = identifier->delayDeviation(Clock::kPressures);
   const double surprise = identifier->oilSurprise();
   // Where it is found how late stamps are, what does not fit is no lag.
   doubt.misfit = surprise > kSurprised && identifier->knowsLag();
@@ -105,7 +105,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     torque_[i].reset();
     const StampNs stamp = pressures.newest(i);
     const std::optional<ChamberPressures> read = pressures.at(i, stamp);
-    if (!read || !pressures.known(i, sample) || at.dead_centre) {
+    if (!read || !pressures.known(i, sample) || at.zero_moment_arm) {
       track.goes_on = false;
       continue;
     }
@@ -141,7 +141,7 @@ MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double ag
   const double off = std::sqrt(of_change * std::min(track.oil_square.mean(), line_square) +
                                (doubt.lag + 2.0 * lost) * track.swing.square.mean() +
                                (doubt.misfit ? track.unexplained.square.mean() : 0.0) +
-                               (square(doubt.delay_deviation) + square(doubt.stamp_noise)) * square(model.rate));
+                               (square(doubt.delay_std) + square(doubt.stamp_noise)) * square(model.rate));
   return {value, off, 0.0, 0.0, track.at};
 }
 
@@ -153,8 +153,8 @@ void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motio
       rubbing(sealsOf(cylinder, arm, torque.value, motion), boom.vibration().velocity()[cylinder.joint()]);
   // A zero that is off has the lever of another angle.
   const CylinderParameters& p = cylinder.parameters();
-  const double offset = square(arm * cylinder.boreArea() * p.pressure_offset_deviation) +
-                        square(torque.value * torque.at.arm_rate / arm * p.joint_zero_deviation);
+  const double offset = square(arm * cylinder.boreArea() * p.pressure_offset_std) +
+                        square(torque.value * torque.at.arm_rate / arm * p.joint_zero_std);
   const auto& identifier = boom.vibration().identifier();
   torque.value += seals.torque;
   torque.constant =

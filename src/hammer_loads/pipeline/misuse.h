@@ -12,24 +12,24 @@ namespace hammer_loads {
 /// counts beside them speak; none of it: not known, which is not zero.
 struct MisuseCounts {
   double work_time{};             ///< over accepted samples, gaps left out [s]
-  std::uint64_t blank_strokes{};  ///< the rocker went through where the tool should have been
+  std::uint64_t blank_firings{};  ///< the rocker went through where the tool should have been
   std::uint64_t judged_blows{};   ///< at which cylinder pressures show the rock's force on the hull
   /// Of these: since the blow before it was never more than its error. The blow falls on the hull's retainer, or what
   /// presses the hull down is too little to bring it back after its recoil; in the pressures both look alike.
-  std::uint64_t unpressed_blows{};
+  std::uint64_t blows_without_hold_down{};
   double placed_time{};  ///< of whole turns at which the boom's joints show where the hull is [s]
   double still_time{};   ///< of that: the hull had not moved for MisuseFollower::kPatience of hammering or more [s]
 
   void add(const MisuseCounts& other) noexcept {
     work_time += other.work_time;
-    blank_strokes += other.blank_strokes;
+    blank_firings += other.blank_firings;
     judged_blows += other.judged_blows;
-    unpressed_blows += other.unpressed_blows;
+    blows_without_hold_down += other.blows_without_hold_down;
     placed_time += other.placed_time;
     still_time += other.still_time;
   }
-  std::optional<std::uint64_t> unpressed() const noexcept {
-    return judged_blows > 0 ? std::make_optional(unpressed_blows) : std::nullopt;
+  std::optional<std::uint64_t> withoutHoldDown() const noexcept {
+    return judged_blows > 0 ? std::make_optional(blows_without_hold_down) : std::nullopt;
   }
   std::optional<double> still() const noexcept {
     return placed_time > 0.0 ? std::make_optional(still_time) : std::nullopt;
@@ -67,7 +67,7 @@ class MisuseFollower {
     if (period && watched_ && !unknown_) {
       pressed = pressed_;
       ++counts_.judged_blows;
-      counts_.unpressed_blows += !pressed_;
+      counts_.blows_without_hold_down += !pressed_;
     }
     watched_ = unknown_ = pressed_ = false;
     if (!period || !place_) return pressed;

@@ -26,7 +26,7 @@ constexpr double kOfSample = 0.75;  // of the step between samples: what lies fu
 
 void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {
   reading.noise = size * doubt.noise;
-  reading.offset_deviation = size * doubt.offset;
+  reading.offset_std = size * doubt.offset;
   reading.offset_walk = size * doubt.walk;
 }
 
@@ -98,7 +98,7 @@ void ModeObserver::pressures(Boom& boom, const HeldPose& held, StampNs sample,
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
     const CylinderPosition& at = boom.cylinderPosition(i);
-    if (!p || at.dead_centre || !boom.vibration().known()) continue;
+    if (!p || at.zero_moment_arm || !boom.vibration().known()) continue;
     const double ahead = seconds(stamp - sample);
     if (count > 0 && ahead != seen[0].ahead) take();
     VibrationReading& reading = seen[count++];

@@ -26,7 +26,7 @@ class PendingBlow {
     early_ = false;
     published_ = withheld_ = 0;
     blow_.speed = speed;
-    blow_.speed_deviation = std::sqrt(doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed));
+    blow_.speed_std = std::sqrt(doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed));
     columns_.row(0) = doubt.speedAtAngle(rate);
   }
   bool isWaiting() const noexcept { return waiting_; }
@@ -36,9 +36,9 @@ class PendingBlow {
   /// The estimate at the latest sample; call after begin() and then at each sample that continues.
   void follow(const BlowFactor& factor) noexcept {
     blow_.factor = factor.mean;
-    blow_.factor_deviation = factor.deviation;
+    blow_.factor_std = factor.deviation;
     blow_.drive_inertia = factor.drive_inertia;
-    blow_.inertia_deviation = factor.inertia_deviation;
+    blow_.inertia_std = factor.inertia_std;
     early_ = factor.early;
     columns_.bottomRows<2>() = factor.by_constant;
   }
@@ -71,7 +71,7 @@ class PendingBlow {
     if (!early_) return blow_;
     CrankBlow blow = blow_;
     blow.speed /= blow.factor;
-    blow.speed_deviation = std::hypot(blow_.speed_deviation, blow.speed * blow.factor_deviation) / blow.factor;
+    blow.speed_std = std::hypot(blow_.speed_std, blow.speed * blow.factor_std) / blow.factor;
     return blow;
   }
 

@@ -188,7 +188,7 @@ HullWrench Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& 
 /// Deviations, and whether the blow's side is certain. Returns what a rod that gives adds to the loads.
 ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive) noexcept {
   const bool gives = elastic_.runs();
-  result_.doubt = crank_.tracker().uncertainty(settings_.torque_deviation_part);
+  result_.doubt = crank_.tracker().uncertainty(settings_.torque_std_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
   const HullWrench own = gives ? result_.deviation.common : result_.deviation.wrench;
@@ -296,7 +296,7 @@ SampleCounts Pipeline::counts() const noexcept {
   counts.impossible_blows += turn_.impossibleBlows();
   counts.backward_passes += turn_.backwardPasses();
   counts.misuse.add(misuse_.counts());
-  counts.misuse.blank_strokes += turn_.blankStrokes();
+  counts.misuse.blank_firings += turn_.blankFirings();
   return counts;
 }
 

@@ -43,7 +43,7 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
                      step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
-    boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
+    boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_hold_down_force);
     boom_->expectCrankLead(crankLead(result_.ends[i].blow.crank_speed_before));
   }
 }
@@ -91,7 +91,7 @@ void Pipeline::followMisuse() noexcept {
     misuse_.hullAt(boom_->boom().pose().tip().translation());
   else
     misuse_.hullLost();
-  misuse_.pressed(placed && boom_->contactKnown() ? std::make_optional(!boom_->state().press_force_lost)
+  misuse_.pressed(placed && boom_->contactKnown() ? std::make_optional(!boom_->state().hold_down_force_lost)
                                                   : std::nullopt);
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
     const std::optional<HalfSinePulse>& pulse = result_.ends[i].pulse;

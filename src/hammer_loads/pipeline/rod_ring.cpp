@@ -76,7 +76,7 @@ Rods rodsOf(const RodPrior& prior) noexcept {
 
 RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   const HammerParameters& p = model.mechanism().parameters();
-  const RodPrior prior = priorOf(p.rod, p.rod_deviation);
+  const RodPrior prior = priorOf(p.rod, p.rod_std);
   gives_ = !HAMMER_LOADS_ABLATE(rod_ring) && prior.gives;
   rods_ = rodsOf(prior);
 }

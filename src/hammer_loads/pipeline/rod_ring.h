@@ -68,7 +68,7 @@ class RodRing {
   void letGo(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;
-  bool gives_, moves_{};           ///< moves: from the run-up on, which may turn out to be a blank stroke
+  bool gives_, moves_{};           ///< moves: from the run-up on, which may turn out to be a blank firing
   bool approaches_{}, settles_{};  ///< in this run-up, which began settled
   struct State {
     double x{}, speed{};  ///< [rad], [rad/s]

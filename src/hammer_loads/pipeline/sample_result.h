@@ -26,7 +26,7 @@ struct TurnEnd {
   RockerBlow blow;
   BlowErrors blow_errors;
   enum class Struck : std::uint8_t { kUnknown, kTool, kHull } struck{};
-  double mean_press_force{};  ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
+  double mean_hold_down_force{};  ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
   std::optional<HalfSinePulse> pulse;
   PulseErrors pulse_errors;
 };

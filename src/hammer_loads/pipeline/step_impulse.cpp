@@ -117,7 +117,7 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexc
         if (ends_at == nullptr || !ends_at->strikes) return;
         const RockerBlow blow = blowAt(model, step.driveInertia(), *ends_at);
         piece.ends_in_blow = true;
-        piece.blow_deviation = step.timeDeviation(*ends_at);
+        piece.blow_std = step.timeDeviation(*ends_at);
         piece.blow = {blow.support_impulse_x, blow.support_impulse_z, blow.support_impulse_y + blow.drive_impulse_y};
       });
   return result;

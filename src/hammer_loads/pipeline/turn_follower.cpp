@@ -145,7 +145,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const double rate = before.acceleration / before.speed;
   endPulse(instant(time, before), before, doubt, by_readings, end);
   errors_.begin(end.stamp);
-  end.mean_press_force =  // times the impulse, once that is known
+  end.mean_hold_down_force =  // times the impulse, once that is known
       last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
   pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, rate, doubt);
   pending_.follow(tracker_->blowFactor());
@@ -205,14 +205,14 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   CrankBlow crank = elastic.value_or(measured);
   if (!elastic) {
     const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
-    crank.factor_deviation =
-        std::hypot(crank.factor_deviation,
+    crank.factor_std =
+        std::hypot(crank.factor_std,
                    rod_->restitutionDoubt(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
                    crank.factor * rod_->lackingSpeed() / crank.speed);
   }
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
   const double doubt =
-      std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
+      std::hypot(measured.speed_std / measured.speed, measured.factor_std / measured.factor);
   const HullWrench read{std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0};
   errors_.momentumAfterBlow({{read.force_x, std::hypot(read.force_z, taken_up), 0.0}, read},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
@@ -225,14 +225,14 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!elastic) {
     CrankBlow rigid = measured;
     const double lacking = square(rod_->lackingSpeed());
-    rigid.speed_deviation = std::sqrt(std::max(0.0, square(rigid.speed_deviation) - lacking));
+    rigid.speed_std = std::sqrt(std::max(0.0, square(rigid.speed_std) - lacking));
     errors.setRodBeyond(ownErrors(*model_, rigid, measuredBlow(*model_, rigid)));
   }
   voidImpossible(model_->mechanism(), model_->level(), blow);
   if (blow.impossible) doubtImpossible(crank, !elastic && pending_.isEarly(), pending_end_);
   impossible_ += blow.impossible;
   blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull
-  pending_end_.mean_press_force *= blow.tool_impulse_z;
+  pending_end_.mean_hold_down_force *= blow.tool_impulse_z;
   if (result.turn_ends < result.ends.size()) result.ends[result.turn_ends++] = pending_end_;
 }
 

@@ -55,7 +55,7 @@ class TurnFollower {
   double peakForce() const noexcept { return peak_force_; }  ///< of the last whole turn's strike [N], 0 before it
   std::uint64_t blows() const noexcept { return turns_ - impossible_; }   ///< since the start
   std::uint64_t impossibleBlows() const noexcept { return impossible_; }  ///< RockerBlow::impossible, not among them
-  std::uint64_t blankStrokes() const noexcept { return blank_; }       ///< onto the mirrored branch: no tool was there
+  std::uint64_t blankFirings() const noexcept { return blank_; }       ///< onto the mirrored branch: no tool was there
   std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again
 
  private:

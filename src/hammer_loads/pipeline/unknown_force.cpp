@@ -22,7 +22,7 @@ constexpr double kLeastLever = 0.01;  // of l3: nearer to the dead centre the ro
 }  // namespace
 
 UnknownForce::UnknownForce(const Mechanism& mechanism) noexcept : mechanism_(&mechanism) {
-  const RodSpring &rod = mechanism.parameters().rod, &deviation = mechanism.parameters().rod_deviation;
+  const RodSpring &rod = mechanism.parameters().rod, &deviation = mechanism.parameters().rod_std;
   const RodPrior prior = priorOf(rod, deviation);
   if (!prior.gives) return;
   clearance_ = std::hypot(rod.play, deviation.play);

@@ -35,7 +35,7 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
     begin = after(piece);
     passed += h;
     start = end - static_cast<StampNs>(std::llround((length - passed) / kSecondsPerNs));
-    if (given.ends_in_blow) blow_ = Blow{start, given.blow_deviation, piece.blow, std::nullopt};
+    if (given.ends_in_blow) blow_ = Blow{start, given.blow_std, piece.blow, std::nullopt};
   }
   end_ = end;
 }

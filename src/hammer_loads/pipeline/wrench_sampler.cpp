@@ -20,7 +20,7 @@ WrenchSampler::WrenchSampler(const HullModel& model, const WrenchColumns& column
       rate_(settings.output_rate),
       longest_gap_(settings.stale_after),
       near_blow_(settings.near_blow),
-      torque_part_(settings.torque_deviation_part) {}
+      torque_part_(settings.torque_std_part) {}
 
 std::size_t WrenchSampler::mostOutputs() const noexcept {
   return static_cast<std::size_t>(std::ceil(rate_ * longest_gap_)) + 2;
@@ -32,7 +32,7 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
   origin_ = last_output_ = result.stamp;
   index_ = kind_ == OutputKind::kMean ? 1 : 0;
   impulse_ = {};
-  momentum_deviation_ = blow_doubt_ = {};
+  momentum_std_ = blow_doubt_ = {};
   column_impulse_.setZero();
   columns_ = result.load_columns;
   return kind_ != OutputKind::kMean;
@@ -173,8 +173,8 @@ void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& o
                                                             wrenchOf(vectorOf(result.rod_momentum).cwiseAbs());
   const HullWrench momentum =
       modelled + wrenchOf(UnknownForce::kKeepsSign * result.unknown.rowwise().sum().cwiseSqrt());
-  const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_deviation_ + momentum + blow_doubt_);
-  momentum_deviation_ = momentum;
+  const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_std_ + momentum + blow_doubt_);
+  momentum_std_ = momentum;
   blow_doubt_ = {};
   const Eigen::Vector3d of_end =
       (vectorOf(deviation.wrench).cwiseAbs2() - vectorOf(deviation.common).cwiseAbs2()).cwiseMax(0.0);

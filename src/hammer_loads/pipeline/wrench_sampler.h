@@ -54,7 +54,7 @@ class WrenchSampler {
   double rate_;         ///< [Hz]; 0: at each sample
   double longest_gap_;  ///< between samples [s]
   double near_blow_;    ///< [rad]
-  double torque_part_;  ///< PipelineSettings::torque_deviation_part
+  double torque_part_;  ///< PipelineSettings::torque_std_part
   bool begun_{};
   StampNs origin_{};       ///< of the grid
   std::uint64_t index_{};  ///< of the next output on the grid
@@ -65,7 +65,7 @@ class WrenchSampler {
   LoadImpulse impulse_;                              ///< since the last output
   LoadColumns columns_{LoadColumns::Zero()};         ///< at the last sample
   LoadColumns column_impulse_{LoadColumns::Zero()};  ///< since the last output, of a mean
-  HullWrench momentum_deviation_;                    ///< at the last output
+  HullWrench momentum_std_;                    ///< at the last output
   HullWrench blow_doubt_;                            ///< ElasticFollower::Impulse::doubt since the last output
 };
 

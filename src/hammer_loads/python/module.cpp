@@ -139,13 +139,13 @@ py::dict pulse(const Hammer& hammer, double speed, const std::pair<double, doubl
   const ConstantSpeedPulse result =
       pulseOfTurn({modelOf(hammer, level), speed, {gravity.first, gravity.second}, 1.0, false});
   py::dict values;
-  values["amplitude_N"] = result.pulse.amplitude;
+  values["amplitude"] = result.pulse.amplitude;
   values["peak_angle_deg"] = result.peak_angle / kDegree;
-  values["impulse_Ns"] = result.pulse.impulse;
-  values["frequency_rad_s"] = result.pulse.frequency;
-  values["start_s"] = result.pulse.start;
-  values["turn_impulse_x_Ns"] = result.pulse.turn_impulse_x + 0.0;
-  values["turn_impulse_z_Ns"] = result.pulse.turn_impulse_z + 0.0;
+  values["impulse"] = result.pulse.impulse;
+  values["angular_frequency"] = result.pulse.frequency;
+  values["start"] = result.pulse.start;
+  values["turn_impulse_x"] = result.pulse.turn_impulse_x + 0.0;
+  values["turn_impulse_z"] = result.pulse.turn_impulse_z + 0.0;
   return values;
 }
 
@@ -154,16 +154,16 @@ py::dict blow(const Hammer& hammer, double before, std::optional<double> after, 
   const RockerBlow result = after ? blowAtCrankSpeeds(hammer.mechanism(), at, before, *after)
                                   : blowAtCrankSpeed(hammer.mechanism(), at, before);
   py::dict values;
-  values["crank_speed_before_rad_s"] = before;
-  values["crank_speed_after_rad_s"] = after.value_or(before);
-  values["rocker_speed_before_rad_s"] = result.rocker_speed_before;
-  values["rocker_speed_after_rad_s"] = result.rocker_speed_after;
+  values["crank_speed_before"] = before;
+  values["crank_speed_after"] = after.value_or(before);
+  values["rocker_speed_before"] = result.rocker_speed_before;
+  values["rocker_speed_after"] = result.rocker_speed_after;
   values["restitution"] = result.restitution;
-  values["energy_J"] = result.energy;
-  values["tool_impulse_x_Ns"] = result.tool_impulse_x;
-  values["tool_impulse_z_Ns"] = result.tool_impulse_z;
-  values["support_impulse_x_Ns"] = result.support_impulse_x;
-  values["support_impulse_z_Ns"] = result.support_impulse_z;
+  values["energy"] = result.energy;
+  values["tool_impulse_x"] = result.tool_impulse_x;
+  values["tool_impulse_z"] = result.tool_impulse_z;
+  values["support_impulse_x"] = result.support_impulse_x;
+  values["support_impulse_z"] = result.support_impulse_z;
   return values;
 }
 
@@ -208,11 +208,11 @@ py::dict supportImpulse(double mass, double inertia, const Point& com, const Poi
       mass, inertia, hullPoint(com), hullPoint(rod_joint), rod_mass, hullPoint(striking_point), friction};
   const RockerBlow blow = blowInSupport(rocker, before, after);
   py::dict values;
-  values["tool_impulse_x_Ns"] = blow.tool_impulse_x;
-  values["tool_impulse_z_Ns"] = blow.tool_impulse_z;
-  values["support_impulse_x_Ns"] = blow.support_impulse_x;
-  values["support_impulse_z_Ns"] = blow.support_impulse_z;
-  values["energy_J"] = blow.energy;
+  values["tool_impulse_x"] = blow.tool_impulse_x;
+  values["tool_impulse_z"] = blow.tool_impulse_z;
+  values["support_impulse_x"] = blow.support_impulse_x;
+  values["support_impulse_z"] = blow.support_impulse_z;
+  values["energy"] = blow.energy;
   return values;
 }
 
@@ -242,7 +242,7 @@ constexpr char kSupportImpulse[] = R"(Returns the impulses of a blow of a rocker
 mass, reduced_rod_mass [kg], inertia_about_pivot [kg m2], friction [-]: of the rocker and at the tool.
 com, rod_joint, striking_point [m]: (x, z) from the pivot, axes of hammer_hull.
 speed_before, speed_after [rad/s]: of the rocker; negative before the blow of a rocker that strikes at x < 0.
-The result has tool_impulse_x_Ns, tool_impulse_z_Ns, support_impulse_x_Ns, support_impulse_z_Ns [N s], energy_J [J].)";
+The result has tool_impulse_x, tool_impulse_z, support_impulse_x, support_impulse_z [N s], energy [J].)";
 
 }  // namespace
 

@@ -7,13 +7,13 @@ CHANGED = 3.0  # deviations: once in three hundred comparisons by chance
 MOST = 0.5     # of a run's turns
 
 # Means of a run: stiffness over that of the boom file, its deviation, share of turns whose damping no oil makes.
-OF_TURNS = ("SELECT cylinder, count(*) AS turns, avg(stiffness_ratio) AS stiffness, avg(stiffness_ratio_deviation) AS "
+OF_TURNS = ("SELECT cylinder, count(*) AS turns, avg(stiffness_ratio) AS stiffness, avg(stiffness_ratio_std) AS "
             "deviation, avg(doubtful) AS doubtful FROM boom_cylinders WHERE run_id = ? GROUP BY cylinder ORDER BY cylinder")
 ALL_TURNS = OF_TURNS[len("SELECT "):].replace("run_id = ?", "{runs}").replace("GROUP BY", "GROUP BY run_id,")
-OF_RUNS = ("cylinder, stiffness_ratio AS stiffness, stiffness_ratio_deviation AS deviation, doubtful FROM run_cylinders "
+OF_RUNS = ("cylinder, stiffness_ratio AS stiffness, stiffness_ratio_std AS deviation, doubtful FROM run_cylinders "
            "WHERE {runs} ORDER BY cylinder")
-MODES = ("SELECT mode, count(*), min(frequency_Hz), avg(frequency_Hz), max(frequency_Hz), avg(damping_ratio), "
-         "avg(damping_ratio_deviation) FROM boom_modes WHERE run_id = ? GROUP BY mode ORDER BY mode")
+MODES = ("SELECT mode, count(*), min(frequency), avg(frequency), max(frequency), avg(damping_ratio), "
+         "avg(damping_ratio_std) FROM boom_modes WHERE run_id = ? GROUP BY mode ORDER BY mode")
 
 
 def cylinders_of(subject):

@@ -38,7 +38,7 @@ def results(figures):
 
 
 def deviation_key(key, keys):
-    """Key of a constant's standard deviation: `_deviation` before the unit."""
+    """Key of a constant's standard deviation: `_std` before the unit."""
     parts = key.split("_")
     return next((name for at in range(len(parts), 0, -1)
                  if (name := "_".join(parts[:at] + ["deviation"] + parts[at:])) in keys), None)
@@ -72,7 +72,7 @@ def certificate(subject, version):
     checks = [row for row in health_rows(subject) if row[2]]
     return rendered(
         "certificate.html", version=version, label=subject.label, run=subject.runs[0], first=utc(subject.first_ns),
-        last=utc(subject.last_ns), work=duration(subject.total("duration_s")), turns=subject.total("turns"),
+        last=utc(subject.last_ns), work=duration(subject.total("duration")), turns=subject.total("turns"),
         blows=subject.total("blows"), results=results(figures), inputs=inputs(subject, figures),
         checks=Table("The crank's sensor", ["Check", "Found", "Verdict"], [row[:3] for row in checks], "words"),
         refusals=refusals_of(subject),

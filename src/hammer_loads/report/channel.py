@@ -16,7 +16,7 @@ class Channel:
         self.hours = 0.0
         self.samples = self.skipped = self.below = self.above = self.gaps = 0
         self.minimum = self.maximum = None
-        self._deviation_sum, self._deviations = 0.0, 0
+        self._std_sum, self._deviations = 0.0, 0
         self._range_sums, self._range_weight = [0.0, 0.0], 0
 
     @classmethod
@@ -36,12 +36,12 @@ class Channel:
     def add_sums(self, row):
         """Tally and deviations of a row of a table of channels; those of older files have no deviations of ranges."""
         self.add_tally(row)
-        self.add_deviation(row["mean_deviation"], row["samples"])
-        self.add_range_deviations(row.get("range_own_deviation"), row.get("range_common_deviation"), row["samples"])
+        self.add_std(row["mean_std"], row["samples"])
+        self.add_range_deviations(row.get("range_own_std"), row.get("range_systematic_std"), row["samples"])
 
-    def add_deviation(self, mean, samples):
+    def add_std(self, mean, samples):
         if mean is not None and samples:
-            self._deviation_sum += mean * samples
+            self._std_sum += mean * samples
             self._deviations += samples
 
     def add_range_deviations(self, own, common, weight):
@@ -55,21 +55,21 @@ class Channel:
         """(own, common), mean over what was added; None each where there is none."""
         return tuple(part / self._range_weight if self._range_weight else None for part in self._range_sums)
 
-    def _range_deviation(self):
+    def _range_std(self):
         own, common = self.range_deviations
         return by_samples(self.deviation) if own is None else (0.0, math.hypot(own, common))
 
     @property
     def deviation(self):
         """Mean standard deviation of a sample; None where there is none."""
-        return self._deviation_sum / self._deviations if self._deviations else None
+        return self._std_sum / self._deviations if self._deviations else None
 
     def equivalents(self, cycles=None):
         """Damage-equivalent ranges as (value, deviation) at SLOPES; (None, None) without any time."""
         if not (self.hours > 0.0 and self.cycles_per_hour and self.cycles_per_hour > 0.0):
             return [(None, None)] * len(SLOPES)
         cycles = self.count.ranges_and_means() if cycles is None else cycles
-        deviation = self._range_deviation()
+        deviation = self._range_std()
         return [equivalent_range(cycles, m, self.hours * self.cycles_per_hour, deviation) for m in SLOPES]
 
     def damage(self, cycles=None):
@@ -77,7 +77,7 @@ class Channel:
         if self.curve is None:
             return None, None
         cycles = self.count.ranges_and_means() if cycles is None else cycles
-        return self.curve.damage(cycles, self._range_deviation())
+        return self.curve.damage(cycles, self._range_std())
 
     def remaining_hours(self, damage):
         return remaining_hours(damage, self.hours) if damage[0] is not None and self.hours > 0.0 else (None, None)

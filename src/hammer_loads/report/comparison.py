@@ -60,7 +60,7 @@ def turn_figures(series):
     for quantity in QUANTITIES:
         values = series[quantity.key]
         yield Figure(titled(quantity.title, quantity.unit), with_spread(values), values.statistics()[2], CRANK)
-        if quantity.key in ("amplitude_N", "energy_J"):
+        if quantity.key in ("amplitude", "energy"):
             yield plain(titled(f"{quantity.title}, greatest", quantity.unit), values.statistics()[4], CRANK)
 
 
@@ -78,7 +78,7 @@ def figures_of(subject, series):
     """{name: Figure} of one machine. Figures of the sensor have no kind: no warning puts them in doubt."""
     def found():
         yield Figure("From (UTC)", moment(subject.first_ns, "minutes"), None, None)
-        yield Figure("At work", duration(subject.total("duration_s")), subject.total("duration_s"), COUNTS)
+        yield Figure("At work", duration(subject.total("duration")), subject.total("duration"), COUNTS)
         yield plain("Runs", len(subject.runs), None)
         yield plain("Blows", subject.total("blows"), COUNTS)
         yield plain("Blows per hour", blows_per_hour(subject), COUNTS)
@@ -90,7 +90,7 @@ def figures_of(subject, series):
             yield Figure(f"{title.replace(' [s]', '')}, per hour{' [s]' if '[s]' in title else ''}",
                          UNKNOWN if count is None else number(per_hour, 3), per_hour, CRANK if count else None)
         for name, value in (("Consistency", worst_of(subject, "consistency")),
-                            ("Jitter of the stamps [ms]", scaled(worst_of(subject, "timing_noise_s"), 1e3)),
+                            ("Jitter of the stamps [ms]", scaled(worst_of(subject, "timing_noise"), 1e3)),
                             ("Refused samples", sum(count for _, count in refusals_of(subject))),
                             ("Restarts", subject.total("restarts"))):
             yield plain(name, value, None, 3)
@@ -134,7 +134,7 @@ def comparison_table(subjects, columns, doubts):
 
 def run_figures(run, series, at):
     """{name: Figure} of one run, whose place is `at`."""
-    hours = (run["duration_s"] or 0.0) / 3600.0
+    hours = (run["duration"] or 0.0) / 3600.0
     figures = [plain("Blows", run["blows"], COUNTS),
                plain("Blows per hour", run["blows"] / hours if hours > 0.0 and run["blows"] else None, COUNTS),
                *turn_figures({key: values.of_run(at) for key, values in series.items()})]

@@ -21,7 +21,7 @@ HOUR_NS = 3600 * 10 ** 9
 def judged_channel(channels):
     """Channel with an S-N curve if there is one, else the force along the tool."""
     curved = [c for c in channels if c.curve is not None]
-    along = [c for c in channels if c.name.endswith("force_z_N")]
+    along = [c for c in channels if c.name.endswith("force_z")]
     return (curved or along or channels)[0]
 
 
@@ -47,7 +47,7 @@ def turn_costs(subject, channel):
     if subject.total("turns") > MOST_TURNS_ONE_BY_ONE or "turn_loads" not in subject.database.tables():
         return pandas.DataFrame({"damage": []})
     rows = subject.frame(
-        "turn, stamp_ns, turn_loads.minimum AS least, turn_loads.maximum AS greatest, amplitude_N / 1000 AS peak "
+        "turn, stamp_ns, turn_loads.minimum AS least, turn_loads.maximum AS greatest, amplitude / 1000 AS peak "
         "FROM channels JOIN turn_loads USING(run_id, channel) JOIN turns USING(run_id, turn) WHERE {runs} AND name = ? "
         "ORDER BY turn", channel.name).dropna(subset=["stamp_ns", "least", "greatest"])
     return rows.assign(damage=damage_of_each(channel, rows.greatest - rows.least, 0.5 * (rows.greatest + rows.least)))

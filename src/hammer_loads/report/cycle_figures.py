@@ -13,7 +13,7 @@ CELLS = 24  # of a matrix, each way
 SHARED = (3.0, 5.0, 10.0)  # slopes of the shares of the damage by range
 
 
-def with_deviation(figure, factor=1.0):
+def with_std(figure, factor=1.0):
     value, deviation = figure
     shown = number(scaled(value, factor))
     return shown if deviation is None or value is None else f"{shown} \u00b1 {number(scaled(deviation, factor), 2)}"
@@ -26,9 +26,9 @@ def equivalents_table(channels):
         cycles = channel.count.ranges_and_means()
         factor, unit = in_unit(channel.unit)
         damage = channel.damage(cycles)
-        rows.append([without_unit(channel.name), unit, *(with_deviation(f, factor) for f in channel.equivalents(cycles)),
+        rows.append([without_unit(channel.name), unit, *(with_std(f, factor) for f in channel.equivalents(cycles)),
                      scaled(cycles[-1][0] if cycles else 0.0, factor), number(sum(n for _, _, n in cycles), 6),
-                     with_deviation(damage), with_deviation(channel.remaining_hours(damage)),
+                     with_std(damage), with_std(channel.remaining_hours(damage)),
                      f"{channel.below + channel.above}, {channel.skipped}, {channel.gaps}"])
     header = ["Channel", "Unit", *(f"Range, slope\u00a0{m:g}" for m in SLOPES), "Largest range", "Cycles", "Damage",
               "Hours left", "Saturated, skipped, gaps"]
@@ -97,7 +97,7 @@ def channel_pictures(channel):
 
 def cycle_figures(channels):
     """Table and pictures; those of the force along the tool come first."""
-    ordered = sorted(channels, key=lambda c: not c.name.endswith("force_z_N"))
+    ordered = sorted(channels, key=lambda c: not c.name.endswith("force_z"))
     drawn = list(filter(None, map(channel_pictures, ordered)))
     return {"table": equivalents_table(channels), "open": drawn[:1], "folded": drawn[1:],
             "per_hour": next((c.cycles_per_hour for c in channels if c.cycles_per_hour), None)}

@@ -14,9 +14,9 @@ def columns_of(cycles):
     return numpy.array(cycles, dtype=float).reshape(-1, 3).T
 
 
-def by_samples(load_deviation):
+def by_samples(load_std):
     """Deviation of all ranges, (absolute, over the range), by that of a sample: a range's two ends err independently."""
-    return None if load_deviation is None else (math.sqrt(2.0) * load_deviation, 0.0)
+    return None if load_std is None else (math.sqrt(2.0) * load_std, 0.0)
 
 
 def figure_of(value, by_absolute, by_relative, deviation):
@@ -72,9 +72,9 @@ class Curve:
 
 def curve_of(row):
     """Curve by the columns of a table `channels`; None where they have none."""
-    if row["sn_knee_range_MPa"] is None:
+    if row["sn_knee_range"] is None:
         return None
-    return Curve(row["sn_knee_range_MPa"], row["sn_knee_cycles"], row["sn_slope"], row["sn_slope_below"],
+    return Curve(row["sn_knee_range"], row["sn_knee_cycles"], row["sn_slope"], row["sn_slope_below"],
                  row["mean_stress_sensitivity"])
 
 

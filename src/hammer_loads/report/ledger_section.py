@@ -1,6 +1,6 @@
 """A machine's ledger: months of work, by epoch and by day."""
 from report.costs import back_calculation, damage_of, judged_channel, rule_of, shares_table
-from report.cycle_figures import cycle_figures, with_deviation
+from report.cycle_figures import cycle_figures, with_std
 from report.damage import SLOPES
 from report.formats import Table, in_unit, titled
 from report.ledgers import epochs_of
@@ -17,8 +17,8 @@ def days_table(epoch, channels_by_day):
     for (_, date, hours, blows), channels in zip(epoch.days, channels_by_day):
         row = [date, hours, blows]
         for channel in channels:
-            row.append(with_deviation(channel.equivalents()[SLOPES.index(5.0)], in_unit(channel.unit)[0]))
-            row += [with_deviation(channel.damage())] if channel.curve is not None else []
+            row.append(with_std(channel.equivalents()[SLOPES.index(5.0)], in_unit(channel.unit)[0]))
+            row += [with_std(channel.damage())] if channel.curve is not None else []
         rows.append(row)
     return Table("By the day on which a cycle closed", header, rows)
 

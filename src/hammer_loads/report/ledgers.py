@@ -46,7 +46,7 @@ class Epoch:
         channel.add_tally(tally)
         if tally["deviations"]:
             unit = channel.count.width / DEVIATION_UNITS
-            channel.add_deviation(tally["deviation_sum"] / tally["deviations"] * unit, tally["deviations"])
+            channel.add_std(tally["deviation_sum"] / tally["deviations"] * unit, tally["deviations"])
         if tally["range_square"]:
             channel.add_range_deviations(tally["range_own"] / tally["range_square"],
                                          tally["range_common"] / tally["range_square"], tally["range_square"])

@@ -3,11 +3,11 @@ from report.formats import NOTHING, Table, number
 
 UNKNOWN = "not known"
 COUNTERS = [
-    ("blank_strokes", "Blank strokes", "the rocker went through where the tool should have been",
+    ("blank_firings", "Blank firing", "the rocker went through where the tool should have been",
      "the database is of an older version"),
-    ("unpressed_blows", "Blows without press force", "the rock did not press on the hull since the blow before: a blow "
+    ("blows_without_hold_down", "Blows without press force", "the rock did not press on the hull since the blow before: a blow "
      "on the retainer, or too little press force", "needs cylinder pressures"),
-    ("still_time_s", "Hammering at one place [s]", "beyond 15 s without the hull moving by 20 mm: no penetration",
+    ("still_time", "Hammering at one place [s]", "beyond 15 s without the hull moving by 20 mm: no penetration",
      "needs the boom's joints and its description"),
 ]
 
@@ -17,7 +17,7 @@ def counter(subject, name):
     known = [run for run in subject.runs if run.get(name) is not None]
     if not known:
         return None, None
-    count, hours = sum(run[name] for run in known), sum(run["duration_s"] or 0.0 for run in known) / 3600.0
+    count, hours = sum(run[name] for run in known), sum(run["duration"] or 0.0 for run in known) / 3600.0
     return count, count / hours if hours > 0.0 else None
 
 
@@ -28,7 +28,7 @@ def misuse(subject):
         if count is None:
             rows.append([title, UNKNOWN, NOTHING, missing])
             continue
-        if name == "unpressed_blows":
+        if name == "blows_without_hold_down":
             judged = sum(run["judged_blows"] or 0 for run in subject.runs if run.get(name) is not None)
             meaning += f"; of {number(judged)} blows whose press force was measured"
         rows.append([title, number(count), number(per_hour, 3), meaning])

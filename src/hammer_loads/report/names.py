@@ -33,5 +33,5 @@ def recording_of(subject):
 
 
 def without_unit(channel):
-    """The unit stands beside it, once: hull_wrench/force_z_N in kN is read as two units."""
+    """The unit stands beside it, once: hull_wrench/force_z in kN is read as two units."""
     return re.sub(r"_(N|Nm|Ns|MPa|Pa|m|rad|J)$", "", channel)

@@ -7,7 +7,7 @@ from report.pictures import COLOURS, Picture
 from report.quantities import QUANTITIES
 
 MOST_POINTS = 400
-COUNTED = ("energy_J", "amplitude_N")  # in a histogram
+COUNTED = ("energy", "amplitude")  # in a histogram
 MOST_BARS = 24
 STRETCHES = 12
 MOST_MARKS = 20

@@ -59,12 +59,12 @@ def energy_text(joules):
 
 def total_energy(subject, series):
     """[J] over all blows with a value; None where there is none."""
-    energies = series["energy_J"]
+    energies = series["energy"]
     if not len(energies):
         return None
     if not energies.of_runs:
         return energies.points.middle.sum()
-    return subject.frame("total FROM run_figures WHERE {runs} AND quantity = 'energy_J'").total.sum()
+    return subject.frame("total FROM run_figures WHERE {runs} AND quantity = 'energy'").total.sum()
 
 
 def blows_per_hour(subject):
@@ -88,7 +88,7 @@ def truth_of(subject):
 def key_figures(subject, series):
     """(name, value); of turns the medians."""
     energy, rate, true = total_energy(subject, series), blows_per_hour(subject), truth_of(subject)
-    figures = [("at work", duration(subject.total("duration_s"))),
+    figures = [("at work", duration(subject.total("duration"))),
                ("blows", number(subject.total("blows")) + true.get("blows", ""))]
     if rate is not None:
         figures.append(("blows per hour of work", number(round(rate))))
@@ -106,7 +106,7 @@ def key_figures(subject, series):
 def runs_table(subject):
     names = recording_of(subject)
     rows = [[str(at), names[run["run_id"]], moment(run["first_stamp_ns"]), moment(run["last_stamp_ns"]),
-             duration(run["duration_s"]), number(run["turns"]), number(run["blows"]), run["level"] or NOTHING,
+             duration(run["duration"]), number(run["turns"]), number(run["blows"]), run["level"] or NOTHING,
              f"{run['version']} ({run['revision'][:10]})"] for at, run in enumerate(subject.runs[:MOST_RUNS_SHOWN], 1)]
     return Table("Runs", ["Run", "Recording", "From (UTC)", "To (UTC)", "At work", "Turns", "Blows", "Level", "Program"],
                  rows, "words")

@@ -5,16 +5,16 @@ from collections import namedtuple
 Quantity = namedtuple("Quantity", "key title table expression unit factor deviation meaning")
 
 QUANTITIES = [
-    Quantity("blow_rate_Hz", "Blow rate", "turns", "1.0 / period_s", "Hz", 1.0, None,
+    Quantity("blow_rate", "Blow rate", "turns", "1.0 / period", "Hz", 1.0, None,
              "one over the time from blow to blow"),
-    Quantity("energy_J", "Blow energy", "blows", "energy_J", "J", 1.0, "energy_deviation_J",
+    Quantity("energy", "Blow energy", "blows", "energy", "J", 1.0, "energy_std",
              "lost by rocker and rod at the blow. Not the tool energy of AEM, which is measured in the tool's steel"),
-    Quantity("restitution", "Restitution", "blows", "restitution", "", 1.0, "restitution_deviation",
+    Quantity("restitution", "Restitution", "blows", "restitution", "", 1.0, "restitution_std",
              "rocker's speed after the blow over that before"),
-    Quantity("amplitude_N", "Peak force", "turns", "amplitude_N", "kN", 1e-3, "amplitude_deviation_N",
+    Quantity("amplitude", "Peak force", "turns", "amplitude", "kN", 1e-3, "amplitude_std",
              "largest force along the tool in a turn"),
-    Quantity("mean_press_force_N", "Hold-down needed", "blows", "mean_press_force_N", "kN", 1e-3,
-             "mean_press_force_deviation_N",
+    Quantity("mean_hold_down_force", "Hold-down needed", "blows", "mean_hold_down_force", "kN", 1e-3,
+             "mean_hold_down_force_std",
              "mean force that keeps the hull on the tool: tool impulse times blow rate"),
 ]
 
@@ -22,9 +22,9 @@ QUANTITIES = [
 def is_possible(columns):
     """SQL: what a blow says of itself can be. As the pipeline holds it: R within [0, 1], energy not below zero, by two
     deviations; databases of older versions have blows beyond that, newer ones NULL in both."""
-    r_spread = "2 * coalesce(restitution_deviation, 0)" if "restitution_deviation" in columns else "0"
-    e_spread = "2 * coalesce(energy_deviation_J, 0)" if "energy_deviation_J" in columns else "0"
-    return (f"(restitution >= -{r_spread} AND restitution <= 1 + {r_spread} AND energy_J >= -{e_spread})")
+    r_spread = "2 * coalesce(restitution_std, 0)" if "restitution_std" in columns else "0"
+    e_spread = "2 * coalesce(energy_std, 0)" if "energy_std" in columns else "0"
+    return (f"(restitution >= -{r_spread} AND restitution <= 1 + {r_spread} AND energy >= -{e_spread})")
 
 
 def value_of(quantity, columns):

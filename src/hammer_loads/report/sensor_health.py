@@ -20,7 +20,7 @@ def worst_of(subject, name):
 
 
 def worst_pitch(subject):
-    known = (run["hull_pitch_rad"] for run in subject.runs if run["hull_pitch_rad"] is not None)
+    known = (run["hull_pitch"] for run in subject.runs if run["hull_pitch"] is not None)
     return max(known, key=abs, default=None)
 
 
@@ -36,9 +36,9 @@ def judged(value, limit):
 
 def health_rows(subject):
     """[figure, value, verdict, meaning]."""
-    consistency, jitter = worst_of(subject, "consistency"), worst_of(subject, "timing_noise_s")
-    resolution, noise = worst_of(subject, "angle_resolution_rad"), worst_of(subject, "speed_noise_rad_s")
-    deviation = worst_of(subject, "drive_inertia_deviation")
+    consistency, jitter = worst_of(subject, "consistency"), worst_of(subject, "timing_noise")
+    resolution, noise = worst_of(subject, "angle_resolution"), worst_of(subject, "speed_noise")
+    deviation = worst_of(subject, "drive_inertia_std")
     samples = subject.total("samples")
     refused = sum(count for _, count in refusals_of(subject))
     share = refused / samples if samples else None
@@ -57,7 +57,7 @@ def health_rows(subject):
          "largest at the end of a run; at work beyond 1.2 rad a sign or an offset of a boom joint is wrong"],
         ["Resolution of the angle", f"{number(scaled(resolution, 1e3), 3)} mrad", "", "step between two readings"],
         ["Noise of the speed", f"{number(noise, 3)} rad/s", "", "where the speed is measured"],
-        ["Drive inertia", f"{number(worst_of(subject, 'drive_inertia_kg_m2'), 3)} kg m\u00b2",
+        ["Drive inertia", f"{number(worst_of(subject, 'drive_inertia'), 3)} kg m\u00b2",
          "", f"relative deviation {number(deviation, 2)}"],
     ]
 

@@ -27,7 +27,7 @@ class Subject:
 
     @property
     def hours(self):
-        return self.total("duration_s") / 3600.0
+        return self.total("duration") / 3600.0
 
     def frame(self, sql, *values, text=()):
         """Rows of all runs in their order. sql: from the columns on, {runs} is its condition for the runs; `run` is added:
@@ -78,7 +78,7 @@ class Subject:
 def add_piece(channel, database, run, row):
     place = (run["run_id"], row["channel"])
     channel.add_sums(row)
-    channel.hours += (run["duration_s"] or 0.0) / 3600.0
+    channel.hours += (run["duration"] or 0.0) / 3600.0
     channel.count.add_closed(database.rows(
         "SELECT steps, low, count FROM cycles WHERE run_id = ? AND channel = ?", *place))
     channel.count.join([c for c, in database.rows(

@@ -60,9 +60,9 @@ RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
 void addCounts(const SampleCounts& counts, RunRecord& record) {
   record.restarts = counts.restarts;
   record.backward_passes = counts.backward_passes;
-  record.blank_strokes = counts.misuse.blank_strokes;
+  record.blank_firings = counts.misuse.blank_firings;
   record.judged_blows = counts.misuse.judged_blows;
-  record.unpressed_blows = counts.misuse.unpressed();
+  record.blows_without_hold_down = counts.misuse.withoutHoldDown();
   record.still_time = counts.misuse.still().value_or(RunRecord::kUnknown);
   for (std::size_t i = 0; i < counts.refused.size(); ++i)
     record.refusals.push_back({kRefusalNames[i], counts.refused[i]});
@@ -77,7 +77,7 @@ void addLearned(const CrankFilter& filter, RunRecord& record) {
   record.timing_noise = filter.timingNoise();
   record.speed_noise = filter.speedNoise();
   record.drive_inertia = filter.driveInertia();
-  record.drive_inertia_deviation = filter.blowFactor().inertia_deviation;
+  record.drive_inertia_std = filter.blowFactor().inertia_std;
 }
 
 }  // namespace
@@ -109,8 +109,8 @@ void BagTables::takeSample(const HullLoads& message) {
   const double step = record.last_stamp ? seconds(stamp - *record.last_stamp) : 0.0;
   if (step > 0.0 && step <= longest_step_) record.duration += step;
   record.last_stamp = stamp;
-  traces_.add({stamp, message.force_x_N, message.force_z_N, message.torque_y_Nm, message.force_z_deviation_N,
-               message.crank_angle_rad});
+  traces_.add({stamp, message.force_x, message.force_z, message.torque_y, message.force_z_std,
+               message.crank_angle});
 }
 
 void BagTables::takeHealth(std::uint64_t turn, const BoomFollower& boom) {
@@ -122,14 +122,14 @@ void BagTables::takeHealth(std::uint64_t turn, const BoomFollower& boom) {
     writer_.boomCylinder(run(), {turn, boom.boom().cylinders()[at].parameters().name, c.joint_angle, c.stiffness,
                                  c.deviation, !health->oil_explains});
     const BoomHealth::OfMode& m = health->mode[at];
-    writer_.boomMode(run(), {turn, i + 1, m.frequency, m.deviation, m.damping, m.damping_deviation});
+    writer_.boomMode(run(), {turn, i + 1, m.frequency, m.deviation, m.damping, m.damping_std});
   }
 }
 
 void BagTables::takePulse(const Pulse& message, const Pipeline& pipeline) {
   const StampNs stamp = stampOf(message.header.stamp);
   writer_.turn(run(), {message.turn, stamp, pulse_.valuesOf(message)});
-  traces_.turnEnded(message.turn, stamp, message.period_s, message.amplitude_N);
+  traces_.turnEnded(message.turn, stamp, message.period, message.amplitude);
   if (pipeline.boom()) takeHealth(message.turn, *pipeline.boom());
 }
 

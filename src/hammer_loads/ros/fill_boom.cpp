@@ -31,26 +31,26 @@ void prepareJointLoads(const Boom& boom, JointLoads& message) {
   const auto joints = static_cast<std::size_t>(boom.chain().joints());
   message.header.frame_id = boom.parameters().chain.root;
   message.joint_name = boom.chain().jointNames();
-  for (std::vector<double>* torque : {&message.hammer_torque_Nm, &message.weight_torque_Nm, &message.motion_torque_Nm,
-                                      &message.vibration_torque_Nm, &message.total_torque_Nm})
+  for (std::vector<double>* torque : {&message.hammer_torque, &message.weight_torque, &message.motion_torque,
+                                      &message.vibration_torque, &message.total_torque})
     torque->resize(joints);
   for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
-  message.contact_torque_Nm.resize(joints);
-  message.total_torque_deviation_Nm.resize(joints, kNaN);
-  message.total_torque_common_deviation_Nm.resize(joints, kNaN);
-  message.cylinder_force_N.resize(boom.cylinders().size());
-  message.cylinder_force_deviation_N.resize(boom.cylinders().size(), kNaN);
-  message.cylinder_force_common_deviation_N.resize(boom.cylinders().size(), kNaN);
+  message.contact_torque.resize(joints);
+  message.total_torque_std.resize(joints, kNaN);
+  message.total_torque_systematic_std.resize(joints, kNaN);
+  message.cylinder_force.resize(boom.cylinders().size());
+  message.cylinder_force_std.resize(boom.cylinders().size(), kNaN);
+  message.cylinder_force_systematic_std.resize(boom.cylinders().size(), kNaN);
   message.cylinder_flags.resize(boom.cylinders().size());
-  message.cylinder_pressure_Pa.resize(boom.cylinders().size());
+  message.cylinder_pressure.resize(boom.cylinders().size());
 }
 
 void prepareSections(const Boom& boom, SectionLoads& message) {
   message.header.frame_id = boom.parameters().chain.root;
   for (const Section& section : boom.sections()) message.section_name.push_back(section.name());
   message.load.resize(boom.sections().size());
-  message.load_deviation.resize(boom.sections().size());
-  message.load_common_deviation.resize(boom.sections().size());
+  message.load_std.resize(boom.sections().size());
+  message.load_systematic_std.resize(boom.sections().size());
 }
 
 void prepareReactions(const Boom& boom, JointReactions& message) {
@@ -58,12 +58,12 @@ void prepareReactions(const Boom& boom, JointReactions& message) {
   message.header.frame_id = boom.parameters().chain.root;
   message.joint_name = boom.chain().jointNames();
   message.load.resize(joints);
-  message.load_deviation.resize(joints);
-  message.load_common_deviation.resize(joints);
+  message.load_std.resize(joints);
+  message.load_systematic_std.resize(joints);
   for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
-  message.base_force_N.resize(boom.cylinders().size());
-  message.guide_force_N.resize(boom.cylinders().size());
-  message.rod_force_N.resize(boom.cylinders().size());
+  message.base_force.resize(boom.cylinders().size());
+  message.guide_force.resize(boom.cylinders().size());
+  message.rod_force.resize(boom.cylinders().size());
 }
 
 CylinderJoints::CylinderJoints(const Boom& boom, sensor_msgs::JointState& message) {
@@ -96,30 +96,30 @@ void CylinderJoints::fill(const Boom& boom, sensor_msgs::JointState& message) co
 void prepareVibration(const Boom& boom, BoomVibration& message) {
   message.header.frame_id = boom.parameters().chain.tip;
   for (std::vector<double>* values :
-       {&message.natural_frequency_Hz, &message.natural_frequency_deviation_Hz, &message.damping_ratio})
+       {&message.natural_frequency, &message.natural_frequency_std, &message.damping_ratio})
     values->reserve(kMaxJoints);
   message.hold_down_limit.reserve(kLongestLimit);
 }
 
 void fillJointLoads(const BoomState& state, JointLoads& message) {
   message.header.stamp = timeOf(state.stamp);
-  copy(state.loads.hammer, message.hammer_torque_Nm);
-  copy(state.loads.weight, message.weight_torque_Nm);
-  copy(state.loads.motion, message.motion_torque_Nm);
-  copy(state.loads.vibration, message.vibration_torque_Nm);
-  copy(state.contact_torque, message.contact_torque_Nm);
-  copy(state.loads.total, message.total_torque_Nm);
-  copy(state.deviations.torque, message.total_torque_deviation_Nm);
-  copy(state.common.torque, message.total_torque_common_deviation_Nm);
+  copy(state.loads.hammer, message.hammer_torque);
+  copy(state.loads.weight, message.weight_torque);
+  copy(state.loads.motion, message.motion_torque);
+  copy(state.loads.vibration, message.vibration_torque);
+  copy(state.contact_torque, message.contact_torque);
+  copy(state.loads.total, message.total_torque);
+  copy(state.deviations.torque, message.total_torque_std);
+  copy(state.common.torque, message.total_torque_systematic_std);
   for (std::size_t i = 0; i < message.cylinder_name.size(); ++i) {
-    message.cylinder_force_N[i] = state.loads.cylinder[i].force;
-    message.cylinder_force_deviation_N[i] = state.deviations.cylinder[i];
-    message.cylinder_force_common_deviation_N[i] = state.common.cylinder[i];
-    message.cylinder_pressure_Pa[i] = state.loads.cylinder[i].pressure;
+    message.cylinder_force[i] = state.loads.cylinder[i].force;
+    message.cylinder_force_std[i] = state.deviations.cylinder[i];
+    message.cylinder_force_systematic_std[i] = state.common.cylinder[i];
+    message.cylinder_pressure[i] = state.loads.cylinder[i].pressure;
     message.cylinder_flags[i] = state.cylinder_flags[i];
   }
   message.flags = 0;
-  if (state.press_force_lost) message.flags |= JointLoads::FLAG_PRESS_FORCE_LOST;
+  if (state.hold_down_force_lost) message.flags |= JointLoads::FLAG_HOLD_DOWN_LOST;
   if (state.hold_down && state.hold_down->least < 1.0) message.flags |= JointLoads::FLAG_HOLD_DOWN;
   if (state.measured) message.flags |= JointLoads::FLAG_MEASURED;
 }
@@ -128,8 +128,8 @@ void fillSections(const BoomState& state, SectionLoads& message) {
   message.header.stamp = timeOf(state.stamp);
   for (std::size_t i = 0; i < message.load.size(); ++i) {
     copy(state.steel.section[i], message.load[i]);
-    copy(state.deviations.section[i], message.load_deviation[i]);
-    copy(state.common.section[i], message.load_common_deviation[i]);
+    copy(state.deviations.section[i], message.load_std[i]);
+    copy(state.common.section[i], message.load_systematic_std[i]);
   }
 }
 
@@ -137,33 +137,33 @@ void fillReactions(const BoomState& state, JointReactions& message) {
   message.header.stamp = timeOf(state.stamp);
   for (std::size_t i = 0; i < message.load.size(); ++i) {
     copy(state.steel.joint[i], message.load[i]);
-    copy(state.deviations.joint[i], message.load_deviation[i]);
-    copy(state.common.joint[i], message.load_common_deviation[i]);
+    copy(state.deviations.joint[i], message.load_std[i]);
+    copy(state.common.joint[i], message.load_systematic_std[i]);
   }
-  for (std::size_t i = 0; i < message.base_force_N.size(); ++i) {
-    copy(state.steel.pins[i].base, message.base_force_N[i]);
-    copy(state.steel.pins[i].guide, message.guide_force_N[i]);
-    copy(state.steel.pins[i].rod, message.rod_force_N[i]);
+  for (std::size_t i = 0; i < message.base_force.size(); ++i) {
+    copy(state.steel.pins[i].base, message.base_force[i]);
+    copy(state.steel.pins[i].guide, message.guide_force[i]);
+    copy(state.steel.pins[i].rod, message.rod_force[i]);
   }
 }
 
 void fillVibration(const BoomFollower& follower, BoomVibration& message) {
   const BoomState& state = follower.state();
   message.header.stamp = timeOf(state.stamp);
-  copy(state.tip.displacement.head<3>(), message.displacement_m);
-  copy(state.tip.displacement.tail<3>(), message.rotation_rad);
-  copy(state.tip.acceleration.head<3>(), message.acceleration_m_s2);
-  assign(state.frequency, message.natural_frequency_Hz);
-  assign(state.frequency_deviation, message.natural_frequency_deviation_Hz);
+  copy(state.tip.displacement.head<3>(), message.displacement);
+  copy(state.tip.displacement.tail<3>(), message.rotation);
+  copy(state.tip.acceleration.head<3>(), message.acceleration);
+  assign(state.frequency, message.natural_frequency);
+  assign(state.frequency_std, message.natural_frequency_std);
   assign(state.damping, message.damping_ratio);
   message.identified = state.identified;
-  message.reduced_mass_kg = state.reduced.mass;
-  message.reduced_stiffness_N_m = state.reduced.stiffness;
+  message.reduced_mass = state.reduced.mass;
+  message.reduced_stiffness = state.reduced.stiffness;
   message.compliant = state.choice.compliant;
-  message.dead_point = state.dead_centre;
+  message.zero_moment_arm = state.zero_moment_arm;
   message.rigid_error = state.choice.judged ? state.choice.rigid_error : kNaN;
   message.rigid_tolerance = state.choice.rigid_tolerance;
-  message.pulse_length_s = state.choice.judged ? state.choice.pulse_length : kNaN;
+  message.pulse_length = state.choice.judged ? state.choice.pulse_length : kNaN;
   message.hold_down_factor = state.hold_down ? state.hold_down->least : kNaN;
   message.hold_down_limit = follower.firstToGive();
 }

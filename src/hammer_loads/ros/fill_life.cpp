@@ -27,25 +27,25 @@ void fillCount(const life::CycleCount& count, ChannelCycles& message) {
   message.gaps = count.tally.gaps;
   message.minimum = count.extremes.least;
   message.maximum = count.extremes.greatest;
-  message.mean_deviation = life::meanDeviation(count);
+  message.mean_std = life::meanDeviation(count);
   const life::RangeDeviation range = life::rangeDeviation(count);
-  message.range_own_deviation = count.tally.range_square > 0 ? range.own : kNaN;
-  message.range_common_deviation = range.common;
+  message.range_own_std = count.tally.range_square > 0 ? range.own : kNaN;
+  message.range_systematic_std = range.common;
 }
 
 void fillFigures(const life::ChannelFigures& figures, ChannelCycles& message) {
   for (std::vector<double>* values :
-       {&message.equivalent_range, &message.equivalent_range_deviation, &message.equivalent_range_common_deviation})
+       {&message.equivalent_range, &message.equivalent_range_std, &message.equivalent_range_systematic_std})
     values->clear();
   for (const life::Figure& range : figures.equivalent_range) {
     message.equivalent_range.push_back(range.value);
-    message.equivalent_range_deviation.push_back(range.deviation);
-    message.equivalent_range_common_deviation.push_back(range.common);
+    message.equivalent_range_std.push_back(range.deviation);
+    message.equivalent_range_systematic_std.push_back(range.common);
   }
   message.largest_range = figures.largest_range;
   message.damage = figures.damage ? figures.damage->value : kNaN;
-  message.damage_deviation = figures.damage ? figures.damage->deviation : kNaN;
-  message.damage_common_deviation = figures.damage ? figures.damage->common : kNaN;
+  message.damage_std = figures.damage ? figures.damage->deviation : kNaN;
+  message.damage_systematic_std = figures.damage ? figures.damage->common : kNaN;
   message.remaining_hours = figures.remaining_hours ? figures.remaining_hours->value : kNaN;
 }
 
@@ -54,8 +54,8 @@ void fillFigures(const life::ChannelFigures& figures, ChannelCycles& message) {
 void prepareTurnLoads(const std::vector<std::string>& channels, TurnLoads& message) {
   message.channel = channels;
   for (std::vector<double>* values :
-       {&message.minimum, &message.maximum, &message.mean, &message.minimum_deviation, &message.maximum_deviation,
-        &message.minimum_common_deviation, &message.maximum_common_deviation})
+       {&message.minimum, &message.maximum, &message.mean, &message.minimum_std, &message.maximum_std,
+        &message.minimum_systematic_std, &message.maximum_systematic_std})
     values->assign(channels.size(), kNaN);
 }
 
@@ -68,10 +68,10 @@ void fillTurnLoads(const TurnEnd& end, const life::TurnLoads& turn, TurnLoads& m
   std::copy(turn.maximum.begin(), turn.maximum.end(), message.maximum.begin());
   std::copy(turn.mean.begin(), turn.mean.end(), message.mean.begin());
   for (std::size_t i = 0; i < turn.of_minimum.size(); ++i) {
-    message.minimum_deviation[i] = turn.of_minimum[i].deviation();
-    message.maximum_deviation[i] = turn.of_maximum[i].deviation();
-    message.minimum_common_deviation[i] = turn.of_minimum[i].common;
-    message.maximum_common_deviation[i] = turn.of_maximum[i].common;
+    message.minimum_std[i] = turn.of_minimum[i].deviation();
+    message.maximum_std[i] = turn.of_maximum[i].deviation();
+    message.minimum_systematic_std[i] = turn.of_minimum[i].common;
+    message.maximum_systematic_std[i] = turn.of_maximum[i].common;
   }
 }
 
@@ -80,7 +80,7 @@ void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::Led
   constexpr double kSecondsPerHour = 3600.0;
   message.header.stamp = timeOf(total.stamp);
   message.since = timeOf(since);
-  message.duration_s = kSecondsPerNs * static_cast<double>(total.duration);
+  message.duration = kSecondsPerNs * static_cast<double>(total.duration);
   message.turns = total.turns;
   message.equivalent_cycles_per_hour = machine.equivalent_cycles_per_hour;
   message.slope.assign(std::begin(life::kSlopes), std::end(life::kSlopes));
@@ -89,7 +89,7 @@ void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::Led
     const life::LedgerChannel& channel = machine.channels[i];
     message.channel[i].name = channel.name;
     fillCount(total.counts[i], message.channel[i]);
-    fillFigures(life::figuresOf(total.counts[i], channel, message.duration_s / kSecondsPerHour,
+    fillFigures(life::figuresOf(total.counts[i], channel, message.duration / kSecondsPerHour,
                                 machine.equivalent_cycles_per_hour),
                 message.channel[i]);
   }

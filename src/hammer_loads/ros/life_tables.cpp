@@ -30,9 +30,9 @@ ChannelCount countOf(const ChannelCycles& message, const life::LifeSettings& set
   count.gaps = message.gaps;
   count.minimum = message.minimum;
   count.maximum = message.maximum;
-  count.mean_deviation = message.mean_deviation;
-  count.range_own_deviation = message.range_own_deviation;
-  count.range_common_deviation = message.range_common_deviation;
+  count.mean_std = message.mean_std;
+  count.range_own_std = message.range_own_std;
+  count.range_systematic_std = message.range_systematic_std;
   count.steps = message.steps;
   count.low = message.low;
   count.count = message.count;
@@ -57,8 +57,8 @@ void LifeTables::takeTurn(const TurnLoads& message) {
   if (!message.whole) return;
   for (std::size_t i = 0; i < message.channel.size(); ++i)
     writer_->turnLoad(run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i],
-                             message.mean[i], message.minimum_deviation[i], message.maximum_deviation[i],
-                             message.minimum_common_deviation[i], message.maximum_common_deviation[i]});
+                             message.mean[i], message.minimum_std[i], message.maximum_std[i],
+                             message.minimum_systematic_std[i], message.maximum_systematic_std[i]});
 }
 
 void LifeTables::write(const BudgetFigure& figure) {
@@ -77,15 +77,15 @@ void LifeTables::writeBudget() {
     if (channel.equivalent_range.empty() || !(channel.equivalent_range.front() > 0.0)) continue;
     BudgetFigure figure{"equivalent_range_" + std::to_string(static_cast<int>(life::kSlopes[0])) + "/" + channel.name,
                         channel.equivalent_range.front(),
-                        channel.equivalent_range_deviation.front(),
+                        channel.equivalent_range_std.front(),
                         {}};
     const auto of_hull = std::find(names.begin(), names.end(), channel.name);
     if (of_hull != names.end()) {
       figure.sources = budget_->ofRange(static_cast<std::size_t>(of_hull - names.begin()));
-    } else if (channel.range_own_deviation >= 0.0 && channel.range_common_deviation >= 0.0) {
+    } else if (channel.range_own_std >= 0.0 && channel.range_systematic_std >= 0.0) {
       figure.sources = {
-          {"constants of hammer and crank sensor", channel.range_common_deviation * channel.range_common_deviation},
-          {"readings, oil and rock", channel.range_own_deviation * channel.range_own_deviation}};
+          {"constants of hammer and crank sensor", channel.range_systematic_std * channel.range_systematic_std},
+          {"readings, oil and rock", channel.range_own_std * channel.range_own_std}};
     }
     write(figure);
   }

@@ -196,9 +196,9 @@ void NodeDiagnostics::describeMisuse(Status& status) {
   };
   status.summary(DiagnosticStatus::OK, "counted");
   status.add("time at work [s]", counts.work_time);
-  add("blank strokes", static_cast<double>(counts.blank_strokes));
-  if (counts.unpressed()) {
-    add("blows without press force on the rock", static_cast<double>(*counts.unpressed()));
+  add("blank firing", static_cast<double>(counts.blank_firings));
+  if (counts.withoutHoldDown()) {
+    add("blows without press force on the rock", static_cast<double>(*counts.withoutHoldDown()));
     status.add("blows whose press force is measured", counts.judged_blows);
   } else {
     status.add("blows without press force on the rock", "not known: needs cylinder pressures");
@@ -223,7 +223,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
     status.summary(DiagnosticStatus::WARN, "no joint loads" + text);
   } else if (state.fault && state.fault->kind == JointFault::Kind::kRunAway) {
     status.summary(DiagnosticStatus::WARN, "no joint loads: the vibration ran away and began anew");
-  } else if (state.dead_centre) {
+  } else if (state.zero_moment_arm) {
     status.summary(DiagnosticStatus::WARN, "a cylinder is at its dead centre: taken as rigid");
   } else {
     status.summary(DiagnosticStatus::OK, state.choice.compliant ? "compliant" : "rigid");

@@ -71,9 +71,9 @@ struct RodKey {
   NumberRule rule;
 };
 constexpr RodKey kRodKeys[] = {
-    {"rod_stiffness_N_m", "rod_stiffness_deviation_N_m", "N/m", &RodSpring::stiffness, kStiffness},
-    {"rod_damping_ratio", "rod_damping_ratio_deviation", "", &RodSpring::damping_ratio, kDampingRatio},
-    {"pin_play_m", "pin_play_deviation_m", "m", &RodSpring::play, kPlay},
+    {"rod_stiffness_N_m", "rod_stiffness_std_N_m", "N/m", &RodSpring::stiffness, kStiffness},
+    {"rod_damping_ratio", "rod_damping_ratio_std", "", &RodSpring::damping_ratio, kDampingRatio},
+    {"pin_play_m", "pin_play_std_m", "m", &RodSpring::play, kPlay},
     {"pin_friction_radius_m", "pin_friction_radius_std_m", "m", &RodSpring::friction_radius, kPlay}};
 
 /// All optional. Of a hammer whose other constants are all exact the rod is so too, unless the file says otherwise.
@@ -82,9 +82,9 @@ void readRod(ParameterReader& reader, HammerParameters& parameters, std::string&
     if (reader.given(k.key)) parameters.rod.*k.field = reader.number(k.key, k.unit, k.rule);
   const HammerDeviations& others = parameters.deviations;
   const bool exact = std::all_of(others.begin(), others.end(), [](double deviation) { return deviation == 0.0; });
-  if (!exact || parameters.rod.stiffness > 0.0) parameters.rod_deviation = usualDeviation(parameters.rod);
+  if (!exact || parameters.rod.stiffness > 0.0) parameters.rod_std = usualDeviation(parameters.rod);
   for (const RodKey& k : kRodKeys) {
-    double& deviation = parameters.rod_deviation.*k.field;
+    double& deviation = parameters.rod_std.*k.field;
     if (reader.given(k.deviation))
       deviation = reader.number(k.deviation, k.unit, NumberRule::within(0.0, 1e12));
     else if (deviation > 0.0)
@@ -97,9 +97,9 @@ void readHullMass(ParameterReader& reader, HammerParameters& parameters) {
   constexpr const char *kHullMass = "hull_mass_kg", *kDeviation = "hull_mass_std_kg";
   constexpr double kUsual = 0.3;  // of a mass whose deviation is not given
   if (reader.given(kHullMass)) parameters.hull_mass = reader.number(kHullMass, "kg", NumberRule::within(1.0, 1e5));
-  parameters.hull_mass_deviation = kUsual * parameters.hull_mass;
+  parameters.hull_mass_std = kUsual * parameters.hull_mass;
   if (!reader.given(kDeviation)) return;
-  parameters.hull_mass_deviation = reader.number(kDeviation, "kg", NumberRule::within(0.0, 1e5));
+  parameters.hull_mass_std = reader.number(kDeviation, "kg", NumberRule::within(0.0, 1e5));
   if (!(parameters.hull_mass > 0.0)) reader.addProblem(std::string(kDeviation) + ": must stand beside " + kHullMass);
 }
 
@@ -151,7 +151,7 @@ std::vector<std::pair<std::string, double>> deviationsInForce(const HammerParame
   std::vector<std::pair<std::string, double>> deviations;
   for (std::size_t i = 0; i < kHammerConstantCount; ++i)
     deviations.emplace_back(deviationKey(kHammerConstants[i]), inFile(kHammerConstants[i], parameters.deviations[i]));
-  for (const RodKey& k : kRodKeys) deviations.emplace_back(k.deviation, parameters.rod_deviation.*k.field);
+  for (const RodKey& k : kRodKeys) deviations.emplace_back(k.deviation, parameters.rod_std.*k.field);
   return deviations;
 }
 

@@ -46,7 +46,7 @@ void readHullMotion(ParameterReader& reader, PipelineSettings& s) {
     reader.addProblem("hull_motion: model, must be unmeasured, fixed or imu with a boom that is none or rigid");
   const double x = reader.number("imu_x_m", "m", kPlace), y = reader.number("imu_y_m", "m", kPlace);
   s.imu.position = {x, y, reader.number("imu_z_m", "m", kPlace)};
-  s.imu.position_deviation = reader.number("imu_position_deviation_m", "m", NumberRule::within(0.0, 10.0));
+  s.imu.position_std = reader.number("imu_position_std_m", "m", NumberRule::within(0.0, 10.0));
   const double roll = reader.number("imu_roll_rad", "rad", kTurned),
                pitch = reader.number("imu_pitch_rad", "rad", kTurned);
   s.imu.rotation = rotationOf(roll, pitch, reader.number("imu_yaw_rad", "rad", kTurned));
@@ -102,10 +102,10 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", NumberRule::within(1e-3, 1e6));
   s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", NumberRule::within(0.0, 1e3));
   s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", NumberRule::within(0.0, 1.0));
-  s.initial_torque_deviation =
-      reader.number("initial_torque_deviation_rad_s2", "rad/s2", NumberRule::within(1e-3, 1e6));
-  s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", NumberRule::within(0.0, 10.0));
-  s.torque_deviation_part = reader.number("torque_deviation_part", "", NumberRule::within(0.0, 1.0));
+  s.initial_torque_std =
+      reader.number("initial_torque_std_rad_s2", "rad/s2", NumberRule::within(1e-3, 1e6));
+  s.initial_inertia_std = reader.number("initial_inertia_std", "", NumberRule::within(0.0, 10.0));
+  s.torque_std_part = reader.number("torque_std_part", "", NumberRule::within(0.0, 1.0));
   s.near_blow = kDegree * reader.number("near_blow_deg", "deg", NumberRule::within(0.0, 89.0));
   s.stale_after = reader.number("stale_after_s", "s", kAge);
   s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", NumberRule::within(1.0, 1e4));

@@ -114,9 +114,9 @@ struct PipelineSettings {
   double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
   double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0
   double inertia_walk{};               ///< relative to the drive inertia [1/sqrt(s)], >= 0
-  double initial_torque_deviation{};   ///< of the net torque per rocker inertia about D [rad/s2], > 0
-  double initial_inertia_deviation{};  ///< relative to the drive inertia [-], >= 0
-  double torque_deviation_part{};      ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
+  double initial_torque_std{};   ///< of the net torque per rocker inertia about D [rad/s2], > 0
+  double initial_inertia_std{};  ///< relative to the drive inertia [-], >= 0
+  double torque_std_part{};      ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
   double near_blow{};                  ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
   double stale_after{};                ///< no crank sample for longer: nothing is published [s], > 0
   double max_crank_speed{};            ///< a faster sample is implausible [rad/s], > 0

@@ -44,14 +44,14 @@ constexpr LinkageKey kLinkageKeys[] = {
 
 constexpr CylinderKey kOptionalKeys[] = {
     {"friction", "", &CylinderParameters::friction},
-    {"friction_deviation", "", &CylinderParameters::friction_deviation},
+    {"friction_std", "", &CylinderParameters::friction_std},
     {"friction_force_N", "N", &CylinderParameters::friction_force},
-    {"friction_force_deviation_N", "N", &CylinderParameters::friction_force_deviation},
-    {"stiffness_deviation", "", &CylinderParameters::stiffness_deviation},
+    {"friction_force_std_N", "N", &CylinderParameters::friction_force_std},
+    {"stiffness_std", "", &CylinderParameters::stiffness_std},
     {"joint_zero_rad", "rad", &CylinderParameters::joint_zero},
-    {"joint_zero_deviation_rad", "rad", &CylinderParameters::joint_zero_deviation},
+    {"joint_zero_std_rad", "rad", &CylinderParameters::joint_zero_std},
     {"pressure_offset_Pa", "Pa", &CylinderParameters::pressure_offset},
-    {"pressure_offset_deviation_Pa", "Pa", &CylinderParameters::pressure_offset_deviation},
+    {"pressure_offset_std_Pa", "Pa", &CylinderParameters::pressure_offset_std},
 };
 
 std::optional<BucketLinkageParameters> readLinkage(ParameterReader& reader, const std::string& name) {
@@ -90,8 +90,8 @@ WeighedLink readWeighed(ParameterReader& reader, const std::string& name) {
   link.mass = number("mass_kg", "kg");
   link.com_x = number("com_x_m", "m"), link.com_z = number("com_z_m", "m");
   link.inertia = number("inertia_kg_m2", "kg m2");
-  link.moment_x_deviation = number("moment_x_deviation_kg_m", "kg m");
-  link.moment_z_deviation = number("moment_z_deviation_kg_m", "kg m");
+  link.moment_x_std = number("moment_x_std_kg_m", "kg m");
+  link.moment_z_std = number("moment_z_std_kg_m", "kg m");
   return link;
 }
 
@@ -157,10 +157,10 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
   readOil(reader, !p.cylinders.empty(), p);
   if (reader.given("weighed_links"))
     for (const std::string& name : reader.names("weighed_links")) p.chain.weighed.push_back(readWeighed(reader, name));
-  if (reader.given("link_mass_deviation"))
-    p.link_mass_deviation = reader.number("link_mass_deviation", "", NumberRule::within(0.0, 1.0));
-  if (reader.given("link_com_deviation_m"))
-    p.link_com_deviation = reader.number("link_com_deviation_m", "m", NumberRule::within(0.0, 10.0));
+  if (reader.given("link_mass_std"))
+    p.link_mass_std = reader.number("link_mass_std", "", NumberRule::within(0.0, 1.0));
+  if (reader.given("link_com_std_m"))
+    p.link_com_std = reader.number("link_com_std_m", "m", NumberRule::within(0.0, 10.0));
   if (reader.given("sections")) {
     for (const std::string& name : reader.names("sections")) p.sections.push_back(readSection(reader, name));
   }
@@ -178,8 +178,8 @@ bool hasBoomKey(const ParameterMap& parameters) {
                                    "rigid_tolerance",
                                    "sections",
                                    "weighed_links",
-                                   "link_mass_deviation",
-                                   "link_com_deviation_m",
+                                   "link_mass_std",
+                                   "link_com_std_m",
                                    "support_front_x_m",
                                    "support_front_half_width_m",
                                    "support_rear_x_m",

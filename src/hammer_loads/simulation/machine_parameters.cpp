@@ -151,7 +151,7 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   s.seals.constant = reader.number("machine_seal_constant", "", NumberRule::within(0.0, 0.2));
   s.rock.stiffness = reader.number("rock_stiffness_N_m", "N/m", kNotNegative);
   s.rock.damping = reader.number("rock_damping_s_m", "s/m", kNotNegative);
-  s.rock.press_force = reader.number("press_force_N", "N", kNotNegative);
+  s.rock.hold_down_force = reader.number("hold_down_force_N", "N", kNotNegative);
   s.imu.rate = reader.number("imu_rate_Hz", "Hz", kNotNegative);
   s.imu.x = reader.number("imu_x_m", "m", kAny);
   s.imu.z = reader.number("imu_z_m", "m", kAny);

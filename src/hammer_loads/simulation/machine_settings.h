@@ -149,7 +149,7 @@ struct PressureSensors {
 struct RockSettings {
   double stiffness{};    ///< of rock and tool [N/m]; 0: no rock, the hull hangs free
   double damping{};      ///< the spring's force counts 1 + this times the speed of going down [s/m]
-  double press_force{};  ///< of the operator on the hull before it works [N], >= 0
+  double hold_down_force{};  ///< of the operator on the hull before it works [N], >= 0
 };
 
 /// Seals of the boom's cylinders: against the rod's speed v, force = (constant P + friction |F|) (1 + breakaway

@@ -37,7 +37,7 @@ double HammerOnBoom::rockHeight(const Hold& hold) const {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return 0.0;
   const Eigen::Vector3d lift = foot(hold.state, hold.state).lift.head<3>();
-  return rock.press_force * (1.0 / rock.stiffness + lift.cwiseAbs2().cwiseQuotient(hold.stiffness).sum());
+  return rock.hold_down_force * (1.0 / rock.stiffness + lift.cwiseAbs2().cwiseQuotient(hold.stiffness).sum());
 }
 
 /// At the start, at rest, with steps that are short enough for the rock.
@@ -45,7 +45,7 @@ void HammerOnBoom::standOnRock() {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return;
   const Eigen::Vector3d lift = foot(hold_.state, hold_.state).lift.head<3>();
-  now_.x.head<3>() += rock.press_force * lift.cwiseQuotient(hold_.stiffness);
+  now_.x.head<3>() += rock.hold_down_force * lift.cwiseQuotient(hold_.stiffness);
   const Eigen::Matrix3d M = massMatrix(heldBodies(hold_.state)).topLeftCorner<3, 3>();
   const double mass = 1.0 / lift.dot(M.ldlt().solve(lift));
   step_ = std::min(step_, kTwoPi * std::sqrt(mass / rock.stiffness) / kStepsPerSwing);

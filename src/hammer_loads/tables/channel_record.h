@@ -15,7 +15,7 @@ struct ChannelCount {
   double least{}, greatest{};  ///< the grid's ends, in the channel's unit
   std::uint64_t classes{};
   std::uint64_t samples{}, skipped{}, below{}, above{}, gaps{};
-  double minimum{}, maximum{}, mean_deviation{}, range_own_deviation{}, range_common_deviation{};
+  double minimum{}, maximum{}, mean_std{}, range_own_std{}, range_systematic_std{};
   double sn_knee_range{RunRecord::kUnknown};  ///< [MPa]
   double sn_knee_cycles{RunRecord::kUnknown}, sn_slope{RunRecord::kUnknown}, sn_slope_below{RunRecord::kUnknown};
   double mean_stress_sensitivity{RunRecord::kUnknown};
@@ -25,7 +25,7 @@ struct ChannelCount {
 };
 
 struct ChannelRecord {
-  std::string name;  ///< topic/field or topic/name/field, stress/NAME_MPa of a hot spot; its end is its unit
+  std::string name;  ///< topic/field or topic/name/field, stress/NAME of a hot spot; its end is its unit
   std::optional<ChannelCount> count;
 
   std::string unit() const { return name.substr(name.rfind('_') + 1); }
@@ -36,7 +36,7 @@ struct TurnLoad {
   std::uint64_t turn{};
   std::int64_t channel{};
   double minimum{}, maximum{}, mean{};
-  double minimum_deviation{}, maximum_deviation{}, minimum_common_deviation{}, maximum_common_deviation{};
+  double minimum_std{}, maximum_std{}, minimum_systematic_std{}, maximum_systematic_std{};
 };
 
 /// Share of one source in the variance of a figure.

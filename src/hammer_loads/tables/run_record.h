@@ -31,8 +31,8 @@ struct RunRecord {
   double duration{};                                    ///< between published samples, gaps left out [s]
   std::string level;                                    ///< pulse, rocker or linkage
   std::uint64_t samples{}, published{}, restarts{}, turns{}, blows{}, backward_passes{};
-  std::uint64_t blank_strokes{}, judged_blows{};
-  std::optional<std::uint64_t> unpressed_blows;  ///< of the judged ones; nothing where none was
+  std::uint64_t blank_firings{}, judged_blows{};
+  std::optional<std::uint64_t> blows_without_hold_down;  ///< of the judged ones; nothing where none was
   double still_time{kUnknown};                   ///< hammering without penetration [s]
   double hull_pitch{kUnknown};                   ///< at the end of the run [rad]
   double consistency{kUnknown};
@@ -40,7 +40,7 @@ struct RunRecord {
   double speed_noise{kUnknown};              ///< [rad/s]
   double angle_resolution{kUnknown};         ///< [rad]
   double drive_inertia{kUnknown};            ///< [kg m2]
-  double drive_inertia_deviation{kUnknown};  ///< relative [-]
+  double drive_inertia_std{kUnknown};  ///< relative [-]
   double equivalent_cycles_per_hour{kUnknown};
   std::vector<Parameter> parameters;
   std::vector<Refusals> refusals;

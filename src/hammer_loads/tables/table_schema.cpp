@@ -17,23 +17,23 @@ constexpr char kTables[] = R"(
 CREATE TABLE runs(
   run_id INTEGER PRIMARY KEY, run_key TEXT NOT NULL UNIQUE, input_sha256 TEXT NOT NULL, parameters_sha256 TEXT NOT NULL,
   machine TEXT NOT NULL, version TEXT NOT NULL, revision TEXT NOT NULL, parameters_yaml TEXT NOT NULL,
-  first_stamp_ns INTEGER, last_stamp_ns INTEGER, duration_s REAL,
+  first_stamp_ns INTEGER, last_stamp_ns INTEGER, duration REAL,
   level TEXT, samples INTEGER, published INTEGER, restarts INTEGER, turns INTEGER, blows INTEGER, backward_passes INTEGER,
-  consistency REAL, timing_noise_s REAL, speed_noise_rad_s REAL, angle_resolution_rad REAL, drive_inertia_kg_m2 REAL,
-  drive_inertia_deviation REAL, equivalent_cycles_per_hour REAL,
-  blank_strokes INTEGER, judged_blows INTEGER, unpressed_blows INTEGER, still_time_s REAL, hull_pitch_rad REAL);
+  consistency REAL, timing_noise REAL, speed_noise REAL, angle_resolution REAL, drive_inertia REAL,
+  drive_inertia_std REAL, equivalent_cycles_per_hour REAL,
+  blank_firings INTEGER, judged_blows INTEGER, blows_without_hold_down INTEGER, still_time REAL, hull_pitch REAL);
 CREATE TABLE parameters(run_id INTEGER, key TEXT, value TEXT, shipped TEXT, PRIMARY KEY(run_id, key)) WITHOUT ROWID;
 CREATE TABLE refusals(run_id INTEGER, reason TEXT, count INTEGER, PRIMARY KEY(run_id, reason)) WITHOUT ROWID;
 CREATE TABLE warnings(run_id INTEGER, place INTEGER, key TEXT, text TEXT, PRIMARY KEY(run_id, place)) WITHOUT ROWID;
 CREATE TABLE channels(
   run_id INTEGER, channel INTEGER, name TEXT, unit TEXT, counted INTEGER, least REAL, greatest REAL, classes INTEGER,
   samples INTEGER, skipped INTEGER, below INTEGER, above INTEGER, gaps INTEGER,
-  minimum REAL, maximum REAL, mean_deviation REAL, range_own_deviation REAL, range_common_deviation REAL,
-  sn_knee_range_MPa REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL, mean_stress_sensitivity REAL,
+  minimum REAL, maximum REAL, mean_std REAL, range_own_std REAL, range_systematic_std REAL,
+  sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL, mean_stress_sensitivity REAL,
   PRIMARY KEY(run_id, channel)) WITHOUT ROWID;
 CREATE TABLE turn_loads(
-  run_id INTEGER, turn INTEGER, channel INTEGER, minimum REAL, maximum REAL, mean REAL, minimum_deviation REAL,
-  maximum_deviation REAL, minimum_common_deviation REAL, maximum_common_deviation REAL,
+  run_id INTEGER, turn INTEGER, channel INTEGER, minimum REAL, maximum REAL, mean REAL, minimum_std REAL,
+  maximum_std REAL, minimum_systematic_std REAL, maximum_systematic_std REAL,
   PRIMARY KEY(run_id, turn, channel)) WITHOUT ROWID;
 CREATE TABLE cycles(
   run_id INTEGER, channel INTEGER, steps INTEGER, low INTEGER, count INTEGER,
@@ -42,17 +42,17 @@ CREATE TABLE residues(
   run_id INTEGER, channel INTEGER, place INTEGER, class INTEGER,
   PRIMARY KEY(run_id, channel, place)) WITHOUT ROWID;
 CREATE TABLE boom_cylinders(
-  run_id INTEGER, turn INTEGER, cylinder TEXT, joint_angle_rad REAL, stiffness_ratio REAL,
-  stiffness_ratio_deviation REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder)) WITHOUT ROWID;
+  run_id INTEGER, turn INTEGER, cylinder TEXT, joint_angle REAL, stiffness_ratio REAL,
+  stiffness_ratio_std REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder)) WITHOUT ROWID;
 CREATE TABLE boom_modes(
-  run_id INTEGER, turn INTEGER, mode INTEGER, frequency_Hz REAL, frequency_deviation_Hz REAL, damping_ratio REAL,
-  damping_ratio_deviation REAL, PRIMARY KEY(run_id, turn, mode)) WITHOUT ROWID;
+  run_id INTEGER, turn INTEGER, mode INTEGER, frequency REAL, frequency_std REAL, damping_ratio REAL,
+  damping_ratio_std REAL, PRIMARY KEY(run_id, turn, mode)) WITHOUT ROWID;
 CREATE TABLE budget(
   run_id INTEGER, quantity TEXT, value REAL, deviation REAL, source TEXT, share REAL,
   PRIMARY KEY(run_id, quantity, source)) WITHOUT ROWID;
 CREATE TABLE traces(
-  run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time_s REAL, force_x_N REAL, force_z_N REAL, torque_y_Nm REAL,
-  force_z_deviation_N REAL, crank_angle_rad REAL, PRIMARY KEY(run_id, kind, place)) WITHOUT ROWID;
+  run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time REAL, force_x REAL, force_z REAL, torque_y REAL,
+  force_z_std REAL, crank_angle REAL, PRIMARY KEY(run_id, kind, place)) WITHOUT ROWID;
 )";
 
 std::string turnTable(const std::string& name, const std::vector<TableColumn>& columns) {

@@ -55,8 +55,8 @@ void TableWriter::blow(std::int64_t run, const TurnRow& row) { blows_->add(run, 
 
 void TableWriter::turnLoad(std::int64_t run, const TurnLoad& load) {
   turn_load_->run(run, load.turn, load.channel, finite(load.minimum), finite(load.maximum), finite(load.mean),
-                  finite(load.minimum_deviation), finite(load.maximum_deviation), finite(load.minimum_common_deviation),
-                  finite(load.maximum_common_deviation));
+                  finite(load.minimum_std), finite(load.maximum_std), finite(load.minimum_systematic_std),
+                  finite(load.maximum_systematic_std));
 }
 
 void TableWriter::boomCylinder(std::int64_t run, const BoomCylinderRow& row) {
@@ -65,8 +65,8 @@ void TableWriter::boomCylinder(std::int64_t run, const BoomCylinderRow& row) {
 }
 
 void TableWriter::boomMode(std::int64_t run, const BoomModeRow& row) {
-  boom_mode_->run(run, row.turn, row.mode, finite(row.frequency), finite(row.frequency_deviation), finite(row.damping),
-                  finite(row.damping_deviation));
+  boom_mode_->run(run, row.turn, row.mode, finite(row.frequency), finite(row.frequency_std), finite(row.damping),
+                  finite(row.damping_std));
 }
 
 void TableWriter::channel(std::int64_t run, std::int64_t number, const ChannelRecord& record) {
@@ -80,7 +80,7 @@ void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRec
   Statement(database_, insertSql("channels", 23).c_str())
       .run(run, channel, record.name, record.unit(), std::int64_t{1}, finite(c.least), finite(c.greatest), c.classes,
            c.samples, c.skipped, c.below, c.above, c.gaps, finite(c.minimum), finite(c.maximum),
-           finite(c.mean_deviation), finite(c.range_own_deviation), finite(c.range_common_deviation),
+           finite(c.mean_std), finite(c.range_own_std), finite(c.range_systematic_std),
            finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope), finite(c.sn_slope_below),
            finite(c.mean_stress_sensitivity));
   Statement cycle(database_, insertSql("cycles", 5).c_str());
@@ -105,7 +105,7 @@ void TableWriter::trace(std::int64_t run, const std::string& kind, const TurnTra
   std::int64_t place = 0;
   for (const TraceSample& s : trace.samples)
     insert.run(run, kind, trace.turn, place++, seconds(s.stamp - trace.start), finite(s.force_x), finite(s.force_z),
-               finite(s.torque_y), finite(s.force_z_deviation), finite(s.crank_angle));
+               finite(s.torque_y), finite(s.force_z_std), finite(s.crank_angle));
 }
 
 void TableWriter::run(std::int64_t run, const RunRecord& r) {
@@ -114,8 +114,8 @@ void TableWriter::run(std::int64_t run, const RunRecord& r) {
       .run(run, key, r.input_sha256, r.parameters_sha256, r.machine, r.version, r.revision, r.parameters_yaml,
            r.first_stamp, r.last_stamp, finite(r.duration), r.level, r.samples, r.published, r.restarts, r.turns,
            r.blows, r.backward_passes, finite(r.consistency), finite(r.timing_noise), finite(r.speed_noise),
-           finite(r.angle_resolution), finite(r.drive_inertia), finite(r.drive_inertia_deviation),
-           finite(r.equivalent_cycles_per_hour), r.blank_strokes, r.judged_blows, r.unpressed_blows,
+           finite(r.angle_resolution), finite(r.drive_inertia), finite(r.drive_inertia_std),
+           finite(r.equivalent_cycles_per_hour), r.blank_firings, r.judged_blows, r.blows_without_hold_down,
            finite(r.still_time), finite(r.hull_pitch));
   Statement parameter(database_, insertSql("parameters", 4).c_str());
   for (const RunRecord::Parameter& p : r.parameters) parameter.run(run, p.key, p.value, p.shipped);

@@ -32,8 +32,8 @@ struct BoomCylinderRow {
 struct BoomModeRow {
   std::uint64_t turn{};
   std::int64_t mode{};
-  double frequency{}, frequency_deviation{};  ///< [Hz]
-  double damping{}, damping_deviation{};      ///< [-]
+  double frequency{}, frequency_std{};  ///< [Hz]
+  double damping{}, damping_std{};      ///< [-]
 };
 
 /// Nothing throws: problem() says what went wrong first, and all after it does nothing.

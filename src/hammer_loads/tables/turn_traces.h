@@ -11,7 +11,7 @@ namespace hammer_loads {
 struct TraceSample {
   std::int64_t stamp{};  ///< [ns]
   double force_x{}, force_z{}, torque_y{};
-  double force_z_deviation{};
+  double force_z_std{};
   double crank_angle{};
 };
 

@@ -22,7 +22,7 @@ from ._native import Boom, Hammer, support_impulse
 __all__ = ["Boom", "Hammer", "count_cycles", "read_database", "support_impulse"]
 
 _WRENCH = ["hull_force_x_N", "hull_force_z_N", "hull_torque_y_Nm"]
-_TURN = ["crank_angle_deg", "time_s", "force_x_N", "force_z_N", "torque_y_Nm"]
+_TURN = ["crank_angle_deg", "time_s", "force_x", "force_z", "torque_y"]
 _DATABASES = (0x484C5242, 0x484C4C31, 0x484C5246)  # application_id of process_bag --db, a ledger, the fleet
 _LARGEST_ANGLE = 4e8  # [rad]
 _PATIENCE = 5.0  # [s] until another user of a database gives it back
@@ -84,7 +84,7 @@ def _wrenches(self, angle, speed, acceleration=0.0, *, pitch=None, gravity=None,
     shape = states[0].shape
     angle, speed, acceleration, pitches = (np.ascontiguousarray(state).ravel() for state in states)
     if (np.abs(angle) > _LARGEST_ANGLE).any():
-        raise ValueError("crank_angle_rad: must be a number of size <= 4e8 rad")
+        raise ValueError("crank_angle: must be a number of size <= 4e8 rad")
     if pitch is None or given[3].ndim == 0:
         loads = self._loads(angle, speed, acceleration, _weight(self, pitch, gravity), level, pins)
     else:  # loads are linear in gravity: those without it and those of each of its components
@@ -99,7 +99,7 @@ def _turn(self, speed=31.416, *, step_deg=1.0, pitch=None, gravity=None, level=N
     """Returns one revolution at constant crank speed, as the command turn_table does.
 
     speed [rad/s], step_deg [deg]: of the crank. pitch [rad], gravity [m/s2], level, pins: as in wrenches().
-    The result has arrays crank_angle_deg, time_s, force_x_N, force_z_N, torque_y_Nm. The first row is just after a blow,
+    The result has arrays crank_angle_deg, time_s, force_x, force_z, torque_y. The first row is just after a blow,
     the last one just before the next.
     """
     rows = self._turn(_number("speed", speed, "rad/s", 0.0), _number("step_deg", step_deg, "deg", 1e-6, 360.0),
@@ -111,8 +111,8 @@ def _pulse(self, speed=31.416, *, pitch=None, gravity=None, level=None):
     """Returns the force pulse of one revolution at constant crank speed, as turn_table --summary.
 
     speed [rad/s]: of the crank. pitch [rad], gravity [m/s2], level: as in wrenches().
-    The result has amplitude_N, peak_angle_deg, impulse_Ns, frequency_rad_s, start_s, turn_impulse_x_Ns,
-    turn_impulse_z_Ns.
+    The result has amplitude, peak_angle_deg, impulse, angular_frequency, start, turn_impulse_x,
+    turn_impulse_z.
     """
     return self._pulse(_number("speed", speed, "rad/s", 0.0), _weight(self, pitch, gravity), level)
 
@@ -122,7 +122,7 @@ def _blow(self, crank_speed, crank_speed_after=None, *, level=None):
 
     crank_speed, crank_speed_after [rad/s]: before and after the blow; the crank keeps its speed unless the second is given.
     level: as in wrenches().
-    The result has the fields of message Blow: speeds [rad/s], restitution [-], energy_J, impulses [N s]. The support
+    The result has the fields of message Blow: speeds [rad/s], restitution [-], energy, impulses [N s]. The support
     impulse is by the rocker on the hull at its pivot.
     """
     before = _number("crank_speed", crank_speed, "rad/s", 0.0)
