@@ -7,18 +7,12 @@ from report.boom_health import OF_TURNS
 from report.database import RECORDING, Database
 from report.problem import Problem
 from report.quantities import QUANTITIES, value_of
-from store import SCHEMA
+from store import COLUMN_TEXT
 
 # Copied as they are, with another run_id.
 COPIED = ["refusals", "warnings", "channels", "cycles", "residues"]
 OPTIONAL = {"turns": ["turns", "blows"]}
 OUTCOME = ("machine", "bag", "status", "reason", "input_sha256", "parameters_sha256")
-
-
-def definition_of(table):
-    """SQL of a table that targets of older versions do not have yet."""
-    text = SCHEMA.read_text(encoding="utf-8")
-    return text[text.index(f"CREATE TABLE {table}("):].split(";")[0]
 
 
 def of_stamp(stamp_ns):
@@ -43,8 +37,6 @@ class Loader:
 
     def __init__(self, store, rows=None):
         self.store, self.tables = store, COPIED + OPTIONAL.get(rows, [])
-        if not store.columns("run_cylinders"):
-            store.execute(definition_of("run_cylinders"))
         self._next_run = (store.row("SELECT max(run_id) FROM runs")[0] or 0) + 1
         self._next_bag = (store.row("SELECT max(bag_id) FROM bags")[0] or 0) + 1
         self._columns = {}
@@ -123,11 +115,18 @@ class Loader:
             self._add_cylinders(source, own, run_id)
         for table in self.tables:
             self._copy(source, table, first - 1)
+        self._describe(source)
+
+    def _describe(self, source):
+        """Units and descriptions of the columns that were copied."""
+        if "columns" not in source.tables():
+            return
+        known = set(self.store.rows("SELECT table_name, column_name FROM columns"))
+        self.store.insert("columns", COLUMN_TEXT, [
+            row for row in source.rows("SELECT table_name, column_name, unit, description FROM columns")
+            if row[:2] not in known and row[0] in ["runs", *self.tables] and row[1].lower() in self._columns_of(row[0])])
 
     def _add_cylinders(self, source, own, run_id):
-        """Databases of older versions have none."""
-        if not source.columns("boom_cylinders"):
-            return
         self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_std",
                                             "doubtful"],
                           [(run_id, *row) for row in source.rows(OF_TURNS, own)])

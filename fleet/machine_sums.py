@@ -64,7 +64,7 @@ def write_channel(store, machine, channel, identity, latest):
                    *latest[1:], channel.cycles_per_hour,
                    cycles[-1][0] if cycles else 0.0, damage[0],
                    None if remaining is None or remaining == float("inf") else remaining)])
-    store.insert("machine_equivalents", ["machine_channel", "slope", "equivalent_range", "deviation"],
+    store.insert("machine_equivalents", ["machine_channel", "slope", "equivalent_range", "std"],
                  [(at, slope, *figure) for slope, figure in zip(SLOPES, channel.equivalents(cycles))])
     store.insert("machine_cycles", ["machine_channel", "steps", "low", "count"],
                  [(at, steps, low, n) for (steps, low), n in sorted(count.closed.items())])

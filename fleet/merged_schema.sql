@@ -1,10 +1,23 @@
 -- Tables of a merged file, SQLite or PostgreSQL. Rows of a run are those of process_bag --db with another run_id;
--- what many runs share (parameters) is there once. NULL: not determined.
+-- parameters that many runs share are there once. NULL: not determined. Comments of the form "[unit] description" are
+-- rows of the table columns; those of the columns that are copied come from the recordings.
 
-CREATE TABLE bags(                   -- every bag that was tried
-  bag_id INTEGER PRIMARY KEY, machine TEXT NOT NULL, bag TEXT NOT NULL, input_sha256 TEXT, parameters_sha256 TEXT,
-  status TEXT NOT NULL,              -- done, failed, or twice: its runs are in already, from another bag
-  reason TEXT, UNIQUE(machine, bag));
+CREATE TABLE columns(
+  table_name TEXT NOT NULL,   -- [-] name of a table
+  column_name TEXT NOT NULL,  -- [-] name of a column of it
+  unit TEXT,                  -- [-] unit of its numbers; channel: that of the channel in the same row
+  description TEXT,           -- [-] meaning of its values
+  PRIMARY KEY(table_name, column_name));
+
+CREATE TABLE bags(
+  bag_id INTEGER PRIMARY KEY,  -- [-] number of the bag
+  machine TEXT NOT NULL,       -- [-] name of the machine
+  bag TEXT NOT NULL,           -- [-] path of the bag in the machine's folder
+  input_sha256 TEXT,           -- [-] SHA-256 over the bytes of the bag
+  parameters_sha256 TEXT,      -- [-] SHA-256 over every parameter in force
+  status TEXT NOT NULL,        -- [-] done, failed, or twice: another bag has the same runs
+  reason TEXT,                 -- [-] reason of a failure
+  UNIQUE(machine, bag));
 
 CREATE TABLE parameter_sets(parameters_sha256 TEXT PRIMARY KEY, parameters_yaml TEXT NOT NULL);
 CREATE TABLE parameter_values(
@@ -28,13 +41,24 @@ CREATE VIEW parameters AS
 CREATE TABLE refusals(run_id INTEGER NOT NULL, reason TEXT NOT NULL, count BIGINT NOT NULL, PRIMARY KEY(run_id, reason));
 CREATE TABLE warnings(run_id INTEGER NOT NULL, place INTEGER NOT NULL, key TEXT, text TEXT, PRIMARY KEY(run_id, place));
 
-CREATE TABLE run_figures(            -- of all turns of a run; quantity: blow_rate, or a column of turns or blows
-  run_id INTEGER NOT NULL, quantity TEXT NOT NULL, count BIGINT NOT NULL, least DOUBLE PRECISION,
-  mean DOUBLE PRECISION, greatest DOUBLE PRECISION, total DOUBLE PRECISION, PRIMARY KEY(run_id, quantity));
+CREATE TABLE run_figures(
+  run_id INTEGER NOT NULL,    -- [-] number of the run
+  quantity TEXT NOT NULL,     -- [-] blow_rate [Hz], or a column of turns or blows
+  count BIGINT NOT NULL,      -- [-] number of turns with a value
+  least DOUBLE PRECISION,     -- [quantity] least value of a turn
+  mean DOUBLE PRECISION,      -- [quantity] mean over the turns
+  greatest DOUBLE PRECISION,  -- [quantity] greatest value of a turn
+  total DOUBLE PRECISION,     -- [quantity] sum over the turns
+  PRIMARY KEY(run_id, quantity));
 
-CREATE TABLE run_cylinders(          -- means over the turns of a run, doubtful: part of them whose damping no oil makes
-  run_id INTEGER NOT NULL, cylinder TEXT NOT NULL, turns BIGINT NOT NULL, stiffness_ratio DOUBLE PRECISION,
-  stiffness_ratio_std DOUBLE PRECISION, doubtful DOUBLE PRECISION, PRIMARY KEY(run_id, cylinder));
+CREATE TABLE run_cylinders(
+  run_id INTEGER NOT NULL,               -- [-] number of the run
+  cylinder TEXT NOT NULL,                -- [-] name of the cylinder
+  turns BIGINT NOT NULL,                 -- [-] number of turns
+  stiffness_ratio DOUBLE PRECISION,      -- [-] mean stiffness of its oil over that of the boom file
+  stiffness_ratio_std DOUBLE PRECISION,  -- [-] mean standard deviation
+  doubtful DOUBLE PRECISION,             -- [-] share of the turns whose damping is not that of oil
+  PRIMARY KEY(run_id, cylinder));
 
 CREATE TABLE channels(
   run_id INTEGER NOT NULL, channel INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT, counted INTEGER,
@@ -51,7 +75,9 @@ CREATE TABLE residues(
   PRIMARY KEY(run_id, channel, place));
 
 -- Machines that got a bag and whose sums are still to be written.
-CREATE TABLE stale_machines(machine TEXT PRIMARY KEY);
+CREATE TABLE stale_machines(
+  machine TEXT PRIMARY KEY  -- [-] name of the machine
+);
 
 -- Sums of a machine over all its runs: written anew for each machine that got a bag. Another hammer, boom or grid
 -- (identity, least, greatest, classes) is another row. remaining_hours NULL: no end in sight, or no S-N curve.
@@ -65,8 +91,11 @@ CREATE TABLE machine_channels(
   equivalent_cycles_per_hour DOUBLE PRECISION, largest_range DOUBLE PRECISION, damage DOUBLE PRECISION,
   remaining_hours DOUBLE PRECISION);
 CREATE TABLE machine_equivalents(
-  machine_channel INTEGER NOT NULL, slope DOUBLE PRECISION NOT NULL, equivalent_range DOUBLE PRECISION,
-  deviation DOUBLE PRECISION, PRIMARY KEY(machine_channel, slope));
+  machine_channel INTEGER NOT NULL,   -- [-] number of the channel of a machine
+  slope DOUBLE PRECISION NOT NULL,    -- [-] slope of the S-N line
+  equivalent_range DOUBLE PRECISION,  -- [channel] damage-equivalent range
+  std DOUBLE PRECISION,               -- [channel] standard deviation
+  PRIMARY KEY(machine_channel, slope));
 CREATE TABLE machine_cycles(
   machine_channel INTEGER NOT NULL, steps INTEGER NOT NULL, low INTEGER NOT NULL, count BIGINT NOT NULL,
   PRIMARY KEY(machine_channel, steps, low));

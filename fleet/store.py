@@ -1,5 +1,6 @@
 """A merged file: SQLite by a path, PostgreSQL by a connection URL; the same statements for both."""
 import itertools
+import re
 import os
 import pathlib
 import sqlite3
@@ -9,15 +10,18 @@ SCHEMA = pathlib.Path(__file__).resolve().parent / "merged_schema.sql"
 ROWS_AT_ONCE = 1000
 
 
-# Columns that older merged files of this version do not have.
-NEWER = [(table, column, "DOUBLE PRECISION") for table in ("channels", "machine_channels")
-         for column in ("range_own_std", "range_systematic_std")]
+def column_texts():
+    """Rows of the table `columns` by the comments of the schema."""
+    table, texts = None, []
+    for line in SCHEMA.read_text(encoding="utf-8").splitlines():
+        if begins := re.match(r"CREATE TABLE (\w+)\(", line):
+            table = begins[1]
+        elif column := re.match(r"\s+(\w+) .*-- \[([^\]]+)\] (.+)", line):
+            texts.append((table, *column.groups()))
+    return texts
 
 
-def add_newer_columns(store):
-    for table, column, kind in NEWER:
-        if column not in store.columns(table):
-            store.execute(f"ALTER TABLE {table} ADD COLUMN {column} {kind}")
+COLUMN_TEXT = ["table_name", "column_name", "unit", "description"]
 
 
 class BadStore(Exception):
@@ -47,13 +51,13 @@ class SqliteStore:
         if application == 0 and self.row("SELECT count(*) FROM sqlite_master") == (0,):
             for statement in SCHEMA.read_text(encoding="utf-8").split(";\n"):
                 self._connection.execute(statement)
+            self.insert("columns", COLUMN_TEXT, column_texts())
             self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
             self._connection.execute(f"PRAGMA user_version = {VERSION}")
         elif application != APPLICATION_ID:
             raise BadStore(f"{self.name}: is another database, no merged file")
         elif version != VERSION:
             raise BadStore(f"{self.name}: merged file of version {version}, this program writes version {VERSION}")
-        add_newer_columns(self)
         self.commit()
 
     def begin(self):
@@ -98,7 +102,7 @@ class PostgresStore:
         self.begin()
         if not self.columns("bags"):
             self._cursor.execute(SCHEMA.read_text(encoding="utf-8"))
-        add_newer_columns(self)
+            self.insert("columns", COLUMN_TEXT, column_texts())
         self.commit()
 
     def begin(self):

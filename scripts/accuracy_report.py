@@ -124,7 +124,7 @@ def budget_excerpt(machine):
     for quantity, text, factor, unit in BUDGETED:
         figure = figures[quantity]
         of_unit = [f"{factor * figure[key]:.{digits}g} {unit}"
-                   for key, digits in (("value", 4), ("deviation", 2), ("deviation_with_largest_halved", 2))]
+                   for key, digits in (("value", 4), ("std", 2), ("std_with_largest_halved", 2))]
         sources = ", ".join(f"`{one['source']}` {100 * one['share']:.0f} %" for one in figure["sources"][:3])
         lines.append(f"| {text} | " + " | ".join(of_unit) + f" | {sources} |")
     return "\n".join(lines) + "\n"

@@ -156,7 +156,7 @@ TEST_F(ShippedLinkage, IsADeadCentreWhereItsLinksDoNotReachEachOther) {
   for (double q = -3.1; q <= 3.1; q += 0.01) {
     const CylinderPosition at = cylinder.at(q);
     EXPECT_TRUE(std::isfinite(at.length) && std::isfinite(at.arm)) << q;
-    const CylinderLoad load = cylinder.load(at, 1e4);
+    const CylinderForce load = cylinder.load(at, 1e4);
     EXPECT_EQ(std::isnan(load.force), at.zero_moment_arm);
     EXPECT_TRUE(std::isfinite(cylinder.jointStiffness(at)));
     open += at.zero_moment_arm ? 1 : 0;

@@ -60,7 +60,7 @@ TEST_F(Cylinders, ForceDoesTheOppositeWorkOfTheLoad) {
     const Cylinder cylinder = make(p);
     for (double torque : {-7e3, 12e3}) {
       const CylinderPosition at = cylinder.at(limit(p, 0.4));
-      const CylinderLoad load = cylinder.load(at, torque);
+      const CylinderForce load = cylinder.load(at, torque);
       EXPECT_NEAR(load.force * at.arm, -torque, 1e-9);
       const double area = load.force > 0.0 ? cylinder.boreArea() : cylinder.rodArea();
       EXPECT_NEAR(load.pressure * area, std::abs(load.force), 1e-9);
@@ -109,13 +109,13 @@ TEST_F(Cylinders, DeadCentreIsReportedNotDividedBy) {
   const CylinderPosition at = cylinder.at(0.0);
   EXPECT_TRUE(at.zero_moment_arm);
   EXPECT_NEAR(cylinder.jointStiffness(at), 0.0, 1e-9);
-  const CylinderLoad load = cylinder.load(at, 1e4);
+  const CylinderForce load = cylinder.load(at, 1e4);
   EXPECT_TRUE(load.zero_moment_arm);
   EXPECT_TRUE(std::isnan(load.force));
   EXPECT_TRUE(std::isnan(load.pressure));
   // Next to it the force is finite and bounded by the ratio.
   for (double q = -0.5; q < 0.5; q += 1e-3) {
-    const CylinderLoad near = cylinder.load(cylinder.at(q), 1e4);
+    const CylinderForce near = cylinder.load(cylinder.at(q), 1e4);
     if (near.zero_moment_arm) continue;
     EXPECT_LE(std::abs(near.force), 1e4 / (Cylinder::kZeroMomentArmRatio * 1.0) * (1.0 + 1e-12));
   }

@@ -84,7 +84,7 @@ TEST_F(BoomBag, ReadsTheCylindersPressures) {
       for (std::size_t k = 0; k < 3; ++k) {
         const double area = 0.25 * kPi * cylinders[k].bore * cylinders[k].bore;
         const double rod_area = area - 0.25 * kPi * cylinders[k].rod * cylinders[k].rod;
-        const double force = (k == 2 ? kMore : 1.0) * without[i].cylinder_force[k];
+        const double force = (k == 2 ? kMore : 1.0) * without[i].cylinder[k].force;
         in.writePressures(without[i].header.stamp, cylinders[k].name, (force + kRod * rod_area) / area, kRod);
       }
     }
@@ -97,12 +97,12 @@ TEST_F(BoomBag, ReadsTheCylindersPressures) {
   for (std::size_t i = 5; i < with.size(); ++i) {
     ASSERT_TRUE(with[i].flags & JointLoads::FLAG_MEASURED) << i;
     ASSERT_FALSE(without[i].flags & JointLoads::FLAG_MEASURED);
-    hammer_cylinder.add(with[i].cylinder_force[2], kMore * without[i].cylinder_force[2]);
+    hammer_cylinder.add(with[i].cylinder[2].force, kMore * without[i].cylinder[2].force);
     for (std::size_t j = 0; j < 4; ++j) {
-      const double model = with[i].hammer_torque[j] + with[i].weight_torque[j] + with[i].motion_torque[j] +
-                           with[i].vibration_torque[j];
-      ASSERT_NEAR(with[i].total_torque[j], model + with[i].contact_torque[j], 1e-6);
-      ASSERT_EQ(without[i].contact_torque[j], 0.0);
+      const JointLoad& joint = with[i].joint[j];
+      const double model = joint.hammer_torque + joint.weight_torque + joint.motion_torque + joint.vibration_torque;
+      ASSERT_NEAR(joint.total_torque, model + joint.contact_torque, 1e-6);
+      ASSERT_EQ(without[i].joint[j].contact_torque, 0.0);
     }
   }
   EXPECT_LT(hammer_cylinder.rms(), 0.2 * (kMore - 1.0));
@@ -135,13 +135,13 @@ TEST_F(BoomBag, TellsWhatTheSteelOfAMachineOnSofterOilCarries) {
   for (const SectionLoads& loads : test::messagesIn<SectionLoads>(path("out.bag"), "/hammer_loads/section_loads")) {
     const StampNs stamp = stampOf(loads.header.stamp);
     for (std::size_t i = 0; stamp > from && i < 3; ++i)
-      section[i].add(loads.load[i].torque.y, truth.at(stamp)->cut[i].torque_y);
+      section[i].add(loads.section[i].load.torque.y, truth.at(stamp)->cut[i].torque_y);
   }
   for (const JointLoads& loads : test::messagesIn<JointLoads>(path("out.bag"), "/hammer_loads/joint_loads")) {
     const StampNs stamp = stampOf(loads.header.stamp);
     for (std::size_t i = 0; stamp > from && i < 3; ++i) {
-      const double weight = loads.weight_torque[i + 1];
-      torque[i].add(loads.total_torque[i + 1] - weight, -truth.at(stamp)->hold[static_cast<int>(i)] - weight);
+      const double weight = loads.joint[i + 1].weight_torque;
+      torque[i].add(loads.joint[i + 1].total_torque - weight, -truth.at(stamp)->hold[static_cast<int>(i)] - weight);
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {

@@ -7,7 +7,9 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <utility>
 
+#include "hammer_loads/life/channel_unit.h"
 #include "hammer_loads/ros/number_fields.h"
 #include "hammer_loads/tables/table_writer.h"
 #include "settings/temporary_file.h"
@@ -15,52 +17,102 @@
 namespace hammer_loads {
 namespace {
 
-using Tables = std::map<std::string, std::vector<std::string>>;  // columns in their order
+/// Table, column, unit, description.
+using Columns = std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>>;
 
-Tables documented() {
-  Tables tables;
+/// Tables `turns` and `blows` have every field of their message as well, which the page does not repeat; every table
+/// but `runs` and `columns` has run_id.
+Columns documented() {
+  Columns columns;
   std::string table;
   std::ifstream file(std::filesystem::path(HAMMER_LOADS_TEST_DATA) / "../../doc/tables.md");
   for (std::string line; std::getline(file, line);) {
     std::smatch found;
-    if (line.rfind("## ", 0) == 0) {
-      table = line.substr(3);
-      if (table != "runs") tables[table].push_back("run_id");
-    } else if (std::regex_match(line, found, std::regex(R"(\| (\w+) \| .+ \| .+ \|)")) && found[1] != "column") {
-      tables[table].push_back(found[1]);
+    if (line.rfind("## ", 0) == 0) table = line.substr(3);
+    if (std::regex_match(line, found, std::regex(R"(\| (\w+) \| (.+) \| (.+) \|)")) && found[1] != "column")
+      columns[{table, found[1]}] = {found[2], found[3]};
+  }
+  return columns;
+}
+
+class TablesPage : public testing::Test {
+ protected:
+  void SetUp() override {
+    TableWriter writer(file_.path(), numberFieldsOf<Pulse>().columns(), numberFieldsOf<Blow>().columns());
+    writer.finish();
+    ASSERT_EQ(writer.problem(), "");
+  }
+  std::vector<std::pair<std::string, std::string>> pairs(const char* sql) {
+    life::Database database(file_.path(), life::Database::Use::kRead, 0);
+    life::Database::Statement rows(database, sql);
+    std::vector<std::pair<std::string, std::string>> result;
+    while (rows.step()) result.emplace_back(rows.text(0), rows.text(1));
+    return result;
+  }
+  const test::TemporaryFile file_{"", ".sqlite"};
+};
+
+TEST_F(TablesPage, EveryColumnHasUnitAndDescription) {
+  EXPECT_EQ(pairs("SELECT table_name, column_name FROM columns ORDER BY 1, 2"),
+            pairs("SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c WHERE m.type = 'table' "
+                  "ORDER BY 1, 2"));
+  EXPECT_TRUE(pairs("SELECT table_name, column_name FROM columns WHERE length(description) < 5").empty());
+  EXPECT_EQ(pairs("SELECT unit, description FROM columns WHERE table_name = 'blows' AND column_name = 'energy'")[0].first,
+            "J");
+}
+
+TEST_F(TablesPage, StatesUnitAndDescriptionAsTheDatabase) {
+  Columns page = documented();
+  life::Database database(file_.path(), life::Database::Use::kRead, 0);
+  life::Database::Statement rows(database, "SELECT table_name, column_name, unit, description FROM columns");
+  std::size_t compared = 0;
+  while (rows.step()) {
+    const std::string table = rows.text(0), column = rows.text(1);
+    const bool of_message = (table == "turns" || table == "blows") && column != "turn" && column != "stamp_ns";
+    if (of_message || (column == "run_id" && table != "runs")) continue;
+    EXPECT_EQ((page[{table, column}]), std::make_pair(rows.text(2), rows.text(3))) << table << '.' << column;
+    ++compared;
+  }
+  EXPECT_EQ(page.size(), compared) << "the page has columns that no table has";
+}
+
+/// {field: unit} of a file in msg/.
+std::map<std::string, std::string> unitsOf(const std::filesystem::path& message) {
+  std::map<std::string, std::string> units;
+  std::ifstream file(message);
+  const std::regex field(R"(\S*float64\S* (\w+)\s*(?:# \[([^\]]+)\] .+)?)");
+  for (std::string line; std::getline(file, line);) {
+    std::smatch found;
+    if (std::regex_match(line, found, field)) units[found[1]] = found[2];
+  }
+  return units;
+}
+
+const std::filesystem::path kMessages = std::filesystem::path(HAMMER_LOADS_TEST_DATA) / "../../msg";
+
+TEST(Messages, StateTheUnitOfEveryNumber) {
+  std::size_t fields = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kMessages)) {
+    for (const auto& [field, unit] : unitsOf(entry.path())) {
+      EXPECT_NE(unit, "") << entry.path() << ' ' << field;
+      ++fields;
     }
   }
-  return tables;
+  EXPECT_GT(fields, 100U);
 }
 
-Tables made() {
-  const test::TemporaryFile file("", ".sqlite");
-  {
-    TableWriter writer(file.path(), numberFieldsOf<Pulse>().columns(), numberFieldsOf<Blow>().columns());
-    writer.finish();
-    EXPECT_EQ(writer.problem(), "");
-  }
-  Tables tables;
-  life::Database database(file.path(), life::Database::Use::kRead, 0);
-  life::Database::Statement columns(
-      database,
-      "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c WHERE m.type = 'table' "
-      "ORDER BY m.name, c.cid");
-  while (columns.step()) tables[columns.text(0)].push_back(columns.text(1));
-  EXPECT_EQ(database.problem(), "");
-  return tables;
-}
-
-TEST(TablesPage, NamesEveryTableAndColumn) {
-  Tables page = documented();
-  ASSERT_EQ(page.size(), 14U);
-  // Of these the page leaves what the messages say.
-  for (const auto& [table, fields] : {std::make_pair("turns", numberFieldsOf<Pulse>().columns()),
-                                      std::make_pair("blows", numberFieldsOf<Blow>().columns())}) {
-    for (const TableColumn& column : fields)
-      if (column.name != "turn") page[table].push_back(column.name);
-  }
-  EXPECT_EQ(made(), page);
+TEST(ChannelUnit, IsThatOfTheMessagesField) {
+  const auto of = [](const char* message) { return unitsOf(kMessages / message); };
+  for (const char* field : {"force_x", "force_z", "torque_y"})
+    EXPECT_EQ(life::unitOf(std::string("hull_wrench/") + field), of("HullLoads.msg").at(field)) << field;
+  EXPECT_EQ(life::unitOf("joint_loads/arm_joint/total_torque"), of("JointLoad.msg").at("total_torque"));
+  EXPECT_EQ(life::unitOf("joint_loads/arm_cylinder/force"), of("CylinderLoad.msg").at("force"));
+  EXPECT_EQ(life::unitOf("section_loads/torque_tube/force_x"), "N") << "a section's name says nothing of the unit";
+  EXPECT_EQ(life::unitOf("stress/toe"), "MPa");
+  for (const char* field : {"amplitude", "impulse", "turn_impulse_x", "turn_impulse_z"})
+    EXPECT_EQ(life::unitOf(std::string("pulse/") + field), of("Pulse.msg").at(field)) << field;
+  for (const char* field : {"energy", "restitution"})
+    EXPECT_EQ(life::unitOf(std::string("blow/") + field), of("Blow.msg").at(field)) << field;
 }
 
 TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {

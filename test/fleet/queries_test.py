@@ -92,7 +92,7 @@ class Queries(MergeTest):
                          [("boom_cylinder", month, "1") for month in ("2023-11", "2023-12", "2024-02")])
         for row, change in zip(rows, (0.0, -2.0, -20.0)):
             self.assertAlmostEqual(float(row["change_percent"]), change, delta=0.2)
-            self.assertAlmostEqual(float(row["deviation"]), 0.01, delta=1e-6)
+            self.assertAlmostEqual(float(row["std"]), 0.01, delta=1e-6)
 
     def test_a_target_of_an_older_version_takes_the_booms_health(self):
         self.ask("DROP TABLE run_cylinders")

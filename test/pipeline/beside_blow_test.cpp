@@ -133,7 +133,7 @@ TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsSaidToBeDoubtful) {
         pipeline.crankSample(session.crank[i].stamp, {session.crank[i].angle, session.crank[i].speed});
     const double offset = r.crank.position.angle.offset;
     if (!r.isPublished() || session.truth[i].time < 4.0 || offset < 0.0) continue;
-    if (offset > 0.5) said_later = std::max(said_later, r.contact_doubt.force_x);
+    if (offset > 0.5) said_later = std::max(said_later, std::abs(r.contact_doubt.force_x));
     if (offset > 0.1) continue;
     square_error += square(r.wrench.force_x - session.truth[i].load.force_x);
     square_said += square(r.deviation.wrench.force_x);

@@ -17,8 +17,9 @@ from report.subjects import subjects_of
 def with_budget(path, rows, restarts=0):
     sample.make(path, seconds=20.0, boom=False, restarts=restarts)
     db = sqlite3.connect(str(path))
-    db.execute("CREATE TABLE budget(run_id INTEGER, quantity TEXT, value REAL, deviation REAL, source TEXT, share REAL)")
-    db.executemany("INSERT INTO budget VALUES(1,?,?,?,?,?)", rows)
+    db.execute("CREATE TABLE budget(run_id INTEGER, quantity TEXT, unit TEXT, value REAL, std REAL, source TEXT, share REAL)")
+    db.executemany("INSERT INTO budget VALUES(1,?,?,?,?,?,?)",
+                   [(quantity, sample.unit_of(quantity), *row) for quantity, *row in rows])
     db.commit()
     db.close()
 
@@ -67,7 +68,7 @@ class Budget(ReportTest):
             shares = [source["share"] for source in found[quantity]["sources"]]
             self.assertAlmostEqual(sum(shares), 1.0, delta=1e-9)
             self.assertEqual(shares, sorted(shares, reverse=True))
-            self.assertGreater(found[quantity]["deviation"], found[quantity]["deviation_with_largest_halved"])
+            self.assertGreater(found[quantity]["std"], found[quantity]["std_with_largest_halved"])
         self.assertIn("rocker_mass_kg", [s["source"] for s in found["pulse/turn_impulse_z"]["sources"]])
 
     def test_what_would_be_nothing_is_one_line(self):

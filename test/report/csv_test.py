@@ -24,10 +24,23 @@ class Csv(ReportTest):
                 names = [column[0] for column in cursor.description]
                 expected = sorted([file.stem] + ["" if v is None else str(v) for v in row] for row in cursor)
                 with open(self.out / (table + ".csv"), newline="", encoding="utf-8") as text:
+                    self.assertTrue(text.readline().startswith("# hammer_loads, units: file [-], "))
                     header, *rows = csv.reader(text)
                 self.assertEqual(header, ["file", *names])
                 self.assertEqual(sorted(row for row in rows if row[0] == file.stem), expected)
             db.close()
+
+    def test_first_line_has_the_units_of_the_table_columns(self):
+        db = sqlite3.connect(str(self.files[0]))
+        db.execute("CREATE TABLE columns(table_name TEXT, column_name TEXT, unit TEXT, description TEXT)")
+        db.execute("INSERT INTO columns VALUES('blows', 'energy', 'J', 'blow energy')")
+        db.commit()
+        db.close()
+        self.assertEqual(report(self.files[0], "--csv", self.out).returncode, 0)
+        with open(self.out / "blows.csv", encoding="utf-8") as text:
+            units = text.readline()
+        self.assertIn(" energy [J], ", units)
+        self.assertIn(" restitution [-], ", units)
 
     def test_replaces_its_own_alone(self):
         self.assertEqual(report(self.files[0], "--csv", self.out).returncode, 0)

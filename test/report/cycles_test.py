@@ -88,7 +88,7 @@ class Recording(ReportTest):
 
 LEDGER = """
 CREATE TABLE epochs(epoch INTEGER PRIMARY KEY, machine TEXT, equivalent_cycles_per_hour REAL);
-CREATE TABLE channels(channel INTEGER PRIMARY KEY, epoch INTEGER, name TEXT, least REAL, greatest REAL,
+CREATE TABLE channels(channel INTEGER PRIMARY KEY, epoch INTEGER, name TEXT, unit TEXT, least REAL, greatest REAL,
   classes INTEGER, sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL,
   mean_stress_sensitivity REAL);
 CREATE TABLE runs(run INTEGER PRIMARY KEY, name TEXT, epoch INTEGER, pieces INTEGER, parameters TEXT,
@@ -102,8 +102,8 @@ CREATE TABLE cycles(channel INTEGER, day INTEGER, steps INTEGER, low INTEGER, co
 CREATE TABLE residues(channel INTEGER, run INTEGER, place INTEGER, class INTEGER, PRIMARY KEY(channel, run, place));
 CREATE TABLE marks(mark INTEGER, run INTEGER, PRIMARY KEY(mark, run));
 INSERT INTO epochs VALUES(1, 'mo100', 3600.0);
-INSERT INTO channels VALUES(1, 1, 'hull_wrench/force_z', -2e5, 2e5, 512, NULL, NULL, NULL, NULL, NULL);
-INSERT INTO channels VALUES(2, 1, 'stress/weld', -4e2, 4e2, 256, 80.0, 1e7, 3.0, 5.0, 0.3);
+INSERT INTO channels VALUES(1, 1, 'hull_wrench/force_z', 'N', -2e5, 2e5, 512, NULL, NULL, NULL, NULL, NULL);
+INSERT INTO channels VALUES(2, 1, 'stress/weld', 'MPa', -4e2, 4e2, 256, 80.0, 1e7, 3.0, 5.0, 0.3);
 INSERT INTO runs VALUES(1, 'a', 1, 3, '', 3000);
 INSERT INTO runs VALUES(2, 'b', 1, 1, '', 3000);
 INSERT INTO days VALUES(1, 1, 1, '2026-01-31', 7200000000000, 36000);
@@ -137,7 +137,7 @@ class Ledger(ReportTest):
         make_ledger(self.file)
 
     def assertSame(self, ours, theirs):
-        for mine, other in zip(ours, (theirs["value"], theirs["deviation"]) if theirs else (None, None)):
+        for mine, other in zip(ours, (theirs["value"], theirs["std"]) if theirs else (None, None)):
             if other is None:
                 self.assertIsNone(mine)
             else:

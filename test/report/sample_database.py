@@ -27,7 +27,7 @@ CREATE TABLE runs(run_id INTEGER PRIMARY KEY, run_key TEXT NOT NULL UNIQUE, inpu
   parameters_yaml TEXT NOT NULL, first_stamp_ns INTEGER, last_stamp_ns INTEGER, duration REAL, level TEXT,
   samples INTEGER, published INTEGER, restarts INTEGER, turns INTEGER, blows INTEGER, backward_passes INTEGER,
   consistency REAL, timing_noise REAL, speed_noise REAL, angle_resolution REAL,
-  drive_inertia REAL, drive_inertia_std REAL, equivalent_cycles_per_hour REAL, blank_firings INTEGER,
+  drive_inertia REAL, drive_inertia_relative_std REAL, equivalent_cycles_per_hour REAL, blank_firings INTEGER,
   judged_blows INTEGER, blows_without_hold_down INTEGER, still_time REAL, hull_pitch REAL);
 CREATE TABLE parameters(run_id INTEGER, key TEXT, value TEXT, shipped TEXT, PRIMARY KEY(run_id, key));
 CREATE TABLE refusals(run_id INTEGER, reason TEXT, count INTEGER);
@@ -68,13 +68,17 @@ def channel_list(boom):
         return result
     for i, joint in enumerate(JOINTS):
         for j, part in enumerate(PARTS):
-            result.append((f"joint_loads/{joint}/{part}_torque_Nm", (3 - i) * (0.4 + 0.2 * j), (j == 1) * 4e3, None))
-        result.append((f"joint_loads/{joint}_cylinder/cylinder_force", 2.0 - 0.5 * i, 5e4, None))
+            result.append((f"joint_loads/{joint}/{part}_torque", (3 - i) * (0.4 + 0.2 * j), (j == 1) * 4e3, None))
+        result.append((f"joint_loads/{joint}_cylinder/force", 2.0 - 0.5 * i, 5e4, None))
     for i, section in enumerate(SECTIONS):
         for field, share in (("force_x", 0.3), ("force_z", 0.9), ("torque_y", 1.7 - 0.3 * i)):
             result.append((f"section_loads/{section}/{field}", share, 2e3 * i, None))
     result.append(STRESS)
     return result
+
+
+def unit_of(channel):
+    return next((unit for word, unit in (("stress/", "MPa"), ("torque", "N m"), ("energy", "J")) if word in channel), "N")
 
 
 def class_of(value, full_scale, classes):
@@ -171,7 +175,7 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
         low, high = (min(series[i]), max(series[i])) if series.get(i) else (None, None)
         stress = name.startswith("stress/") and machine.curve
         db.execute(f"INSERT INTO channels VALUES({','.join('?' * 21)})",
-                   (run_id, i, name, name.rsplit("_", 1)[1], int(bool(scale)), -scale if scale else None, scale,
+                   (run_id, i, name, unit_of(name), int(bool(scale)), -scale if scale else None, scale,
                     classes if scale else None, int(1000 * seconds), 0, 0, 0, restarts, low, high,
                     0.01 * machine.peak_N if name.endswith("force_z") else None,
                     *((80.0, 1e7, 3.0, 5.0, None) if stress else (None,) * 5)))

@@ -103,13 +103,14 @@ TEST_F(BoomTest, EveryCrankSampleGivesEveryOutput) {
     EXPECT_EQ(arm.header.frame_id, "arm_link");
     expectNear(arm.wrench, atArm(wrench.wrench, machine_->position[3]));
     const JointLoads& loads = machine_->loads.messages.at(stamp);
-    EXPECT_EQ(loads.joint_name, kJoints);
+    ASSERT_EQ(loads.joint.size(), kJoints.size());
     for (std::size_t j = 0; j < kJoints.size(); ++j) {
-      const double sum = loads.hammer_torque[j] + loads.weight_torque[j] + loads.motion_torque[j] +
-                         loads.vibration_torque[j];
-      EXPECT_NEAR(loads.total_torque[j], sum, 1e-9);
+      const JointLoad& joint = loads.joint[j];
+      EXPECT_EQ(joint.name, kJoints[j]);
+      const double sum = joint.hammer_torque + joint.weight_torque + joint.motion_torque + joint.vibration_torque;
+      EXPECT_NEAR(joint.total_torque, sum, 1e-9);
     }
-    for (const double force : loads.cylinder_force) EXPECT_TRUE(std::isfinite(force)) << stamp;
+    for (const CylinderLoad& cylinder : loads.cylinder) EXPECT_TRUE(std::isfinite(cylinder.force)) << stamp;
     EXPECT_EQ(machine_->vibration.messages.at(stamp).natural_frequency.size(), 3U);
     largest = std::max(largest, std::abs(arm.wrench.torque.y));
     if (HasFailure()) return;

@@ -23,8 +23,8 @@ class DisplayTest(unittest.TestCase):
         for kind, names in (('section', SECTIONS), ('joint', JOINTS)):
             for name in names:
                 rospy.Subscriber('/show_loads/%s/%s' % (kind, name), WrenchStamped, cls.shown.setdefault(kind + '/' + name, []).append)
-        rospy.Subscriber('/hammer_loads/section_loads', SectionLoads, lambda m: cls.take(m, 'section/', m.section_name))
-        rospy.Subscriber('/hammer_loads/joint_reactions', JointReactions, lambda m: cls.take(m, 'joint/', m.joint_name))
+        rospy.Subscriber('/hammer_loads/section_loads', SectionLoads, lambda m: cls.take(m, 'section/', m.section))
+        rospy.Subscriber('/hammer_loads/joint_reactions', JointReactions, lambda m: cls.take(m, 'joint/', m.joint))
         rospy.Subscriber('/hammer_loads/hull_loads', HullLoads, lambda m: cls.flag('hull', m.flags))
         rospy.Subscriber('/hammer_loads/joint_loads', JointLoads, lambda m: cls.flag('joints', m.flags))
         # Marker without its Python package: the text is what is printable at the end of the bytes.
@@ -33,9 +33,9 @@ class DisplayTest(unittest.TestCase):
         assert eventually(lambda: all(len(told) > 10 for told in cls.shown.values()))
 
     @classmethod
-    def take(cls, message, kind, names):
-        for name, load in zip(names, message.load):
-            cls.given[kind + name, message.header.stamp] = load
+    def take(cls, message, kind, parts):
+        for part in parts:
+            cls.given[kind + part.name, message.header.stamp] = part.load
 
     @classmethod
     def flag(cls, source, flags):

@@ -28,6 +28,13 @@ HalfSinePulse pulse() {
   return p;
 }
 
+template <typename Part>
+Names namesOf(const std::vector<Part>& parts) {
+  Names names;
+  for (const Part& part : parts) names.push_back(part.name);
+  return names;
+}
+
 class Messages : public testing::Test {
  protected:
   void sample(StampNs stamp) {
@@ -62,21 +69,20 @@ TEST_F(Messages, HoldTheStateInItsOrder) {
   const JointLoads& loads = jointLoads();
   EXPECT_EQ(loads.header.stamp.toNSec(), static_cast<std::uint64_t>(kStamp));
   EXPECT_EQ(loads.header.frame_id, "base_link");
-  EXPECT_EQ(loads.joint_name, kFour);
-  EXPECT_EQ(loads.cylinder_name, (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
+  EXPECT_EQ(namesOf(loads.joint), kFour);
+  EXPECT_EQ(namesOf(loads.cylinder), (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
   for (int j = 0; j < 4; ++j) {
     const auto i = static_cast<std::size_t>(j);
-    EXPECT_EQ(loads.hammer_torque.at(i), state.loads.hammer[j]);
-    EXPECT_EQ(loads.weight_torque.at(i), state.loads.weight[j]);
-    EXPECT_EQ(loads.motion_torque.at(i), state.loads.motion[j]);
-    EXPECT_EQ(loads.vibration_torque.at(i), state.loads.vibration[j]);
-    EXPECT_EQ(loads.total_torque.at(i), state.loads.total[j]);
+    EXPECT_EQ(loads.joint.at(i).hammer_torque, state.loads.hammer[j]);
+    EXPECT_EQ(loads.joint.at(i).weight_torque, state.loads.weight[j]);
+    EXPECT_EQ(loads.joint.at(i).motion_torque, state.loads.motion[j]);
+    EXPECT_EQ(loads.joint.at(i).vibration_torque, state.loads.vibration[j]);
+    EXPECT_EQ(loads.joint.at(i).total_torque, state.loads.total[j]);
   }
   EXPECT_NE(state.loads.vibration[1], 0.0);
-  ASSERT_EQ(loads.cylinder_force.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(loads.cylinder_force[i], state.loads.cylinder[i].force);
-    EXPECT_EQ(loads.cylinder_pressure[i], state.loads.cylinder[i].pressure);
+    EXPECT_EQ(loads.cylinder[i].force, state.loads.cylinder[i].force);
+    EXPECT_EQ(loads.cylinder[i].pressure, state.loads.cylinder[i].pressure);
   }
 }
 
@@ -87,24 +93,22 @@ TEST_F(Messages, HoldWhatTheSteelCarries) {
   SectionLoads sections;
   prepareSections(follower_.boom(), sections);
   fillSections(state, sections);
-  EXPECT_EQ(sections.section_name, (Names{"boom_foot", "boom_middle", "arm_middle"}));
-  ASSERT_EQ(sections.load.size(), 3U);
-  ASSERT_EQ(sections.load_std.size(), 3U);
-  EXPECT_EQ(sections.load[1].torque.y, state.steel.section[1].torque.y());
-  EXPECT_EQ(sections.load[2].force.x, state.steel.section[2].force.x());
-  EXPECT_TRUE(std::isnan(sections.load_std[0].force.z)) << "the crank's errors are not known here";
+  EXPECT_EQ(namesOf(sections.section), (Names{"boom_foot", "boom_middle", "arm_middle"}));
+  EXPECT_EQ(sections.section[1].load.torque.y, state.steel.section[1].torque.y());
+  EXPECT_EQ(sections.section[2].load.force.x, state.steel.section[2].force.x());
+  EXPECT_TRUE(std::isnan(sections.section[0].load_std[2])) << "the crank's errors are not known here";
   JointReactions reactions;
   prepareReactions(follower_.boom(), reactions);
   fillReactions(state, reactions);
-  EXPECT_EQ(reactions.joint_name, kFour);
-  EXPECT_EQ(reactions.load[3].force.z, state.steel.joint[3].force.z());
-  EXPECT_EQ(reactions.cylinder_name, (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
-  EXPECT_EQ(reactions.base_force[0].x, state.steel.pins[0].base.x());
-  EXPECT_EQ(reactions.guide_force[2].x, state.steel.pins[2].guide.x());
-  EXPECT_NE(reactions.guide_force[2].x, 0.0);
-  EXPECT_EQ(reactions.guide_force[0].x, 0.0);
-  EXPECT_EQ(reactions.rod_force[2].z, state.steel.pins[2].rod.z());
-  EXPECT_EQ(jointLoads().cylinder_flags[0], state.cylinder_flags[0]);
+  EXPECT_EQ(namesOf(reactions.joint), kFour);
+  EXPECT_EQ(reactions.joint[3].load.force.z, state.steel.joint[3].force.z());
+  EXPECT_EQ(namesOf(reactions.cylinder), (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
+  EXPECT_EQ(reactions.cylinder[0].base_force.x, state.steel.pins[0].base.x());
+  EXPECT_EQ(reactions.cylinder[2].guide_force.x, state.steel.pins[2].guide.x());
+  EXPECT_NE(reactions.cylinder[2].guide_force.x, 0.0);
+  EXPECT_EQ(reactions.cylinder[0].guide_force.x, 0.0);
+  EXPECT_EQ(reactions.cylinder[2].rod_force.z, state.steel.pins[2].rod.z());
+  EXPECT_EQ(jointLoads().cylinder[0].flags, state.cylinder_flags[0]);
   EXPECT_EQ(vibration().damping_ratio[0], 0.05);
   EXPECT_FALSE(vibration().identified);
   EXPECT_NEAR(vibration().natural_frequency_std[1], 0.15 * state.frequency[1], 1e-12);
@@ -158,7 +162,7 @@ TEST_F(Messages, AllocateNothing) {
   for (int i = 1; i < 1000; ++i) {
     sample(kStamp + i * 1000000);
     fillWrench(kStamp, follower_.wrenchAtLink(2, kLoad), wrench);
-    sum += jointLoads().total_torque[1] + vibration().reduced_mass + wrench.wrench.torque.y;
+    sum += jointLoads().joint[1].total_torque + vibration().reduced_mass + wrench.wrench.torque.y;
   }
   EXPECT_EQ(test::allocations, before);
   EXPECT_TRUE(std::isfinite(sum));

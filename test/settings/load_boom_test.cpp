@@ -131,7 +131,7 @@ TEST_F(LoadBoom, FaultsOfOneDescriptionComeTogether) {
 TEST_F(LoadBoom, ItsLoadsMayBeCounted) {
   const std::string arm = "hull_x_channel: joint_loads/arm_joint/total_torque\n";
   EXPECT_EQ(loaded(urdf_, boom_, arm).problems, Lines{});
-  EXPECT_EQ(loaded(urdf_, boom_, "hull_x_channel: joint_loads/arm_cylinder/cylinder_force\n").problems, Lines{});
+  EXPECT_EQ(loaded(urdf_, boom_, "hull_x_channel: joint_loads/arm_cylinder/force\n").problems, Lines{});
   EXPECT_EQ(loaded("", "", arm).problems.size(), 1U);
 }
 

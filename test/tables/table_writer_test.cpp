@@ -14,7 +14,7 @@ namespace {
 /// fill: what is written.
 template <typename Fill>
 void writeTables(const std::string& file, const Fill& fill) {
-  TableWriter writer(file, {{"turn", true}}, {{"turn", true}});
+  TableWriter writer(file, {{"turn", true, "-", {}}}, {{"turn", true, "-", {}}});
   fill(writer);
   writer.finish();
   ASSERT_EQ(writer.problem(), "");
@@ -29,7 +29,7 @@ TEST(TableWriter, KeepsTheBoomsHealth) {
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement rows(
       database,
-      "SELECT turn, joint_angle, stiffness_ratio, stiffness_ratio_std, doubtful, mode, frequency_Hz, "
+      "SELECT turn, joint_angle, stiffness_ratio, stiffness_ratio_std, doubtful, mode, frequency, "
       "frequency_std, damping_ratio, damping_ratio_std FROM boom_cylinders JOIN boom_modes "
       "USING(run_id, turn) WHERE run_id = 1 AND cylinder = 'arm_cylinder'");
   ASSERT_TRUE(rows.step());

@@ -217,7 +217,7 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomL
   bool finite = result.total.allFinite();
   for (std::size_t i = 0; i < cylinders_.size(); ++i) {
     const Cylinder& cylinder = cylinders_[i];
-    CylinderLoad& load = result.cylinder[i];
+    CylinderForce& load = result.cylinder[i];
     load = cylinder.load(at_[i], result.total[cylinder.joint()]);
     finite = finite && (load.zero_moment_arm || (std::isfinite(load.force) && std::isfinite(load.pressure)));
   }

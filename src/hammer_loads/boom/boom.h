@@ -38,7 +38,7 @@ struct BoomLoads {
   JointVector motion;                             ///< inertia of the links as the boom moves
   JointVector vibration;                          ///< inertia of the links as the boom vibrates; zero for a rigid boom
   JointVector total;                              ///< sum of the four
-  std::array<CylinderLoad, kMaxJoints> cylinder;  ///< of the total, index as in Boom::cylinders()
+  std::array<CylinderForce, kMaxJoints> cylinder;  ///< of the total, index as in Boom::cylinders()
 };
 
 /// Errors of the hammer's load that are independent of each other, one standard deviation each.

@@ -198,7 +198,7 @@ CylinderPosition Cylinder::at(double c, double s) const noexcept {
   return position;
 }
 
-CylinderLoad Cylinder::load(const CylinderPosition& position, double joint_torque) const noexcept {
+CylinderForce Cylinder::load(const CylinderPosition& position, double joint_torque) const noexcept {
   if (position.zero_moment_arm) {
     return {kNaN, kNaN, true};
   }

@@ -53,7 +53,7 @@ struct CylinderPosition {
 };
 
 /// Load of the cylinder. At a dead centre force and pressure are NaN.
-struct CylinderLoad {
+struct CylinderForce {
   double force{};     ///< BY the cylinder ON both anchors [N], positive pushes them apart
   double pressure{};  ///< in the chamber that carries it, above the other chamber's, >= 0 [Pa]
   bool zero_moment_arm{};
@@ -84,7 +84,7 @@ class Cylinder {
   CylinderPosition at(double joint_angle) const noexcept;
   CylinderPosition at(double cosine, double sine) const noexcept;  ///< by those of the joint's angle
   /// Force that balances a torque of the load on the joint [N m], by virtual work: force dL/dq = -torque.
-  CylinderLoad load(const CylinderPosition& position, double joint_torque) const noexcept;
+  CylinderForce load(const CylinderPosition& position, double joint_torque) const noexcept;
   /// dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.
   double stiffness(double length) const noexcept;
   OilVolumes volumes(double length) const noexcept;  ///< beyond the stroke as at its end

@@ -79,7 +79,7 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   line["--urdf"].description("robot description, for the hull's pitch");
   addTopicOption(line, job.topics, &InputTopics::crank);
   addTopicOption(line, job.topics, &InputTopics::joint_states);
-  line.option("--rocker-inertia-deviation", given.rocker_std, "of the given rocker inertia, relative")
+  line.option("--rocker-inertia-std", given.rocker_std, "of the given rocker inertia, relative")
       .within(1e-6, 1.0, "")
       .showDefault();
   line.flag("--force", given.force, "replaces files that exist");

@@ -150,7 +150,7 @@ using Json = nlohmann::json;
 
 /// Keys are sorted by name; null is written for what is no finite number.
 Json json(const Figure& figure) {
-  return {{"value", figure.value}, {"deviation", figure.deviation}, {"systematic_std", figure.common}};
+  return {{"value", figure.value}, {"std", figure.deviation}, {"systematic_std", figure.common}};
 }
 Json json(const std::optional<Figure>& figure) { return figure ? json(*figure) : Json(nullptr); }
 

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "hammer_loads/life/column_texts.h"
+
 namespace hammer_loads::life {
 namespace {
 
@@ -19,34 +21,74 @@ constexpr std::int64_t kApplication = 0x484C4C31;  ///< "HLL1"
 // run, so that each run can be taken out.
 constexpr char kTables[] = R"(
 CREATE TABLE epochs(
-  epoch INTEGER PRIMARY KEY, machine TEXT NOT NULL, equivalent_cycles_per_hour REAL NOT NULL);
+  epoch INTEGER PRIMARY KEY,                 -- [-] number of the epoch: one hammer, boom and grid
+  machine TEXT NOT NULL,                     -- [-] digest of the machine
+  equivalent_cycles_per_hour REAL NOT NULL   -- [1/h] rate of damage-equivalent ranges
+);
 CREATE TABLE channels(
-  channel INTEGER PRIMARY KEY, epoch INTEGER NOT NULL REFERENCES epochs, name TEXT NOT NULL,
-  least REAL NOT NULL, greatest REAL NOT NULL, classes INTEGER NOT NULL,
-  sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL, mean_stress_sensitivity REAL,
+  channel INTEGER PRIMARY KEY,               -- [-] number of the channel
+  epoch INTEGER NOT NULL REFERENCES epochs,  -- [-] number of the epoch
+  name TEXT NOT NULL,                        -- [-] topic/field, topic/name/field, or stress/NAME of a hot spot
+  unit TEXT NOT NULL,                        -- [-] unit of the channel
+  least REAL NOT NULL,                       -- [channel] lower end of the full scale
+  greatest REAL NOT NULL,                    -- [channel] upper end of the full scale
+  classes INTEGER NOT NULL,                  -- [-] number of classes of the full scale
+  sn_knee_range REAL,                        -- [MPa] range at the knee of the S-N curve; NULL without a curve
+  sn_knee_cycles REAL,                       -- [-] cycles at the knee
+  sn_slope REAL,                             -- [-] slope above the knee range
+  sn_slope_below REAL,                       -- [-] slope below the knee range
+  mean_stress_sensitivity REAL,              -- [-] mean-stress sensitivity M of FKM; NULL: mean stress is not considered
   UNIQUE(epoch, name));
 CREATE TABLE runs(
-  run INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, epoch INTEGER NOT NULL REFERENCES epochs,
-  pieces INTEGER NOT NULL, parameters TEXT NOT NULL, messages INTEGER NOT NULL);
+  run INTEGER PRIMARY KEY,                   -- [-] number of the run
+  name TEXT NOT NULL UNIQUE,                 -- [-] first stamp and digest of the first samples
+  epoch INTEGER NOT NULL REFERENCES epochs,  -- [-] number of the epoch
+  pieces INTEGER NOT NULL,                   -- [-] number of pieces written
+  parameters TEXT NOT NULL,                  -- [-] parameters of the sensors
+  messages INTEGER NOT NULL                  -- [-] number of crank messages
+);
 CREATE TABLE days(
-  day INTEGER PRIMARY KEY, epoch INTEGER NOT NULL REFERENCES epochs, run INTEGER NOT NULL REFERENCES runs,
-  date TEXT NOT NULL, duration_ns INTEGER NOT NULL, turns INTEGER NOT NULL);
+  day INTEGER PRIMARY KEY,                   -- [-] number of the day of a run
+  epoch INTEGER NOT NULL REFERENCES epochs,  -- [-] number of the epoch
+  run INTEGER NOT NULL REFERENCES runs,      -- [-] number of the run
+  date TEXT NOT NULL,                        -- [-] date, UTC
+  duration_ns INTEGER NOT NULL,              -- [ns] time between samples, gaps left out
+  turns INTEGER NOT NULL                     -- [-] number of blows
+);
 CREATE INDEX days_of_run ON days(run);
 CREATE TABLE tallies(
-  channel INTEGER NOT NULL REFERENCES channels, day INTEGER NOT NULL REFERENCES days,
-  counted INTEGER NOT NULL, skipped INTEGER NOT NULL, below INTEGER NOT NULL, above INTEGER NOT NULL,
-  gaps INTEGER NOT NULL, deviations INTEGER NOT NULL, deviation_sum INTEGER NOT NULL, least REAL, greatest REAL,
-  range_square INTEGER NOT NULL, range_own INTEGER NOT NULL, range_common INTEGER NOT NULL,
+  channel INTEGER NOT NULL REFERENCES channels,  -- [-] number of the channel
+  day INTEGER NOT NULL REFERENCES days,          -- [-] number of the day of a run
+  counted INTEGER NOT NULL,                      -- [-] values counted
+  skipped INTEGER NOT NULL,                      -- [-] values left out: not a number
+  below INTEGER NOT NULL,                        -- [-] values below the full scale
+  above INTEGER NOT NULL,                        -- [-] values above the full scale
+  gaps INTEGER NOT NULL,                         -- [-] places where samples are missing
+  deviations INTEGER NOT NULL,                   -- [-] number of values with a standard deviation
+  deviation_sum INTEGER NOT NULL,                -- [-] sum of these standard deviations in 1/1024 of a class width
+  least REAL,                                    -- [channel] least value
+  greatest REAL,                                 -- [channel] greatest value
+  range_square INTEGER NOT NULL,                 -- [-] sum of squares of the ranges of turns, in integers
+  range_own INTEGER NOT NULL,                    -- [-] sum of their variances that are new in each turn
+  range_common INTEGER NOT NULL,                 -- [-] sum of their parts that constants make
   PRIMARY KEY(channel, day)) WITHOUT ROWID;
 CREATE TABLE cycles(
-  channel INTEGER NOT NULL REFERENCES channels, day INTEGER NOT NULL REFERENCES days,
-  steps INTEGER NOT NULL, low INTEGER NOT NULL, count INTEGER NOT NULL,
+  channel INTEGER NOT NULL REFERENCES channels,  -- [-] number of the channel
+  day INTEGER NOT NULL REFERENCES days,          -- [-] number of the day of a run
+  steps INTEGER NOT NULL,                        -- [-] range in classes
+  low INTEGER NOT NULL,                          -- [-] lower class
+  count INTEGER NOT NULL,                        -- [-] number of these cycles
   PRIMARY KEY(channel, day, steps, low)) WITHOUT ROWID;
 CREATE TABLE residues(
-  channel INTEGER NOT NULL REFERENCES channels, run INTEGER NOT NULL REFERENCES runs, place INTEGER NOT NULL,
-  class INTEGER NOT NULL, PRIMARY KEY(channel, run, place)) WITHOUT ROWID;
+  channel INTEGER NOT NULL REFERENCES channels,  -- [-] number of the channel
+  run INTEGER NOT NULL REFERENCES runs,          -- [-] number of the run
+  place INTEGER NOT NULL,                        -- [-] place in time order
+  class INTEGER NOT NULL,                        -- [-] class of the turning point
+  PRIMARY KEY(channel, run, place)) WITHOUT ROWID;
 CREATE TABLE marks(
-  mark INTEGER NOT NULL, run INTEGER NOT NULL REFERENCES runs, PRIMARY KEY(mark, run)) WITHOUT ROWID;
+  mark INTEGER NOT NULL,                         -- [-] digest of a sample, which recognises a recording counted before
+  run INTEGER NOT NULL REFERENCES runs,          -- [-] number of the run
+  PRIMARY KEY(mark, run)) WITHOUT ROWID;
 )";
 
 std::int64_t valueOf(Database& database, const char* sql) {
@@ -132,6 +174,7 @@ void checkLedger(Database& database) {
             "equivalent_cycles_per_hour > 0",
         "a finite number > 0");
   text("channels", "name");
+  text("channels", "unit");
   Database::Statement epochs(database, "SELECT epoch FROM epochs");
   while (epochs.step()) channelsOf(database, epochs.integer(0));
   text("runs", "name");
@@ -153,7 +196,8 @@ void beginAsLedger(Database& database) {
   // A commit must outlast a power cut, the journal's removal included.
   database.run("PRAGMA synchronous = EXTRA; PRAGMA foreign_keys = ON; BEGIN IMMEDIATE");
   if (isLedger(database)) return;
-  database.run(kTables);
+  database.run((std::string(kTables) + kColumnsTable).c_str());
+  insert(columnTexts(std::string(kTables) + kColumnsTable), database);
   database.run(("PRAGMA application_id = " + std::to_string(kApplication)).c_str());
   database.run(("PRAGMA user_version = " + std::to_string(kLedgerVersion)).c_str());
 }

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "hammer_loads/life/channel_unit.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::life {
@@ -50,9 +51,10 @@ std::int64_t newEpoch(Database& database, const LedgerMachine& machine) {
   insert.run(machine.identity, machine.equivalent_cycles_per_hour);
   const std::int64_t epoch = lastId(database);
   Database::Statement channel(database,
-                              "INSERT INTO channels(epoch, name, least, greatest, classes) VALUES(?1, ?2, ?3, ?4, ?5)");
+                              "INSERT INTO channels(epoch, name, unit, least, greatest, classes) "
+                              "VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
   for (const LedgerChannel& c : machine.channels)
-    channel.run(epoch, c.name, c.grid.least(), c.grid.greatest(), c.grid.classes());
+    channel.run(epoch, c.name, unitOf(c.name), c.grid.least(), c.grid.greatest(), c.grid.classes());
   return epoch;
 }
 

@@ -8,7 +8,7 @@
 
 namespace hammer_loads::life {
 
-std::string hotSpotChannel(const HotSpot& spot) { return "stress/" + spot.name + "_MPa"; }
+std::string hotSpotChannel(const HotSpot& spot) { return "stress/" + spot.name; }
 
 std::int64_t dayOf(std::int64_t stamp) noexcept {
   constexpr std::int64_t kDay = 86400LL * 1000 * 1000 * 1000;

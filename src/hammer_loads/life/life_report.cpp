@@ -2,15 +2,12 @@
 
 #include <utility>
 
+#include "hammer_loads/life/channel_unit.h"
+
 namespace hammer_loads::life {
 namespace {
 
 constexpr double kNsPerHour = 3600e9;
-
-std::string unitOf(const std::string& channel) {
-  const std::size_t at = channel.rfind('_');
-  return at == std::string::npos ? std::string{} : channel.substr(at + 1);
-}
 
 ChannelReport channelReport(LedgerReader& reader, const LedgerEpoch& epoch, std::size_t channel) {
   const LedgerChannel& judged = epoch.machine.channels[channel];

@@ -13,7 +13,7 @@ namespace hammer_loads::life {
 
 /// A load as it comes, by its name in the package's contract.
 struct CountedChannel {
-  std::string name;  ///< such as section_loads/NAME/torque_y; its unit is the name's end
+  std::string name;  ///< such as section_loads/NAME/torque_y
   LoadGrid grid;
   std::string key{};  ///< its short name in the parameter file
 };

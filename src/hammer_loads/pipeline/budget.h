@@ -20,7 +20,7 @@ struct BudgetFigure {
     double variance{};
   };
   std::string quantity;
-  double value{}, deviation{};  ///< mean over the run, and the standard deviation of one turn's; unit as the name ends
+  double value{}, deviation{};  ///< mean over the run, and the standard deviation of one turn's
   std::vector<Source> sources;  ///< without those that add nothing
 };
 

@@ -194,9 +194,10 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
     const double expected = std::max({square(ring), squares_.mean(), std::numeric_limits<double>::min()});
     gain_ = errors.col(kBesideRigid) / (errors(kBesideRigid, kBesideRigid) + expected);
   }
-  const Loads variance = errors.diagonal() - gain_.cwiseProduct(errors.col(kBesideRigid));
+  const Eigen::Matrix3d covariance =
+      errors.topLeftCorner<3, 3>() - gain_.head<3>() * errors.col(kBesideRigid).head<3>().transpose();
   mean = besideRigid(filter().motion(), drive, mean);
-  return {wrenchOf(mean.head<3>()), wrenchOf(variance.head<3>().cwiseMax(0.0).cwiseSqrt()), mean[kCrank]};
+  return {wrenchOf(mean.head<3>()), covariance, mean[kCrank]};
 }
 
 ElasticFollower::Loads ElasticFollower::besideRigid(const RodMotion& m, const DriveReaction& drive,

@@ -42,7 +42,8 @@ class ElasticFollower {
   CrankEstimate crank() const noexcept { return crankOf(filter().motion()); }
   /// What a rod that gives adds to the loads of a rigid one at that crank.
   struct Beside {
-    HullWrench wrench, deviation;  ///< deviation: of the whole wrench by readings and rod
+    HullWrench wrench;
+    Eigen::Matrix3d covariance;  ///< of the whole wrench by readings and rod
     double crank{};                ///< acceleration [rad/s2]
   };
   /// Once a sample. ring: of the rocker's acceleration beside a rigid rod's, of any phase (RodRing) [rad/s2]. That of

@@ -37,20 +37,36 @@ Gradient gradient(const CrankEstimate& crank, const LinksBeside& links, const At
   return result;
 }
 
-HullWrench deviationOf(const Gradient& g, const Eigen::Matrix3d& covariance) noexcept {
-  const auto deviation = [&](int row) {
-    return std::sqrt(std::max(0.0, g.row(row).dot(covariance * g.row(row).transpose())));
-  };
-  return {deviation(0), deviation(1), deviation(2)};
-}
-
 HullDeviation unknownDeviation() noexcept {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr HullWrench kWrench{kUnknown, kUnknown, kUnknown};
-  return {kWrench, kWrench, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+  const Eigen::Vector3d correlation = Eigen::Vector3d::Constant(kUnknown);
+  return {kWrench,  kWrench,  correlation, correlation, kUnknown, kUnknown,
+          kUnknown, kUnknown, kUnknown,    kUnknown};
+}
+
+HullWrench deviationOf(const Eigen::Matrix3d& covariance) noexcept {
+  return wrenchOf(covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
+}
+
+Eigen::Vector3d correlationOf(const Eigen::Matrix3d& covariance) noexcept {
+  const auto coefficient = [&](int i, int k) {
+    const double square = covariance(i, i) * covariance(k, k);
+    return square > 0.0 ? std::clamp(covariance(i, k) / std::sqrt(square), -1.0, 1.0) : 0.0 * square;
+  };
+  return {coefficient(0, 1), coefficient(0, 2), coefficient(1, 2)};
 }
 
 }  // namespace
+
+void addCovariance(const Eigen::Matrix3d& covariance, HullDeviation& deviation) noexcept {
+  const Eigen::Vector3d d = vectorOf(deviation.wrench), r = deviation.correlation;
+  const double xz = r[0] * d[0] * d[1], xy = r[1] * d[0] * d[2], zy = r[2] * d[1] * d[2];
+  Eigen::Matrix3d sum;
+  sum << d[0] * d[0], xz, xy, xz, d[1] * d[1], zy, xy, zy, d[2] * d[2];
+  sum += covariance;
+  deviation.wrench = deviationOf(sum), deviation.correlation = correlationOf(sum);
+}
 
 LinksBeside::LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept
     : here(at), beside(linksAt(model, nudged(at.angle))) {}
@@ -61,8 +77,11 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
   if (!(covariance(1, 1) > 0.0)) return unknownDeviation();
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
-  return {deviationOf(g, covariance),
+  const Eigen::Matrix3d of_load = g * covariance * g.transpose();
+  return {deviationOf(of_load),
           {},
+          correlationOf(of_load),
+          Eigen::Vector3d::Zero(),
           std::sqrt(covariance(0, 0)),
           std::sqrt(covariance(1, 1)),
           std::sqrt(covariance(2, 2))};
@@ -83,12 +102,14 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
       drive.torque(crank.acceleration, hull.acceleration) - none.torque(crank.acceleration, hull.acceleration);
   columns.row(2).head<ConstantErrors::kSize>() += by_inertia * uncertainty.by_constant.row(CrankUncertainty::kInertia);
   columns(2, ConstantErrors::kSize) = by_inertia * uncertainty.inertia;
-  const Eigen::Vector3d common = columns.rowwise().squaredNorm();
-  const Eigen::Vector3d own = vectorOf(deviationOf(g, uncertainty.own));
+  const Eigen::Matrix3d common = columns.lazyProduct(columns.transpose());
+  const Eigen::Matrix3d all = g * uncertainty.own * g.transpose() + common;
   const Eigen::Vector3d of_crank = uncertainty.by_constant.topRows<3>().rowwise().squaredNorm();
   const Eigen::Vector3d crank_all = (uncertainty.own.diagonal() + of_crank).cwiseSqrt();
-  return {wrenchOf((own.cwiseAbs2() + common).cwiseSqrt()),
-          wrenchOf(common.cwiseSqrt()),
+  return {deviationOf(all),
+          deviationOf(common),
+          correlationOf(all),
+          correlationOf(common),
           crank_all[0],
           crank_all[1],
           crank_all[2],
@@ -98,7 +119,7 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
 }
 
 void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,
-                   const HullMotion& hull, const HullMotionCovariance& covariance, HullWrench& deviation) noexcept {
+                   const HullMotion& hull, const HullMotionCovariance& covariance, HullDeviation& deviation) noexcept {
   if (covariance.isZero(0.0)) return;
   const auto load = [&](const HullMotion& h) { return vectorOf(frameWrench(model, links, crank_speed, h)); };
   const HullMotion still{{0.0, 0.0}, hull.rate, 0.0};
@@ -108,8 +129,7 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
   by.col(2) = (load({{0.0, 0.0}, hull.rate + kSpeedStep, 0.0}) - here) / kSpeedStep;
   by.col(3) = load({{0.0, 0.0}, hull.rate, 1.0}) - here;
   by(2, 3) -= drive.by_hull;
-  const Eigen::Vector3d variance = (by * covariance * by.transpose()).diagonal().cwiseMax(0.0);
-  deviation = wrenchOf((vectorOf(deviation).cwiseAbs2() + variance).cwiseSqrt());
+  addCovariance(by * covariance * by.transpose(), deviation);
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
@@ -120,7 +140,7 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
       return HullWrench{p.x, p.z, p.about_d + drive.by_crank * speed};
     };
   });
-  return deviationOf(g, covariance);
+  return deviationOf(g * covariance * g.transpose());
 }
 
 MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,

@@ -18,11 +18,16 @@ class CrankFilter;
 struct HullDeviation {
   HullWrench wrench;      ///< of force_x [N], force_z [N], torque_y [N m]
   HullWrench common;      ///< the part of it that is the same in all samples: of constants
+  /// Coefficients of (force_x, force_z), (force_x, torque_y), (force_z, torque_y) [-]; 0 beside a deviation of 0.
+  Eigen::Vector3d correlation, common_correlation;
   double angle{};         ///< of the crank [rad]
   double speed{};         ///< [rad/s]
   double acceleration{};  ///< [rad/s2]
   double common_angle{}, common_speed{}, common_acceleration{};  ///< the part of constants of these
 };
+
+/// Adds an error of the load that is independent of those in `deviation.wrench`.
+void addCovariance(const Eigen::Matrix3d& covariance, HullDeviation& deviation) noexcept;
 
 /// How the links move at a crank angle and a little beside it: what gradients by the angle need.
 struct LinksBeside {
@@ -54,7 +59,7 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
 /// Adds what the hull's own motion adds to the deviation of the load at the links' place: linear, as the load is in all
 /// but the rate. Errors of crank and IMU are independent.
 void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,
-                   const HullMotion& hull, const HullMotionCovariance& covariance, HullWrench& deviation) noexcept;
+                   const HullMotion& hull, const HullMotionCovariance& covariance, HullDeviation& deviation) noexcept;
 
 /// Standard deviation of the momentum, the drive's included: of an impulse's one end [N s, N s, N m s].
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,

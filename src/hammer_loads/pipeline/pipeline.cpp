@@ -182,7 +182,7 @@ HullWrench Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& 
   }
   HullWrench there = hullWrench(model_, drive, other, hull);
   if (lands) there = there + rockerOnTool(mechanism_, links, hull.gravity);
-  return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)).cwiseAbs());
+  return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)));
 }
 
 /// Deviations, and whether the blow's side is certain. Returns what a rod that gives adds to the loads.
@@ -191,17 +191,22 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_std_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
-  const HullWrench own = gives ? result_.deviation.common : result_.deviation.wrench;
+  if (gives) {
+    result_.deviation.wrench = result_.deviation.common;
+    result_.deviation.correlation = result_.deviation.common_correlation;
+  }
   const ElasticFollower::Beside rod =
       gives ? elastic_.beside(drive, rod_.acceleration())
-            : ElasticFollower::Beside{{}, rod_.deviation(links.here.links, result_.crank.speed)};
-  result_.rod_ring = rod.deviation;
+            : ElasticFollower::Beside{{}, rod_.covariance(links.here.links, result_.crank.speed)};
+  result_.rod_ring = wrenchOf(rod.covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
   result_.rod_followed = gives;
   unknown_.vibrates(links.here.links, gives ? elastic_.vibration() : std::sqrt(2.0) * rod_.acceleration());
   result_.unknown = unknown_.squares(links.here.links);
   result_.contact_doubt = contactDoubt(links.here.links, drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
-  result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());
+  const Eigen::Vector3d doubt = vectorOf(result_.contact_doubt);
+  result_.beside = rod.covariance + doubt * doubt.transpose() + unknown_.covariance(links.here.links);
+  addCovariance(result_.beside, result_.deviation);
   const CrankFilter& tracker = crank_.tracker();
   // An encoder's edge shows the side of the blow as far as the zero is known.
   const double of_angle =
@@ -229,7 +234,7 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
                                  : pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow,
                                              result_.deviation.angle);
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
-                result_.deviation.wrench);
+                result_.deviation);
 }
 
 void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {

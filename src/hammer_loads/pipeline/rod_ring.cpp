@@ -222,12 +222,12 @@ double RodRing::speed() const noexcept {
   return moves_ ? share_ * std::sqrt(sum / static_cast<double>(states_.size())) : 0.0;
 }
 
-HullWrench RodRing::deviation(const LinkMotion& links, double crank) const noexcept {
+Eigen::Matrix3d RodRing::covariance(const LinkMotion& links, double crank) const noexcept {
   const double beside = speed(), square_of_speed = std::hypot(2.0 * links.rocker.u * crank * beside, square(beside));
   const double along = model_->mechanism().rockerFirstMoment() * square_of_speed;
-  const HullWrench across = rockerWrench(model_->mechanism(), links, acceleration());
-  return {std::hypot(across.force_x, along * links.rocker.cos_psi),
-          std::hypot(across.force_z, along * links.rocker.sin_psi), std::abs(across.torque_y)};
+  const Eigen::Vector3d across = vectorOf(rockerWrench(model_->mechanism(), links, acceleration()));
+  const Eigen::Vector3d inward = along * Eigen::Vector3d(links.rocker.cos_psi, -links.rocker.sin_psi, 0.0);
+  return across * across.transpose() + inward * inward.transpose();
 }
 
 HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, double acceleration) noexcept {

@@ -41,7 +41,7 @@ class RodRing {
   void take(const CrankFilter& filter, bool lost) noexcept;
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].
-  HullWrench deviation(const LinkMotion& links, double crank) const noexcept;
+  Eigen::Matrix3d covariance(const LinkMotion& links, double crank) const noexcept;
   /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
   double acceleration() const noexcept { return moves_ ? share_ * acceleration_ : 0.0; }
   /// How far a restitution may be off that was read off a crank as if the rod were rigid, standard [-].

@@ -44,11 +44,6 @@ struct WrenchOutput {
 };
 
 struct SampleResult {
-  /// Of the wrench's deviation, what is beside the crank's motion: squares [N2, N2, N2 m2].
-  Eigen::Vector3d squaresBeside() const noexcept {
-    return vectorOf(rod_ring).cwiseAbs2() + vectorOf(contact_doubt).cwiseAbs2() + unknown.rowwise().sum();
-  }
-
   /// deviation.wrench and rod_ring where the sample is to stand for a turn's extreme: of a ring whose phase is not
   /// known that is the crest, the root of two times its root mean square.
   struct OfExtreme {
@@ -75,7 +70,10 @@ struct SampleResult {
   CrankUncertainty doubt;    ///< of the crank's motion
   LoadColumns load_columns;  ///< of the wrench
   HullWrench rod_momentum;  ///< that the rocker may have beside a rigid rod's, where no spring is followed [N s, N m s]
-  HullWrench contact_doubt;  ///< as below, of where it is not known whether the tool was met
+  HullWrench contact_doubt;  ///< standard deviation, with signs, by whether the tool was met
+  /// Covariance of the wrench's errors that are not of the crank's motion: of rod, contact and unknown forces, in
+  /// products of [N], [N], [N m].
+  Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
   HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
   UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< likewise, that no level has: squares, by source
   bool rod_followed{};      ///< else rod_ring is a root mean square over a phase that is not known

@@ -152,8 +152,8 @@ HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUn
                                        const SampleResult& result) const noexcept {
   LoadColumns unused;
   HullDeviation of = hullDeviation(*hammer_, *model_, step_->driveInertia(), crank, there, hull, doubt, unused);
-  addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of.wrench);
-  of.wrench = wrenchOf((vectorOf(of.wrench).cwiseAbs2() + result.squaresBeside()).cwiseSqrt());
+  addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of);
+  addCovariance(result.beside, of);
   return of;
 }
 

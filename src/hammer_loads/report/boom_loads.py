@@ -2,7 +2,7 @@
 import pandas
 
 from report.formats import Table, in_unit, scaled
-from report.names import without_unit
+from report.names import in_words
 from report.over_time import time_unit
 from report.pictures import CURVES, Picture
 from report.series import BAND, Series, time_of_work
@@ -34,7 +34,7 @@ def picture_of(group, unit, channels):
     for name, colour in zip(channels, CURVES):
         points = Series(channels[name].dropna(subset=["x", "middle"])).thinned(MOST_POINTS)
         picture.curve((points[BAND] * factor).assign(x=points.x / seconds), colour, len(channels))
-        keys.append((f"line {colour}", without_unit(name.rpartition("/")[2])))
+        keys.append((f"line {colour}", in_words(name.rpartition("/")[2])))
     return picture.figure(group, keys)
 
 
@@ -43,7 +43,7 @@ def loads_table(rows):
     for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
         factor, shown = in_unit(unit)
         mean = (some.middle * some.turns).sum() / some.turns.sum()
-        result.append([without_unit(name), shown, *(scaled(v, factor) for v in (some.least.min(), mean, some.greatest.max())),
+        result.append([in_words(name), shown, *(scaled(v, factor) for v in (some.least.min(), mean, some.greatest.max())),
                        int(some.turns.sum())])
     return Table("Loads over all turns", ["Channel", "Unit", "Least", "Mean of turns", "Greatest", "Turns"], result)
 
@@ -54,7 +54,7 @@ def groups_of(rows):
     for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
         kind = (name.rpartition("/")[0] or name, unit)
         groups.setdefault(kind, {})[name] = some
-        if name.startswith("joint_loads/") and unit == "Nm":
+        if name.startswith("joint_loads/") and unit == "N m":
             reach[kind] = max(reach.get(kind, 0.0), some.greatest.max() - some.least.min())
     for kind in sorted(groups, key=lambda kind: kind != max(reach, key=reach.get, default=None)):
         names = list(groups[kind])

@@ -8,7 +8,7 @@ import tempfile
 from report.command import Parser, add_bag_options, databases, guarded
 from report.database import LEDGER, Database
 from report.formats import Table, in_unit, measured, number
-from report.names import without_unit
+from report.names import in_words
 from report.problem import Problem
 from report.subjects import subjects_of
 
@@ -21,13 +21,9 @@ LEAST_SHOWN = 5e-4
 class Figure:
     """Value and standard deviation in the quantity's unit; shares of the variance by source, largest first."""
 
-    def __init__(self, quantity, value, deviation, shares):
-        self.quantity, self.value, self.deviation = quantity, value, deviation
+    def __init__(self, quantity, unit, value, deviation, shares):
+        self.quantity, self.unit, self.value, self.deviation = quantity, unit, value, deviation
         self.shares = sorted(shares.items(), key=lambda one: (-one[1], one[0]))
-
-    @property
-    def unit(self):
-        return self.quantity.rsplit("_", 1)[-1] if "_" in self.quantity.rsplit("/", 1)[-1] else ""
 
     @property
     def halved(self):
@@ -39,9 +35,9 @@ def budget_of(subject):
     """Figures of all runs of a machine; runs count by their turns. Nothing for files that keep no budget."""
     if "budget" not in subject.database.tables():
         return []
-    rows = subject.frame("quantity, source, value, deviation, share FROM budget WHERE {runs}", text=["quantity", "source"])
+    rows = subject.frame("quantity, unit, source, value, std, share FROM budget WHERE {runs}", text=["quantity", "unit", "source"])
     turns = rows.run.map(lambda run: subject.runs[run]["turns"] or 1)
-    rows = rows.assign(turns=turns, variance=turns * rows.share * rows.deviation ** 2)
+    rows = rows.assign(turns=turns, variance=turns * rows.share * rows["std"] ** 2)
     return [combined(quantity, of_quantity) for quantity, of_quantity in rows.groupby("quantity", sort=False)]
 
 
@@ -51,7 +47,7 @@ def combined(quantity, rows):
     variances = rows.dropna(subset=["variance"]).groupby("source").variance.sum() / turns
     total = variances.sum()
     shares = (variances / total).to_dict() if total > 0.0 else {REST: 1.0}
-    return Figure(quantity, float((runs.turns * runs.value.fillna(0.0)).sum() / turns), math.sqrt(total), shares)
+    return Figure(quantity, runs.unit.iloc[0], float((runs.turns * runs.value.fillna(0.0)).sum() / turns), math.sqrt(total), shares)
 
 
 def bars(figures):
@@ -65,7 +61,7 @@ def bars(figures):
     for figure in figures:
         parts = [(colours[source], source, share) for source, share in figure.shares if source in colours]
         parts.append(("soft", REST, max(0.0, 1.0 - sum(part[2] for part in parts))))
-        shown.append((without_unit(figure.quantity), parts))
+        shown.append((in_words(figure.quantity), parts))
     return shown, [(f"box {colour}", source) for source, colour in [*colours.items(), (REST, "soft")]]
 
 
@@ -73,7 +69,7 @@ def budget_row(figure):
     factor, unit = in_unit(figure.unit)
     source, share = figure.shares[0]
     relative = 100.0 / abs(figure.value) if figure.value else math.nan
-    return [without_unit(figure.quantity), unit, measured(figure.value * factor, figure.deviation * factor),
+    return [in_words(figure.quantity), unit, measured(figure.value * factor, figure.deviation * factor),
             number(relative * figure.deviation, 2), f"{source} ({100 * share:.0f} %)", number(relative * figure.halved, 2)]
 
 
@@ -125,7 +121,9 @@ def as_text(budgets):
     for machine, figures in budgets:
         lines.append(f"{machine}: standard deviations of one turn, by source")
         for f in figures:
-            lines.append(f"{f.quantity}: {f.value:.5g} +- {f.deviation:.2g}; {f.halved:.2g} with the largest source halved")
+            unit = f" {f.unit}" if f.unit != "-" else ""
+            lines.append(f"{in_words(f.quantity)}: {f.value:.5g} +- {f.deviation:.2g}{unit}; "
+                         f"{f.halved:.2g}{unit} with the largest source halved")
             lines += share_lines(f.shares)
     return "\n".join(lines) + "\n"
 
@@ -133,19 +131,19 @@ def as_text(budgets):
 def as_json(budgets):
     return json.dumps({"machines": [
         {"machine": machine,
-         "figures": [{"quantity": f.quantity, "unit": f.unit, "value": f.value, "deviation": f.deviation,
-                      "deviation_with_largest_halved": f.halved,
+         "figures": [{"quantity": f.quantity, "unit": f.unit, "value": f.value, "std": f.deviation,
+                      "std_with_largest_halved": f.halved,
                       "sources": [{"source": source, "share": share} for source, share in f.shares]} for f in figures]}
         for machine, figures in budgets]}, indent=2) + "\n"
 
 
 def write_csv(budgets, stream):
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(["machine", "quantity", "value", "deviation", "deviation_with_largest_halved", "source", "share"])
+    writer.writerow(["machine", "quantity", "unit", "value", "std", "std_with_largest_halved", "source", "share"])
     for machine, figures in budgets:
         for f in figures:
             for source, share in f.shares:
-                writer.writerow([machine, f.quantity, f.value, f.deviation, f.halved, source, share])
+                writer.writerow([machine, f.quantity, f.unit, f.value, f.deviation, f.halved, source, share])
 
 
 def run(given):

@@ -6,7 +6,7 @@ from report.budget import budget_of
 from report.command import Parser, add_bag_options, databases, guarded, package_version
 from report.database import RECORDING, Database
 from report.formats import NOTHING, Table, duration, in_unit, is_nothing, number, places_of, scaled, utc
-from report.names import without_unit
+from report.names import in_words
 from report.overview import warnings_of
 from report.page import rendered
 from report.problem import Problem
@@ -32,7 +32,7 @@ def results(figures):
         factor, unit = in_unit(figure.unit)
         value, expanded = rounded(scaled(figure.value, factor), scaled(COVERAGE * figure.deviation, factor))
         largest = ", ".join(f"{source} {100 * share:.0f} %" for source, share in figure.shares[:2] if share >= 0.1)
-        rows.append([without_unit(figure.quantity), value, expanded, unit, largest])
+        rows.append([in_words(figure.quantity), value, expanded, unit, largest])
     return Table(f"Mean of the turns; U = k u, k = {COVERAGE}",
                  ["Measurand", "Estimate", "U", "Unit", "Largest contributions to u\u00b2"], rows)
 
@@ -41,7 +41,7 @@ def deviation_key(key, keys):
     """Key of a constant's standard deviation: `_std` before the unit."""
     parts = key.split("_")
     return next((name for at in range(len(parts), 0, -1)
-                 if (name := "_".join(parts[:at] + ["deviation"] + parts[at:])) in keys), None)
+                 if (name := "_".join(parts[:at] + ["std"] + parts[at:])) in keys), None)
 
 
 def inputs(subject, figures):
@@ -52,7 +52,7 @@ def inputs(subject, figures):
     for figure in figures:
         for source, share in figure.shares:
             if share > max(LISTED, largest.get(source, ("", 0.0))[1]):
-                largest[source] = (without_unit(figure.quantity), share)
+                largest[source] = (in_words(figure.quantity), share)
     listed = []
     for source, (quantity, share) in sorted(largest.items(), key=lambda item: (-item[1][1], item[0])):
         estimate = parameters.get(source, NOTHING)

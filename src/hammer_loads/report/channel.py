@@ -22,9 +22,8 @@ class Channel:
     @classmethod
     def of(cls, row, cycles_per_hour):
         """From a row of a table `channels`."""
-        unit = row.get("unit") or row["name"].rsplit("_", 1)[-1]
         grid = (row["least"], row["greatest"], row["classes"])
-        return cls(row["name"], unit, grid, curve_of(row), cycles_per_hour)
+        return cls(row["name"], row["unit"], grid, curve_of(row), cycles_per_hour)
 
     def add_tally(self, row):
         for name in TALLY:

@@ -7,7 +7,7 @@ from report.damage import SLOPES
 from report.formats import (NOTHING, Table, clean, duration, in_unit, is_nothing, measured, moment, number, scaled, shown,
                             titled)
 from report.misuse import COUNTERS, UNKNOWN, counter
-from report.names import recording_of, without_unit
+from report.names import recording_of, in_words
 from report.over_time import time_unit
 from report.overview import blows_per_hour, total_energy, with_spread
 from report.pictures import CURVES, Picture
@@ -70,7 +70,7 @@ def channel_figures(channels):
         for slope, (value, deviation) in zip(SLOPES, channel.equivalents()):
             if slope in (3.0, 5.0):
                 value, deviation = scaled(value, factor), scaled(deviation, factor)
-                yield Figure(titled(f"{without_unit(channel.name)}, range at slope {slope:g}", unit),
+                yield Figure(titled(f"{in_words(channel.name)}, range at slope {slope:g}", unit),
                              measured(value, deviation), value, kind_of(channel.name))
 
 

@@ -6,7 +6,7 @@ from report.channel import Channel
 from report.damage import columns_of
 from report.database import FLEET
 from report.formats import Table, moment, number, utc
-from report.names import recording_of, without_unit
+from report.names import recording_of, in_words
 from report.subjects import MOST_TURNS_ONE_BY_ONE, add_piece
 
 SLOPE = 5.0  # where no S-N curve is given
@@ -26,7 +26,7 @@ def judged_channel(channels):
 
 
 def rule_of(channel):
-    return f"{without_unit(channel.name)}, " + ("S-N curve" if channel.curve else f"slope {SLOPE:g}")
+    return f"{in_words(channel.name)}, " + ("S-N curve" if channel.curve else f"slope {SLOPE:g}")
 
 
 def damage_of_each(channel, ranges, means):
@@ -136,7 +136,7 @@ def doubling_factor(channel):
 def back_calculation(channels):
     """(words, table): life over that of now by the load over that of now."""
     ways = [(f"slope {m:g}", [factor ** -m for factor in FACTORS], 2.0 ** (-1.0 / m)) for m in (3.0, 5.0, 10.0)]
-    ways += [(without_unit(c.name), life_factors(c, FACTORS), doubling_factor(c)) for c in channels
+    ways += [(in_words(c.name), life_factors(c, FACTORS), doubling_factor(c)) for c in channels
              if c.curve is not None and c.damage()[0] > 0.0]
     words = "; ".join(f"{name}: {number(double, 3)} of the load" for name, _, double in ways if double)
     rows = [[number(factor), *(number(lives[at], 3) for _, lives, _ in ways)] for at, factor in enumerate(FACTORS)]

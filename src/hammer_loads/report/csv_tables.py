@@ -1,4 +1,5 @@
-"""Every table of the files as CSV: TABLE.csv, ledgers' as ledger_TABLE.csv; the first column is the file."""
+"""Every table of the files as CSV: TABLE.csv, ledgers' as ledger_TABLE.csv. The first line is a comment with the units,
+the second the header; the first column is the file."""
 import csv
 import os
 import re
@@ -7,6 +8,7 @@ from report.database import LEDGER, quoted
 from report.names import stem
 from report.problem import Problem, one_line
 
+COMMENT = "# hammer_loads"
 # A spreadsheet runs what begins so; a text that it does not run begins with a quotation mark.
 FORMULA = ("=", "+", "-", "@", "\t")
 
@@ -34,10 +36,20 @@ def write_tables(databases, directory):
     for name, sources in tables.items():
         columns = list(dict.fromkeys(c for database, table in sources for c in database.columns(table)))
         with open(directory / name, "w", encoding="utf-8", newline="") as file:
+            units = {column: unit for database, table in sources for column, unit in units_of(database, table).items()}
+            file.write(f"{COMMENT}, units: " + ", ".join(f"{c} [{units.get(c, '-')}]" for c in ["file", *columns]) + "\n")
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(["file", *map(plain, columns)])
             for database, table in sources:
                 write_rows(writer, database, table, columns)
+
+
+def units_of(database, table):
+    """{column: unit} by the table `columns`."""
+    if "columns" not in database.tables():
+        return {}
+    return {one_line(column): one_line(unit) for column, unit in database.rows(
+        "SELECT column_name, unit FROM columns WHERE table_name = ?", table)}
 
 
 def write_rows(writer, database, table, columns):
@@ -56,6 +68,6 @@ def why_directory_must_stay(name):
         if not (entry.endswith(".csv") and os.path.isfile(path) and not os.path.islink(path)):
             return f"{entry} is none of its tables"
         with open(path, "rb") as file:
-            if not file.read(5) == b"file,":
+            if not file.read(len(COMMENT)) == COMMENT.encode():
                 return f"{entry} is none of its tables"
     return None

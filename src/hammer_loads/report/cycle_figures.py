@@ -6,7 +6,7 @@ import numpy
 
 from report.damage import SLOPES
 from report.formats import Table, in_unit, number, scaled
-from report.names import without_unit
+from report.names import in_words
 from report.pictures import COLOURS, Picture
 
 CELLS = 24  # of a matrix, each way
@@ -26,7 +26,7 @@ def equivalents_table(channels):
         cycles = channel.count.ranges_and_means()
         factor, unit = in_unit(channel.unit)
         damage = channel.damage(cycles)
-        rows.append([without_unit(channel.name), unit, *(with_std(f, factor) for f in channel.equivalents(cycles)),
+        rows.append([in_words(channel.name), unit, *(with_std(f, factor) for f in channel.equivalents(cycles)),
                      scaled(cycles[-1][0] if cycles else 0.0, factor), number(sum(n for _, _, n in cycles), 6),
                      with_std(damage), with_std(channel.remaining_hours(damage)),
                      f"{channel.below + channel.above}, {channel.skipped}, {channel.gaps}"])
@@ -84,7 +84,7 @@ def channel_pictures(channel):
     if not cycles:
         return None
     factor, unit = in_unit(channel.unit)
-    title, width = without_unit(channel.name), channel.count.width * factor
+    title, width = in_words(channel.name), channel.count.width * factor
     ranges, means, counts = numpy.array(cycles).T * [[factor], [factor], [1.0]]
     edges, tally, shares = by_range(ranges, counts, width)
     rows = [[f"{number(low)} to {number(high)}", number(n, 6), *(number(100 * s, 3) for s in of_slopes)]

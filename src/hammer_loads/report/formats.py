@@ -7,7 +7,7 @@ import unicodedata
 
 from markupsafe import Markup
 
-UNITS = {"N": (1e-3, "kN"), "Nm": (1e-3, "kN m"), "MPa": (1.0, "MPa"), "Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
+UNITS = {"N": (1e-3, "kN"), "N m": (1e-3, "kN m"), "N s": (1.0, "N s"), "-": (1.0, ""), "MPa": (1.0, "MPa"), "Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
 NOTHING = "\u2013"
 
 # The first column names the row. kind: classes of the table, `numbers` or `words`.

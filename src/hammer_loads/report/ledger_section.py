@@ -4,14 +4,14 @@ from report.cycle_figures import cycle_figures, with_std
 from report.damage import SLOPES
 from report.formats import Table, in_unit, titled
 from report.ledgers import epochs_of
-from report.names import without_unit
+from report.names import in_words
 
 
 def days_table(epoch, channels_by_day):
     """Damage-equivalent range at slope 5 and damage of each channel, by day."""
     header, rows = ["Day (UTC)", "Hours", "Blows"], []
     for channel in epoch.channels():
-        name = without_unit(channel.name)
+        name = in_words(channel.name)
         header.append(titled(name, in_unit(channel.unit)[1]) + ", slope 5")
         header += [f"{name}, damage"] if channel.curve is not None else []
     for (_, date, hours, blows), channels in zip(epoch.days, channels_by_day):

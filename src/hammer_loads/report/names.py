@@ -32,6 +32,29 @@ def recording_of(subject):
     return result
 
 
-def without_unit(channel):
-    """The unit stands beside it, once: hull_wrench/force_z in kN is read as two units."""
-    return re.sub(r"_(N|Nm|Ns|MPa|Pa|m|rad|J)$", "", channel)
+WORDS = {
+    "pulse/amplitude": "peak force along the tool",
+    "pulse/impulse": "impulse of the pulse",
+    "pulse/turn_impulse_x": "impulse of a turn across the tool",
+    "pulse/turn_impulse_z": "impulse of a turn along the tool",
+    "blow/energy": "blow energy",
+    "blow/restitution": "restitution",
+    "hull_wrench/force_x": "force across the tool, Fx",
+    "hull_wrench/force_z": "force along the tool, Fz",
+    "hull_wrench/torque_y": "moment about the rocker pivot, My",
+}
+TOPICS = {"joint_loads": "", "section_loads": "section ", "stress": "stress at "}
+
+
+def in_words(quantity):
+    """Words for a channel (topic/field, topic/name/field, stress/NAME) or a figure of the budget."""
+    if quantity in WORDS:
+        return WORDS[quantity]
+    topic, _, rest = quantity.partition("/")
+    slope = re.fullmatch(r"equivalent_range_(\d+)", topic)
+    if slope:
+        return f"damage-equivalent range (slope {slope[1]}) of {in_words(rest)}"
+    if topic not in TOPICS:
+        return quantity
+    name, _, field = rest.partition("/")
+    return TOPICS[topic] + name + (", " + field.replace("_", " ") if field else "")

@@ -38,7 +38,7 @@ def health_rows(subject):
     """[figure, value, verdict, meaning]."""
     consistency, jitter = worst_of(subject, "consistency"), worst_of(subject, "timing_noise")
     resolution, noise = worst_of(subject, "angle_resolution"), worst_of(subject, "speed_noise")
-    deviation = worst_of(subject, "drive_inertia_std")
+    deviation = worst_of(subject, "drive_inertia_relative_std")
     samples = subject.total("samples")
     refused = sum(count for _, count in refusals_of(subject))
     share = refused / samples if samples else None

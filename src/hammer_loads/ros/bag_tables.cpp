@@ -77,7 +77,7 @@ void addLearned(const CrankFilter& filter, RunRecord& record) {
   record.timing_noise = filter.timingNoise();
   record.speed_noise = filter.speedNoise();
   record.drive_inertia = filter.driveInertia();
-  record.drive_inertia_std = filter.blowFactor().inertia_std;
+  record.drive_inertia_relative_std = filter.blowFactor().inertia_std;
 }
 
 }  // namespace

@@ -12,8 +12,6 @@ namespace {
 constexpr std::size_t kLongestLimit = 256;  // more than a cylinder's name has
 
 // Vectors of Eigen 3.3 have no begin() and end().
-void copy(const JointVector& from, std::vector<double>& to) { std::copy_n(from.data(), from.size(), to.begin()); }
-
 void assign(const JointVector& from, std::vector<double>& to) { to.assign(from.data(), from.data() + from.size()); }
 
 void copy(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
@@ -25,45 +23,39 @@ void copy(const Wrench& from, geometry_msgs::Wrench& to) {
   copy(from.torque, to.torque);
 }
 
+void copy(const Wrench& from, boost::array<double, 6>& to) {
+  Eigen::Map<Eigen::Vector3d>(to.data()) = from.force, Eigen::Map<Eigen::Vector3d>(to.data() + 3) = from.torque;
+}
+
 }  // namespace
 
 void prepareJointLoads(const Boom& boom, JointLoads& message) {
-  const auto joints = static_cast<std::size_t>(boom.chain().joints());
   message.header.frame_id = boom.parameters().chain.root;
-  message.joint_name = boom.chain().jointNames();
-  for (std::vector<double>* torque : {&message.hammer_torque, &message.weight_torque, &message.motion_torque,
-                                      &message.vibration_torque, &message.total_torque})
-    torque->resize(joints);
-  for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
-  message.contact_torque.resize(joints);
-  message.total_torque_std.resize(joints, kNaN);
-  message.total_torque_systematic_std.resize(joints, kNaN);
-  message.cylinder_force.resize(boom.cylinders().size());
-  message.cylinder_force_std.resize(boom.cylinders().size(), kNaN);
-  message.cylinder_force_systematic_std.resize(boom.cylinders().size(), kNaN);
-  message.cylinder_flags.resize(boom.cylinders().size());
-  message.cylinder_pressure.resize(boom.cylinders().size());
+  message.joint.clear(), message.cylinder.clear();
+  for (const std::string& name : boom.chain().jointNames()) {
+    JointLoad& joint = message.joint.emplace_back();
+    joint.name = name;
+    joint.total_torque_std = joint.total_torque_systematic_std = kNaN;
+  }
+  for (const Cylinder& of_boom : boom.cylinders()) {
+    CylinderLoad& cylinder = message.cylinder.emplace_back();
+    cylinder.name = of_boom.parameters().name;
+    cylinder.force_std = cylinder.force_systematic_std = kNaN;
+  }
 }
 
 void prepareSections(const Boom& boom, SectionLoads& message) {
   message.header.frame_id = boom.parameters().chain.root;
-  for (const Section& section : boom.sections()) message.section_name.push_back(section.name());
-  message.load.resize(boom.sections().size());
-  message.load_std.resize(boom.sections().size());
-  message.load_systematic_std.resize(boom.sections().size());
+  message.section.clear();
+  for (const Section& section : boom.sections()) message.section.emplace_back().name = section.name();
 }
 
 void prepareReactions(const Boom& boom, JointReactions& message) {
-  const auto joints = static_cast<std::size_t>(boom.chain().joints());
   message.header.frame_id = boom.parameters().chain.root;
-  message.joint_name = boom.chain().jointNames();
-  message.load.resize(joints);
-  message.load_std.resize(joints);
-  message.load_systematic_std.resize(joints);
-  for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
-  message.base_force.resize(boom.cylinders().size());
-  message.guide_force.resize(boom.cylinders().size());
-  message.rod_force.resize(boom.cylinders().size());
+  message.joint.clear(), message.cylinder.clear();
+  for (const std::string& name : boom.chain().jointNames()) message.joint.emplace_back().name = name;
+  for (const Cylinder& cylinder : boom.cylinders())
+    message.cylinder.emplace_back().name = cylinder.parameters().name;
 }
 
 CylinderJoints::CylinderJoints(const Boom& boom, sensor_msgs::JointState& message) {
@@ -103,20 +95,25 @@ void prepareVibration(const Boom& boom, BoomVibration& message) {
 
 void fillJointLoads(const BoomState& state, JointLoads& message) {
   message.header.stamp = timeOf(state.stamp);
-  copy(state.loads.hammer, message.hammer_torque);
-  copy(state.loads.weight, message.weight_torque);
-  copy(state.loads.motion, message.motion_torque);
-  copy(state.loads.vibration, message.vibration_torque);
-  copy(state.contact_torque, message.contact_torque);
-  copy(state.loads.total, message.total_torque);
-  copy(state.deviations.torque, message.total_torque_std);
-  copy(state.common.torque, message.total_torque_systematic_std);
-  for (std::size_t i = 0; i < message.cylinder_name.size(); ++i) {
-    message.cylinder_force[i] = state.loads.cylinder[i].force;
-    message.cylinder_force_std[i] = state.deviations.cylinder[i];
-    message.cylinder_force_systematic_std[i] = state.common.cylinder[i];
-    message.cylinder_pressure[i] = state.loads.cylinder[i].pressure;
-    message.cylinder_flags[i] = state.cylinder_flags[i];
+  for (std::size_t i = 0; i < message.joint.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    JointLoad& joint = message.joint[i];
+    joint.hammer_torque = state.loads.hammer[at];
+    joint.weight_torque = state.loads.weight[at];
+    joint.motion_torque = state.loads.motion[at];
+    joint.vibration_torque = state.loads.vibration[at];
+    joint.contact_torque = state.contact_torque[at];
+    joint.total_torque = state.loads.total[at];
+    joint.total_torque_std = state.deviations.torque[at];
+    joint.total_torque_systematic_std = state.common.torque[at];
+  }
+  for (std::size_t i = 0; i < message.cylinder.size(); ++i) {
+    CylinderLoad& cylinder = message.cylinder[i];
+    cylinder.force = state.loads.cylinder[i].force;
+    cylinder.force_std = state.deviations.cylinder[i];
+    cylinder.force_systematic_std = state.common.cylinder[i];
+    cylinder.pressure = state.loads.cylinder[i].pressure;
+    cylinder.flags = state.cylinder_flags[i];
   }
   message.flags = 0;
   if (state.hold_down_force_lost) message.flags |= JointLoads::FLAG_HOLD_DOWN_LOST;
@@ -126,24 +123,27 @@ void fillJointLoads(const BoomState& state, JointLoads& message) {
 
 void fillSections(const BoomState& state, SectionLoads& message) {
   message.header.stamp = timeOf(state.stamp);
-  for (std::size_t i = 0; i < message.load.size(); ++i) {
-    copy(state.steel.section[i], message.load[i]);
-    copy(state.deviations.section[i], message.load_std[i]);
-    copy(state.common.section[i], message.load_systematic_std[i]);
+  for (std::size_t i = 0; i < message.section.size(); ++i) {
+    SectionLoad& section = message.section[i];
+    copy(state.steel.section[i], section.load);
+    copy(state.deviations.section[i], section.load_std);
+    copy(state.common.section[i], section.load_systematic_std);
   }
 }
 
 void fillReactions(const BoomState& state, JointReactions& message) {
   message.header.stamp = timeOf(state.stamp);
-  for (std::size_t i = 0; i < message.load.size(); ++i) {
-    copy(state.steel.joint[i], message.load[i]);
-    copy(state.deviations.joint[i], message.load_std[i]);
-    copy(state.common.joint[i], message.load_systematic_std[i]);
+  for (std::size_t i = 0; i < message.joint.size(); ++i) {
+    JointReaction& joint = message.joint[i];
+    copy(state.steel.joint[i], joint.load);
+    copy(state.deviations.joint[i], joint.load_std);
+    copy(state.common.joint[i], joint.load_systematic_std);
   }
-  for (std::size_t i = 0; i < message.base_force.size(); ++i) {
-    copy(state.steel.pins[i].base, message.base_force[i]);
-    copy(state.steel.pins[i].guide, message.guide_force[i]);
-    copy(state.steel.pins[i].rod, message.rod_force[i]);
+  for (std::size_t i = 0; i < message.cylinder.size(); ++i) {
+    CylinderReaction& cylinder = message.cylinder[i];
+    copy(state.steel.pins[i].base, cylinder.base_force);
+    copy(state.steel.pins[i].guide, cylinder.guide_force);
+    copy(state.steel.pins[i].rod, cylinder.rod_force);
   }
 }
 

@@ -43,6 +43,8 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
   message.crank_angle_systematic_std = deviation.common_angle;
   message.crank_speed_systematic_std = deviation.common_speed;
   message.crank_acceleration_systematic_std = deviation.common_acceleration;
+  Eigen::Map<Eigen::Vector3d>(message.correlation.data()) = deviation.correlation;
+  Eigen::Map<Eigen::Vector3d>(message.systematic_correlation.data()) = deviation.common_correlation;
   message.interval = output.interval;
   message.level = nameOf(result.level);  // short enough for no allocation
   message.consistency = result.consistency;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "hammer_loads/life/channel_unit.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/util/constants.h"
 
@@ -53,6 +54,8 @@ void fillFigures(const life::ChannelFigures& figures, ChannelCycles& message) {
 
 void prepareTurnLoads(const std::vector<std::string>& channels, TurnLoads& message) {
   message.channel = channels;
+  message.unit.clear();
+  for (const std::string& channel : channels) message.unit.push_back(life::unitOf(channel));
   for (std::vector<double>* values :
        {&message.minimum, &message.maximum, &message.mean, &message.minimum_std, &message.maximum_std,
         &message.minimum_systematic_std, &message.maximum_systematic_std})
@@ -88,6 +91,7 @@ void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::Led
   for (std::size_t i = 0; i < machine.channels.size(); ++i) {
     const life::LedgerChannel& channel = machine.channels[i];
     message.channel[i].name = channel.name;
+    message.channel[i].unit = life::unitOf(channel.name);
     fillCount(total.counts[i], message.channel[i]);
     fillFigures(life::figuresOf(total.counts[i], channel, message.duration / kSecondsPerHour,
                                 machine.equivalent_cycles_per_hour),

@@ -68,13 +68,11 @@ void LoadDisplay::onRunInfo(const RunInfo& info) {
 }
 
 void LoadDisplay::onSections(const SectionLoads& loads) {
-  for (std::size_t i = 0; i < loads.load.size(); ++i)
-    show("section/" + loads.section_name[i], loads.header.stamp, loads.load[i]);
+  for (const SectionLoad& section : loads.section) show("section/" + section.name, loads.header.stamp, section.load);
 }
 
 void LoadDisplay::onReactions(const JointReactions& loads) {
-  for (std::size_t i = 0; i < loads.load.size(); ++i)
-    show("joint/" + loads.joint_name[i], loads.header.stamp, loads.load[i]);
+  for (const JointReaction& joint : loads.joint) show("joint/" + joint.name, loads.header.stamp, joint.load);
 }
 
 /// At a dead centre a load is not a number: no arrow.

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
@@ -34,25 +35,40 @@ const std::map<std::string, Kind>& kinds() {
   return kinds;
 }
 
+struct Comment {
+  std::string unit{"-"}, description;
+};
+
+/// A field's comment is "# [unit] description"; further lines of the description begin with spaces.
+Comment commentOf(const std::string& line) {
+  std::smatch found;
+  if (!std::regex_match(line, found, std::regex(R"([^#]*#\s*(?:\[([^\]]*)\]\s*)?(.*))"))) return {};
+  return {found[1].matched ? found[1].str() : "-", found[2]};
+}
+
 }  // namespace
 
 NumberFields::NumberFields(const std::string& definition) {
   std::istringstream lines(definition);
   for (std::string line; std::getline(lines, line) && line.rfind("====", 0) != 0;) {
+    if (!fields_.empty() && std::regex_match(line, std::regex(R"(\s+#.*)")))
+      fields_.back().description += ' ' + line.substr(line.find('#') + 2);
     std::istringstream words(line.substr(0, line.find('#')));
     std::string type, name;
     if (!(words >> type >> name) || name == "header") continue;
     if (line.substr(0, line.find('#')).find('=') != std::string::npos) continue;  // a constant
     const auto kind = kinds().find(type);
     if (kind == kinds().end()) throw std::invalid_argument("field " + name + " of type " + type + " is no number");
-    fields_.push_back({name, kind->second.read, kind->second.size, kind->second.is_integer});
+    const Comment comment = commentOf(line);
+    fields_.push_back(
+        {name, kind->second.read, kind->second.size, kind->second.is_integer, comment.unit, comment.description});
   }
   values_.resize(fields_.size());
 }
 
 std::vector<TableColumn> NumberFields::columns() const {
   std::vector<TableColumn> columns;
-  for (const Field& field : fields_) columns.push_back({field.name, field.is_integer});
+  for (const Field& field : fields_) columns.push_back({field.name, field.is_integer, field.unit, field.description});
   return columns;
 }
 

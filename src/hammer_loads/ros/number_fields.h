@@ -35,6 +35,7 @@ class NumberFields {
     double (*read)(const std::uint8_t* bytes);
     std::size_t size;
     bool is_integer;
+    std::string unit, description;
   };
   void read(std::size_t header_size);
 

@@ -1,4 +1,4 @@
-/// Names of a machine's loads: topic/field or topic/name/field, the unit at the end.
+/// Names of a machine's loads: topic/field or topic/name/field.
 #pragma once
 
 #include <string>

@@ -25,10 +25,8 @@ struct ChannelCount {
 };
 
 struct ChannelRecord {
-  std::string name;  ///< topic/field or topic/name/field, stress/NAME of a hot spot; its end is its unit
+  std::string name;  ///< topic/field or topic/name/field, stress/NAME of a hot spot
   std::optional<ChannelCount> count;
-
-  std::string unit() const { return name.substr(name.rfind('_') + 1); }
 };
 
 /// Extremes and mean of one channel in one turn.
@@ -41,7 +39,7 @@ struct TurnLoad {
 
 /// Share of one source in the variance of a figure.
 struct BudgetRow {
-  std::string quantity;  ///< its end is its unit
+  std::string quantity;  ///< message/field, or equivalent_range_3/CHANNEL
   double value{}, deviation{};
   std::string source;
   double share{};  ///< of the variance; those of a quantity sum to 1

@@ -40,7 +40,7 @@ struct RunRecord {
   double speed_noise{kUnknown};              ///< [rad/s]
   double angle_resolution{kUnknown};         ///< [rad]
   double drive_inertia{kUnknown};            ///< [kg m2]
-  double drive_inertia_std{kUnknown};  ///< relative [-]
+  double drive_inertia_relative_std{kUnknown};  ///< relative [-]
   double equivalent_cycles_per_hour{kUnknown};
   std::vector<Parameter> parameters;
   std::vector<Refusals> refusals;

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "hammer_loads/life/column_texts.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -15,52 +17,156 @@ PRAGMA journal_mode = OFF; PRAGMA locking_mode = EXCLUSIVE; PRAGMA temp_store = 
 
 constexpr char kTables[] = R"(
 CREATE TABLE runs(
-  run_id INTEGER PRIMARY KEY, run_key TEXT NOT NULL UNIQUE, input_sha256 TEXT NOT NULL, parameters_sha256 TEXT NOT NULL,
-  machine TEXT NOT NULL, version TEXT NOT NULL, revision TEXT NOT NULL, parameters_yaml TEXT NOT NULL,
-  first_stamp_ns INTEGER, last_stamp_ns INTEGER, duration REAL,
-  level TEXT, samples INTEGER, published INTEGER, restarts INTEGER, turns INTEGER, blows INTEGER, backward_passes INTEGER,
-  consistency REAL, timing_noise REAL, speed_noise REAL, angle_resolution REAL, drive_inertia REAL,
-  drive_inertia_std REAL, equivalent_cycles_per_hour REAL,
-  blank_firings INTEGER, judged_blows INTEGER, blows_without_hold_down INTEGER, still_time REAL, hull_pitch REAL);
-CREATE TABLE parameters(run_id INTEGER, key TEXT, value TEXT, shipped TEXT, PRIMARY KEY(run_id, key)) WITHOUT ROWID;
-CREATE TABLE refusals(run_id INTEGER, reason TEXT, count INTEGER, PRIMARY KEY(run_id, reason)) WITHOUT ROWID;
-CREATE TABLE warnings(run_id INTEGER, place INTEGER, key TEXT, text TEXT, PRIMARY KEY(run_id, place)) WITHOUT ROWID;
+  run_id INTEGER PRIMARY KEY,         -- [-] number of the run, from 1 in the order of time
+  run_key TEXT NOT NULL UNIQUE,       -- [-] SHA-256 over input, parameters, version and run_id; identifies the run in merged files
+  input_sha256 TEXT NOT NULL,         -- [-] SHA-256 over the bytes of the bags in their order
+  parameters_sha256 TEXT NOT NULL,    -- [-] SHA-256 over every parameter in force and the robot description
+  machine TEXT NOT NULL,              -- [-] digest of the machine, as in a ledger
+  version TEXT NOT NULL,              -- [-] version of the package
+  revision TEXT NOT NULL,             -- [-] revision of its source
+  parameters_yaml TEXT NOT NULL,      -- [-] every parameter in force, except those of log and ledger file
+  first_stamp_ns INTEGER,             -- [ns] stamp of the first published sample
+  last_stamp_ns INTEGER,              -- [ns] stamp of the last published sample
+  duration REAL,                      -- [s] time between published samples, gaps (stale_after_s) left out
+  level TEXT,                         -- [-] level of the model: pulse, rocker, linkage or elastic
+  samples INTEGER,                    -- [-] number of messages on the crank's topic
+  published INTEGER,                  -- [-] number of published wrenches
+  restarts INTEGER,                   -- [-] number of drop-outs, jumps and backward steps of time
+  turns INTEGER,                      -- [-] number of rows in turns
+  blows INTEGER,                      -- [-] number of rows in blows
+  backward_passes INTEGER,            -- [-] number of passages of the blow in backward direction
+  consistency REAL,                   -- [-] consistency of HullLoads at the end of the run
+  timing_noise REAL,                  -- [s] jitter of the stamps, estimated by the end of the run
+  speed_noise REAL,                   -- [rad/s] noise of measured speeds, estimated by the end of the run
+  angle_resolution REAL,              -- [rad] one count of the encoder, estimated by the end of the run
+  drive_inertia REAL,                 -- [kg m2] drive inertia, estimated by the end of the run
+  drive_inertia_relative_std REAL,    -- [-] standard deviation of the drive inertia over its value
+  equivalent_cycles_per_hour REAL,    -- [1/h] rate of damage-equivalent ranges (life_equivalent_cycles_per_hour)
+  blank_firings INTEGER,              -- [-] number of strokes past the place of the tool (doc/report.md, Misuse)
+  judged_blows INTEGER,               -- [-] number of blows whose hold-down force is known from cylinder pressures
+  blows_without_hold_down INTEGER,    -- [-] number of judged blows without force of the rock on the hull; NULL: not known
+  still_time REAL,                    -- [s] time of hammering beyond 15 s at one place; NULL: the place of the hull is not known
+  hull_pitch REAL                     -- [rad] pitch of the hull at the end of the run; 0: the tool is vertical
+);
+CREATE TABLE parameters(
+  run_id INTEGER,  -- [-] number of the run
+  key TEXT,        -- [-] key of the parameter files
+  value TEXT,      -- [-] value in force, as text
+  shipped TEXT,    -- [-] value in the shipped files; NULL: none there
+  PRIMARY KEY(run_id, key)) WITHOUT ROWID;
+CREATE TABLE refusals(
+  run_id INTEGER,  -- [-] number of the run
+  reason TEXT,     -- [-] reason why crank samples gave no wrench
+  count INTEGER,   -- [-] number of these samples, at least 1
+  PRIMARY KEY(run_id, reason)) WITHOUT ROWID;
+CREATE TABLE warnings(
+  run_id INTEGER,  -- [-] number of the run
+  place INTEGER,   -- [-] rank, 0 for the most important
+  key TEXT,        -- [-] name of the cause
+  text TEXT,       -- [-] text, as on the console
+  PRIMARY KEY(run_id, place)) WITHOUT ROWID;
 CREATE TABLE channels(
-  run_id INTEGER, channel INTEGER, name TEXT, unit TEXT, counted INTEGER, least REAL, greatest REAL, classes INTEGER,
-  samples INTEGER, skipped INTEGER, below INTEGER, above INTEGER, gaps INTEGER,
-  minimum REAL, maximum REAL, mean_std REAL, range_own_std REAL, range_systematic_std REAL,
-  sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL, mean_stress_sensitivity REAL,
+  run_id INTEGER,                -- [-] number of the run
+  channel INTEGER,               -- [-] number of the channel, from 0
+  name TEXT,                     -- [-] topic/field, topic/name/field, or stress/NAME of a hot spot
+  unit TEXT,                     -- [-] unit of the channel
+  counted INTEGER,               -- [-] 1: its cycles are counted; 0: the following columns are NULL
+  least REAL,                    -- [channel] lower end of the full scale
+  greatest REAL,                 -- [channel] upper end of the full scale
+  classes INTEGER,               -- [-] number of classes of the full scale
+  samples INTEGER,               -- [-] values counted, extremes between samples included
+  skipped INTEGER,               -- [-] values left out: not a number
+  below INTEGER,                 -- [-] values below the full scale, counted in the lowest class
+  above INTEGER,                 -- [-] values above the full scale, counted in the highest class
+  gaps INTEGER,                  -- [-] places where samples are missing
+  minimum REAL,                  -- [channel] minimum of the values
+  maximum REAL,                  -- [channel] maximum of the values
+  mean_std REAL,                 -- [channel] mean standard deviation of a sample
+  range_own_std REAL,            -- [-] relative standard deviation of a turn's range, part that is new in each turn; NULL: not known
+  range_systematic_std REAL,     -- [-] relative standard deviation of ranges, part of constants, equal in all turns; NULL: not known
+  sn_knee_range REAL,            -- [MPa] range at the knee of the S-N curve of a hot spot; NULL without a curve
+  sn_knee_cycles REAL,           -- [-] cycles at the knee
+  sn_slope REAL,                 -- [-] slope above the knee range
+  sn_slope_below REAL,           -- [-] slope below the knee range
+  mean_stress_sensitivity REAL,  -- [-] mean-stress sensitivity M of FKM; NULL: mean stress is not considered
   PRIMARY KEY(run_id, channel)) WITHOUT ROWID;
 CREATE TABLE turn_loads(
-  run_id INTEGER, turn INTEGER, channel INTEGER, minimum REAL, maximum REAL, mean REAL, minimum_std REAL,
-  maximum_std REAL, minimum_systematic_std REAL, maximum_systematic_std REAL,
+  run_id INTEGER,               -- [-] number of the run
+  turn INTEGER,                 -- [-] number of the turn, as in turns
+  channel INTEGER,              -- [-] number of the channel, as in channels
+  minimum REAL,                 -- [channel] minimum in the turn
+  maximum REAL,                 -- [channel] maximum in the turn
+  mean REAL,                    -- [channel] mean over the time of the turn
+  minimum_std REAL,             -- [channel] standard deviation of the minimum, everything included
+  maximum_std REAL,             -- [channel] standard deviation of the maximum, everything included
+  minimum_systematic_std REAL,  -- [channel] part of it that constants make
+  maximum_systematic_std REAL,  -- [channel] part of it that constants make
   PRIMARY KEY(run_id, turn, channel)) WITHOUT ROWID;
 CREATE TABLE cycles(
-  run_id INTEGER, channel INTEGER, steps INTEGER, low INTEGER, count INTEGER,
+  run_id INTEGER,   -- [-] number of the run
+  channel INTEGER,  -- [-] number of the channel, as in channels
+  steps INTEGER,    -- [-] range in classes
+  low INTEGER,      -- [-] lower class
+  count INTEGER,    -- [-] number of these cycles
   PRIMARY KEY(run_id, channel, steps, low)) WITHOUT ROWID;
 CREATE TABLE residues(
-  run_id INTEGER, channel INTEGER, place INTEGER, class INTEGER,
+  run_id INTEGER,   -- [-] number of the run
+  channel INTEGER,  -- [-] number of the channel, as in channels
+  place INTEGER,    -- [-] place in time order, from 0
+  class INTEGER,    -- [-] class of the turning point
   PRIMARY KEY(run_id, channel, place)) WITHOUT ROWID;
 CREATE TABLE boom_cylinders(
-  run_id INTEGER, turn INTEGER, cylinder TEXT, joint_angle REAL, stiffness_ratio REAL,
-  stiffness_ratio_std REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder)) WITHOUT ROWID;
+  run_id INTEGER,            -- [-] number of the run
+  turn INTEGER,              -- [-] number of the turn, as in turns
+  cylinder TEXT,             -- [-] name of the cylinder in the boom file
+  joint_angle REAL,          -- [rad] angle of its joint
+  stiffness_ratio REAL,      -- [-] stiffness of its oil over that of the boom file, equal at every pose
+  stiffness_ratio_std REAL,  -- [-] standard deviation; errors of the boom file's masses, equal in every run, are not in it
+  doubtful INTEGER,          -- [-] 1: more than oil damps the boom (a warning states the cause), the ratio is uncertain
+  PRIMARY KEY(run_id, turn, cylinder)) WITHOUT ROWID;
 CREATE TABLE boom_modes(
-  run_id INTEGER, turn INTEGER, mode INTEGER, frequency REAL, frequency_std REAL, damping_ratio REAL,
-  damping_ratio_std REAL, PRIMARY KEY(run_id, turn, mode)) WITHOUT ROWID;
+  run_id INTEGER,          -- [-] number of the run
+  turn INTEGER,            -- [-] number of the turn, as in turns
+  mode INTEGER,            -- [-] number of the mode, from 1, lowest first
+  frequency REAL,          -- [Hz] natural frequency at the pose
+  frequency_std REAL,      -- [Hz] standard deviation
+  damping_ratio REAL,      -- [-] damping ratio of the mode
+  damping_ratio_std REAL,  -- [-] standard deviation
+  PRIMARY KEY(run_id, turn, mode)) WITHOUT ROWID;
 CREATE TABLE budget(
-  run_id INTEGER, quantity TEXT, value REAL, deviation REAL, source TEXT, share REAL,
+  run_id INTEGER,  -- [-] number of the run
+  quantity TEXT,   -- [-] message/field, or equivalent_range_3/CHANNEL
+  unit TEXT,       -- [-] unit of the quantity
+  value REAL,      -- [quantity] mean over the run
+  std REAL,        -- [quantity] standard deviation
+  source TEXT,     -- [-] key of a parameter, readings, or what a level neglects
+  share REAL,      -- [-] share of the source in the variance
   PRIMARY KEY(run_id, quantity, source)) WITHOUT ROWID;
 CREATE TABLE traces(
-  run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time REAL, force_x REAL, force_z REAL, torque_y REAL,
-  force_z_std REAL, crank_angle REAL, PRIMARY KEY(run_id, kind, place)) WITHOUT ROWID;
+  run_id INTEGER,    -- [-] number of the run
+  kind TEXT,         -- [-] typical or worst
+  turn INTEGER,      -- [-] number of the turn, as in turns
+  place INTEGER,     -- [-] place in time order, from 0
+  time REAL,         -- [s] time after the blow that begins the turn
+  force_x REAL,      -- [N] force_x of HullLoads
+  force_z REAL,      -- [N] force_z of HullLoads
+  torque_y REAL,     -- [N m] torque_y of HullLoads
+  force_z_std REAL,  -- [N] standard deviation of force_z
+  crank_angle REAL,  -- [rad] crank angle
+  PRIMARY KEY(run_id, kind, place)) WITHOUT ROWID;
 )";
 
 std::string turnTable(const std::string& name, const std::vector<TableColumn>& columns) {
-  std::string sql = "CREATE TABLE " + name + "(run_id INTEGER, turn INTEGER, stamp_ns INTEGER";
+  std::string sql = "CREATE TABLE " + name +
+                    "(\n  run_id INTEGER,  -- [-] number of the run\n"
+                    "  turn INTEGER,  -- [-] number of the blow that ends the turn, 1 for the first of the run\n"
+                    "  stamp_ns INTEGER,  -- [ns] stamp of that blow\n";
   for (const TableColumn& column : columns) {
-    if (column.name != "turn") sql += ", " + column.name + (column.is_integer ? " INTEGER" : " REAL");
+    if (column.name == "turn") continue;
+    sql += "  " + column.name + (column.is_integer ? " INTEGER" : " REAL") + ",  -- [" + column.unit + "] " +
+           column.description + '\n';
   }
-  return sql + ", PRIMARY KEY(run_id, turn)) WITHOUT ROWID;\n";
+  return sql + "  PRIMARY KEY(run_id, turn)) WITHOUT ROWID;\n";
 }
 
 }  // namespace
@@ -68,7 +174,7 @@ std::string turnTable(const std::string& name, const std::vector<TableColumn>& c
 std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow) {
   return std::string(kBegin) + "BEGIN;\nPRAGMA application_id = " + std::to_string(kTablesApplication) +
          ";\nPRAGMA user_version = " + std::to_string(kTablesVersion) + ";\n" + kTables + turnTable("turns", turn) +
-         turnTable("blows", blow);
+         turnTable("blows", blow) + life::kColumnsTable;
 }
 
 /// By the file's header (sqlite.org/fileformat.html): nothing is opened that might be changed by that.

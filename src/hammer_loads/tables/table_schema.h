@@ -13,9 +13,11 @@ constexpr int kTablesVersion = 1;
 struct TableColumn {
   std::string name;
   bool is_integer{};
+  std::string unit, description;  ///< of the field's comment, "[unit] description"
 };
 
-/// Everything up to the first row: one transaction is begun. The same rows give the same bytes.
+/// Everything up to the first row, with a comment for each column (life::columnTexts): one transaction is begun. The
+/// same rows give the same bytes.
 std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow);
 
 /// Why an existing file must stay; empty: it is a file of these tables.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/life/channel_unit.h"
+#include "hammer_loads/life/column_texts.h"
 #include "hammer_loads/tables/sha256.h"
 #include "hammer_loads/util/stamp.h"
 
@@ -42,7 +44,9 @@ void TableWriter::TurnTable::add(std::int64_t run, const TurnRow& row) {
 
 TableWriter::TableWriter(const std::string& file, std::vector<TableColumn> turn, std::vector<TableColumn> blow)
     : database_(file, life::Database::Use::kWrite, 0) {
-  database_.run(beginTablesSql(turn, blow).c_str());
+  const std::string schema = beginTablesSql(turn, blow);
+  database_.run(schema.c_str());
+  insert(life::columnTexts(schema), database_);
   turns_.emplace(database_, "turns", std::move(turn));
   blows_.emplace(database_, "blows", std::move(blow));
   turn_load_.emplace(database_, insertSql("turn_loads", 10).c_str());
@@ -72,13 +76,13 @@ void TableWriter::boomMode(std::int64_t run, const BoomModeRow& row) {
 void TableWriter::channel(std::int64_t run, std::int64_t number, const ChannelRecord& record) {
   if (record.count) return count(run, number, record);
   Statement(database_, "INSERT INTO channels(run_id, channel, name, unit, counted) VALUES(?1, ?2, ?3, ?4, 0)")
-      .run(run, number, record.name, record.unit());
+      .run(run, number, record.name, life::unitOf(record.name));
 }
 
 void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRecord& record) {
   const ChannelCount& c = *record.count;
   Statement(database_, insertSql("channels", 23).c_str())
-      .run(run, channel, record.name, record.unit(), std::int64_t{1}, finite(c.least), finite(c.greatest), c.classes,
+      .run(run, channel, record.name, life::unitOf(record.name), std::int64_t{1}, finite(c.least), finite(c.greatest), c.classes,
            c.samples, c.skipped, c.below, c.above, c.gaps, finite(c.minimum), finite(c.maximum),
            finite(c.mean_std), finite(c.range_own_std), finite(c.range_systematic_std),
            finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope), finite(c.sn_slope_below),
@@ -91,8 +95,9 @@ void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRec
 }
 
 void TableWriter::budget(std::int64_t run, const BudgetRow& row) {
-  Statement(database_, insertSql("budget", 6).c_str())
-      .run(run, row.quantity, finite(row.value), finite(row.deviation), row.source, finite(row.share));
+  Statement(database_, insertSql("budget", 7).c_str())
+      .run(run, row.quantity, life::unitOf(row.quantity), finite(row.value), finite(row.deviation), row.source,
+           finite(row.share));
 }
 
 void TableWriter::traces(std::int64_t run, const TurnTraces& traces) {
@@ -114,7 +119,7 @@ void TableWriter::run(std::int64_t run, const RunRecord& r) {
       .run(run, key, r.input_sha256, r.parameters_sha256, r.machine, r.version, r.revision, r.parameters_yaml,
            r.first_stamp, r.last_stamp, finite(r.duration), r.level, r.samples, r.published, r.restarts, r.turns,
            r.blows, r.backward_passes, finite(r.consistency), finite(r.timing_noise), finite(r.speed_noise),
-           finite(r.angle_resolution), finite(r.drive_inertia), finite(r.drive_inertia_std),
+           finite(r.angle_resolution), finite(r.drive_inertia), finite(r.drive_inertia_relative_std),
            finite(r.equivalent_cycles_per_hour), r.blank_firings, r.judged_blows, r.blows_without_hold_down,
            finite(r.still_time), finite(r.hull_pitch));
   Statement parameter(database_, insertSql("parameters", 4).c_str());
