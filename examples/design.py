@@ -73,7 +73,7 @@ def links_of(hammer):
     Rows: the four per square of the crank's speed, the four per its acceleration, each over ANGLE; the inertias last.
     """
     inertia = hammer.parameters["drive_inertia_kg_m2"]
-    names = ("hull_force_x_N", "hull_force_z_N", "hull_torque_y_Nm", "drive_torque_y_Nm")
+    names = ("force_x", "force_z", "torque_y", "drive_torque")
 
     def loads(angle, speed, acceleration):
         result = hammer.wrenches(angle, speed, acceleration, level="linkage", pins=True)

@@ -14,7 +14,7 @@ def main():
     angle = np.linspace(0.0, 2.0 * np.pi, 1000000, endpoint=False)
     print("            largest Fz [kN]   least Fz [kN]")
     for name, hammer in (("MO-100", shipped), ("own", own)):
-        force = hammer.wrenches(angle, 31.416, level="linkage")["hull_force_z_N"]
+        force = hammer.wrenches(angle, 31.416, level="linkage")["force_z"]
         print(f"{name:10s} {force.max() / 1e3:16.3f} {force.min() / 1e3:15.3f}")
     try:
         shipped.changed(rod_length_m=0.2)

@@ -48,7 +48,7 @@ def program(name):
 def transfer(hammer, angle):
     """u and u' of P0 (4), (5): the rocker's acceleration by the crank's acceleration, and by its speed squared."""
     inertia = hammer.parameters["rocker_inertia_about_pivot_kg_m2"]
-    moment = [hammer.wrenches(angle, w, e, level="rocker")["hull_torque_y_Nm"] for w, e in ((0.0, 1.0), (1.0, 0.0))]
+    moment = [hammer.wrenches(angle, w, e, level="rocker")["torque_y"] for w, e in ((0.0, 1.0), (1.0, 0.0))]
     return -moment[0] / inertia, -moment[1] / inertia
 
 
@@ -78,8 +78,8 @@ def motion_table(hammer):
     """P0 (2)-(5) beside the package: psi from the direction of the inertia force, beta from that of the rod's."""
     normal, across, _ = inertia_forces(hammer, ANGLES, SPEED)
     at = hammer.wrenches(ANGLES, SPEED, level="rocker", pins=True)
-    psi = -np.angle((at["hull_force_x_N"] + 1j * at["hull_force_z_N"]) / (-normal + 1j * across))
-    rod = np.exp(1j * np.radians(hammer.parameters["rocker_com_angle_deg"])) / -(at["R12_x_N"] + 1j * at["R12_z_N"])
+    psi = -np.angle((at["force_x"] + 1j * at["force_z"]) / (-normal + 1j * across))
+    rod = np.exp(1j * np.radians(hammer.parameters["rocker_com_angle_deg"])) / -(at["R12_x"] + 1j * at["R12_z"])
     ours = [np.degrees(psi), np.degrees(np.angle(rod)), *transfer(hammer, ANGLES)]
     paper = printed_motion(hammer.parameters, ANGLES)
     paper = [np.degrees(paper[0]), np.degrees(paper[1]), *paper[2:]]
@@ -110,9 +110,9 @@ def reaction_table(hammer, angle=np.radians(350.0)):
     at = hammer.wrenches(angle, SPEED, level="rocker", pins=True)
     psi, beta, _, _ = printed_motion(hammer.parameters, angle)
     turn = np.radians(hammer.parameters["rocker_com_angle_deg"])
-    rod = (at["R12_x_N"] + 1j * at["R12_z_N"]) * -np.exp(1j * (beta - turn))
-    pivot = (at["R03_x_N"] + 1j * at["R03_z_N"]) * np.exp(1j * (psi - turn))
-    ours = [rod.real, pivot.real, pivot.imag, at["hull_force_x_N"], at["hull_force_z_N"]]
+    rod = (at["R12_x"] + 1j * at["R12_z"]) * -np.exp(1j * (beta - turn))
+    pivot = (at["R03_x"] + 1j * at["R03_z"]) * np.exp(1j * (psi - turn))
+    ours = [rod.real, pivot.real, pivot.imag, at["force_x"], at["force_z"]]
     names = ("R12, (11)", "R03 normal, (10)", "R03 tangential, (9)", "Rx, (13)", "Ry, (14)")
     columns = zip(names, ours, reactions(hammer, angle, SPEED, False), reactions(hammer, angle, SPEED, True))
     return table(["at 350 deg [N]", "package", "P0, (8) as printed", "P0, (8) about S", "difference"],

@@ -5,6 +5,8 @@
 """
 import argparse
 
+import numpy as np
+
 import hammer_loads_py as hl
 
 
@@ -26,7 +28,7 @@ def main(arguments=None):
         from matplotlib import pyplot
         figure, axes = pyplot.subplots()
         for name in ("force_x", "force_z"):
-            axes.plot(turn["crank_angle_deg"], turn[name] / 1e3, label=name[:-2])
+            axes.plot(np.degrees(turn["crank_angle"]), turn[name] / 1e3, label=name)
         axes.set_xlabel("crank angle [deg]")
         axes.set_ylabel("on the hull [kN]")
         axes.legend()

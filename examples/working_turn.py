@@ -30,7 +30,7 @@ class Turn:
         drive = hammer.parameters["drive_inertia_kg_m2"]
 
         def torque(angle, speed, acceleration):  # that the links need
-            return hammer.wrenches(angle, speed, acceleration, level=level, pins=True)["drive_torque_y_Nm"]
+            return hammer.wrenches(angle, speed, acceleration, level=level, pins=True)["drive_torque"]
 
         before, after = torque(np.array([JUST_BEFORE, 0.0]), 0.0, 1.0) + drive
         at_blow = 2.0 * energy / (before - after)  # square of the crank's speed
@@ -49,7 +49,7 @@ class Turn:
         angle = np.asarray(angle, float)
         at = np.where(angle < np.pi, angle, angle - WHOLE)  # next to the blow every digit counts
         loads = self.hammer.wrenches(at, self.speed(angle), self.acceleration(angle), level=level or self.level)
-        return np.array([loads[name] for name in ("hull_force_x_N", "hull_force_z_N", "hull_torque_y_Nm")])
+        return np.array([loads[name] for name in ("force_x", "force_z", "torque_y")])
 
     def integral(self, of, start, end, pieces=64):
         """Over time, of a function of the angle between two angles, by 16 points of Gauss in each piece."""

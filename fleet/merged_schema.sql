@@ -31,7 +31,7 @@ CREATE TABLE runs(
   duration DOUBLE PRECISION, level TEXT, samples BIGINT, published BIGINT, restarts BIGINT, turns BIGINT,
   blows BIGINT, backward_passes BIGINT, consistency DOUBLE PRECISION, timing_noise DOUBLE PRECISION,
   speed_noise DOUBLE PRECISION, angle_resolution DOUBLE PRECISION, drive_inertia DOUBLE PRECISION,
-  drive_inertia_std DOUBLE PRECISION, equivalent_cycles_per_hour DOUBLE PRECISION, blank_firings BIGINT,
+  drive_inertia_relative_std DOUBLE PRECISION, equivalent_cycles_per_hour DOUBLE PRECISION, blank_firings BIGINT,
   judged_blows BIGINT, blows_without_hold_down BIGINT, still_time DOUBLE PRECISION, hull_pitch DOUBLE PRECISION);
 CREATE INDEX runs_of_bag ON runs(bag_id);
 

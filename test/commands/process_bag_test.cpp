@@ -58,7 +58,7 @@ Truth truthOf(const std::string& session) {
   }
   for (std::size_t i = 0; i < blows.size(); ++i)
     truth.blows.push_back({blows.number(i, "t_s"), blows.number(i, "blow_energy_J"), blows.number(i, "tool_impulse_Ns"),
-                           blows.number(i, "turn_peak_force_z_N"), blows.number(i, "turn_impulse_z")});
+                           blows.number(i, "turn_peak_force_z_N"), blows.number(i, "turn_impulse_z_Ns")});
   return truth;
 }
 

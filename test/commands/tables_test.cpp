@@ -73,7 +73,7 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
     EXPECT_EQ(number("out.sqlite", "SELECT t.mean" + where), turn.mean[i]) << turn.channel[i];
   }
   EXPECT_EQ(ask("out.sqlite", "SELECT unit FROM channels WHERE name = 'hull_wrench/torque_y'"),
-            std::vector<std::string>{"Nm"});
+            std::vector<std::string>{"N m"});
   for (const ChannelCycles& channel : cycles.channel) {
     const auto of_channel = [&](const std::string& table) {
       return " FROM " + table + " JOIN channels c USING(run_id, channel) WHERE c.counted AND name = '" + channel.name +
@@ -159,7 +159,7 @@ TEST_F(Tables, TracesAreSamplesOfTheirTurn) {
               0.5, 0.25);
   for (const char* kind : {"typical", "worst"}) {
     const std::string of_kind = std::string(" FROM traces JOIN turns USING(run_id, turn) WHERE kind = '") + kind + "'";
-    EXPECT_EQ(number("out.sqlite", "SELECT sum(time_s <= 0.0 OR time_s > period)" + of_kind), 0.0);
+    EXPECT_EQ(number("out.sqlite", "SELECT sum(time <= 0.0 OR time > period)" + of_kind), 0.0);
     // Samples 10 ms apart; a sample is at most the peak, which is found between samples.
     EXPECT_NEAR(number("out.sqlite", "SELECT count(*) * 0.01 - period" + of_kind), 0.0, 0.011);
     EXPECT_LE(number("out.sqlite", "SELECT max(force_z) / amplitude" + of_kind), 1.0 + 1e-9);

@@ -94,12 +94,6 @@ class Queries(MergeTest):
             self.assertAlmostEqual(float(row["change_percent"]), change, delta=0.2)
             self.assertAlmostEqual(float(row["std"]), 0.01, delta=1e-6)
 
-    def test_a_target_of_an_older_version_takes_the_booms_health(self):
-        self.ask("DROP TABLE run_cylinders")
-        oil = {"boom_cylinder": (0.9, 0.0, 0)}
-        self.merge(self.add("o", "olive", of=sample.Machine("olive", oil=oil)))
-        self.assertEqual([row["machine"] for row in self.answer("boom_health")], ["olive"])
-
     def test_sensors_to_calibrate_takes_warnings(self):
         """Sound figures and a warning: the sensor asks for it; a warning about something else does not."""
         self.assertEqual([row["machine"] for row in self.answer("sensors_to_calibrate")], ["blue"])

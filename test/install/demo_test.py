@@ -36,7 +36,7 @@ def rows(demo, query):
 def true_blows(demo):
     """(stamp [s], energy [J])"""
     with open(demo[0] / "true_blows.csv", newline="") as file:
-        return [(float(row["stamp_s"]), float(row["energy"])) for row in csv.DictReader(file)]
+        return [(float(row["stamp_s"]), float(row["energy_J"])) for row in csv.DictReader(file)]
 
 
 def test_the_page_has_no_warning(demo):

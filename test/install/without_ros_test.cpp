@@ -105,7 +105,7 @@ TEST_F(WithoutRos, PythonFindsTheModuleAndItsParameters) {
       bash("PYTHONPATH=" + home +
            " " HAMMER_LOADS_PYTHON
            " -c \"import hammer_loads_py as h; "
-           "print(h.__file__, round(h.Hammer.from_yaml().pulse(level=\\\"rocker\\\")[\\\"amplitude_N\\\"]))\"");
+           "print(h.__file__, round(h.Hammer.from_yaml().pulse(level=\\\"rocker\\\")[\\\"amplitude\\\"]))\"");
   EXPECT_EQ(python.out, home + "/hammer_loads_py/__init__.py 40558\n") << python.err;
   EXPECT_TRUE(fs::exists(home + "/hammer_loads_py/__init__.pyi"));
   EXPECT_TRUE(fs::exists(home + "/hammer_loads_py/py.typed"));

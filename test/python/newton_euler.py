@@ -95,9 +95,9 @@ def loads(parameters, phi, w, e, pitch=None, gravity=9.80665, massless=False):
         return -(np.cos(a) * v.real + np.sin(a) * v.imag), -np.sin(a) * v.real + np.cos(a) * v.imag
 
     result = {}
-    result["hull_force_x_N"], result["hull_force_z_N"] = in_hull(hull_force)
-    result["hull_torque_y_Nm"] = hull_moment
-    result["drive_torque_y_Nm"] = forces[:, 8]
+    result["force_x"], result["force_z"] = in_hull(hull_force)
+    result["torque_y"] = hull_moment
+    result["drive_torque"] = forces[:, 8]
     for name, k in place.items():
         result[name + "_x_N"], result[name + "_z_N"] = in_hull(forces[:, k] + 1j * forces[:, k + 1])
     return result

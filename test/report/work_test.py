@@ -210,7 +210,7 @@ class Costs(ReportTest):
         rows = self.page_of(file).table("Life over that of now")
         for factor in ("0.8", "0.9", "1.1"):
             life = damage(1.0) / damage(float(factor))
-            self.assertAlmostEqual(number(rows[factor]["stress/boom_foot"]) / life, 1.0, delta=0.02)
+            self.assertAlmostEqual(number(rows[factor]["stress at boom_foot"]) / life, 1.0, delta=0.02)
 
 
 class Misuse(ReportTest):

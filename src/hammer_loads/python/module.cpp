@@ -140,7 +140,7 @@ py::dict pulse(const Hammer& hammer, double speed, const std::pair<double, doubl
       pulseOfTurn({modelOf(hammer, level), speed, {gravity.first, gravity.second}, 1.0, false});
   py::dict values;
   values["amplitude"] = result.pulse.amplitude;
-  values["peak_angle_deg"] = result.peak_angle / kDegree;
+  values["peak_angle"] = result.peak_angle;
   values["impulse"] = result.pulse.impulse;
   values["angular_frequency"] = result.pulse.frequency;
   values["start"] = result.pulse.start;
@@ -271,7 +271,6 @@ PYBIND11_MODULE(_native, module) {
       .def("frequencies", &BoomModel::frequencies, "Returns the natural frequencies [Hz] at a position by joint name.",
            py::arg("joints"))
       .def("_loads", &BoomModel::loads);
-  module.attr("PIN_COLUMNS") = py::cast(std::vector<std::string>(kPinColumns.begin(), kPinColumns.end()));
   module.def("count_cycles", &countCycles);
   module.def("support_impulse", &supportImpulse, kSupportImpulse, py::kw_only(), py::arg("mass"),
              py::arg("inertia_about_pivot"), py::arg("com"), py::arg("rod_joint") = Point{},

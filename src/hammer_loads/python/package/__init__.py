@@ -2,9 +2,9 @@
 
     import hammer_loads_py as hl
     hammer = hl.Hammer.from_yaml("my_hammer.yaml")
-    loads = hammer.wrenches(angle, speed)       # a dictionary of arrays: hull_force_x_N, ...
+    loads = hammer.wrenches(angle, speed)       # a dictionary of arrays: force_x, force_z, torque_y
 
-SI units. Results are named as the columns of the commands; help() of each call states units and frames.
+SI units. Results are named as the fields of the messages; help() of each call states units and frames.
 Wrong input raises ValueError in the words of the commands, one line for each problem. Loops run without Python's
 lock, so that threads share the work.
 """
@@ -21,8 +21,9 @@ from ._native import Boom, Hammer, support_impulse
 
 __all__ = ["Boom", "Hammer", "count_cycles", "read_database", "support_impulse"]
 
-_WRENCH = ["hull_force_x_N", "hull_force_z_N", "hull_torque_y_Nm"]
-_TURN = ["crank_angle_deg", "time_s", "force_x", "force_z", "torque_y"]
+_WRENCH = ["force_x", "force_z", "torque_y"]
+_PINS = ["drive_torque"] + [f"R{pair}_{axis}" for pair in ("01", "12", "23", "03") for axis in "xz"]
+_TURN = ["crank_angle", "time", *_WRENCH]
 _DATABASES = (0x484C5242, 0x484C4C31, 0x484C5246)  # application_id of process_bag --db, a ledger, the fleet
 _LARGEST_ANGLE = 4e8  # [rad]
 _PATIENCE = 5.0  # [s] until another user of a database gives it back
@@ -74,9 +75,9 @@ def _wrenches(self, angle, speed, acceleration=0.0, *, pitch=None, gravity=None,
     level: 'pulse', 'rocker' or 'linkage'; that of the parameters unless given.
     Numbers, arrays of one shape, or arrays that NumPy broadcasts to one; a nan gives nan.
 
-    The result has arrays hull_force_x_N, hull_force_z_N, hull_torque_y_Nm: wrench by the links on the hull, moment
-    about the rocker's pivot, axes of hammer_hull. pins=True adds drive_torque_y_Nm and Rij_x_N, Rij_z_N, the force of
-    link i on link j (0 hull, 1 crank, 2 rod, 3 rocker).
+    The result has arrays force_x, force_z [N], torque_y [N m]: wrench by the links on the hull, moment about the
+    rocker's pivot, axes of hammer_hull. pins=True adds drive_torque [N m] and Rij_x, Rij_z [N], the force of link i on
+    link j (0 hull, 1 crank, 2 rod, 3 rocker).
     """
     given = [_array(*pair) for pair in (("angle", angle), ("speed", speed), ("acceleration", acceleration),
                                         ("pitch", 0.0 if pitch is None else pitch))]
@@ -92,27 +93,28 @@ def _wrenches(self, angle, speed, acceleration=0.0, *, pitch=None, gravity=None,
         loads = (self._loads(angle, speed, acceleration, (0.0, 0.0), level, pins) +
                  g * np.sin(pitches) * self._loads(angle, rest, rest, (1.0, 0.0), level, pins) -
                  g * np.cos(pitches) * self._loads(angle, rest, rest, (0.0, 1.0), level, pins))
-    return {name: row.reshape(shape) for name, row in zip(_WRENCH + _native.PIN_COLUMNS, loads)}
+    return {name: row.reshape(shape) for name, row in zip(_WRENCH + _PINS, loads)}
 
 
 def _turn(self, speed=31.416, *, step_deg=1.0, pitch=None, gravity=None, level=None, pins=False):
     """Returns one revolution at constant crank speed, as the command turn_table does.
 
     speed [rad/s], step_deg [deg]: of the crank. pitch [rad], gravity [m/s2], level, pins: as in wrenches().
-    The result has arrays crank_angle_deg, time_s, force_x, force_z, torque_y. The first row is just after a blow,
-    the last one just before the next.
+    The result has arrays crank_angle [rad], time [s], force_x, force_z [N], torque_y [N m]. The first row is just after a
+    blow, the last one just before the next.
     """
     rows = self._turn(_number("speed", speed, "rad/s", 0.0), _number("step_deg", step_deg, "deg", 1e-6, 360.0),
                       _weight(self, pitch, gravity), level, pins)
-    return dict(zip(_TURN + _native.PIN_COLUMNS, rows))
+    rows[0] = np.radians(rows[0])
+    return dict(zip(_TURN + _PINS, rows))
 
 
 def _pulse(self, speed=31.416, *, pitch=None, gravity=None, level=None):
     """Returns the force pulse of one revolution at constant crank speed, as turn_table --summary.
 
     speed [rad/s]: of the crank. pitch [rad], gravity [m/s2], level: as in wrenches().
-    The result has amplitude, peak_angle_deg, impulse, angular_frequency, start, turn_impulse_x,
-    turn_impulse_z.
+    The result has the fields of message Pulse: amplitude [N], impulse, turn_impulse_x, turn_impulse_z [N s],
+    angular_frequency [rad/s], start [s]; and peak_angle [rad] of the crank.
     """
     return self._pulse(_number("speed", speed, "rad/s", 0.0), _weight(self, pitch, gravity), level)
 
@@ -122,7 +124,7 @@ def _blow(self, crank_speed, crank_speed_after=None, *, level=None):
 
     crank_speed, crank_speed_after [rad/s]: before and after the blow; the crank keeps its speed unless the second is given.
     level: as in wrenches().
-    The result has the fields of message Blow: speeds [rad/s], restitution [-], energy, impulses [N s]. The support
+    The result has the fields of message Blow: speeds [rad/s], restitution [-], energy [J], impulses [N s]. The support
     impulse is by the rocker on the hull at its pivot.
     """
     before = _number("crank_speed", crank_speed, "rad/s", 0.0)
@@ -196,7 +198,7 @@ def _column(declared, values):
 def read_database(path):
     """Reads every table of a database of process_bag --db, of a ledger or of the fleet.
 
-    path: of the file. The result has a dictionary of arrays for each table, by column; names of columns end with the unit.
+    path: of the file. The result has a dictionary of arrays for each table, by column; the table `columns` has units.
     Whole numbers are int64, or float64 where one is missing; texts are objects. A missing value is nan or None.
     """
     path = os.fspath(path)
