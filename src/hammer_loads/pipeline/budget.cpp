@@ -19,7 +19,7 @@ BudgetRecorder::BudgetRecorder(const Pipeline& pipeline) : pipeline_(&pipeline) 
     names_[i] = kUnknowns[i].key != nullptr ? kUnknowns[i].key : kUnknowns[i].name;
   const std::vector<std::string> of_hammer = pipeline.hammerColumns();
   std::copy(of_hammer.begin(), of_hammer.end(), names_.begin() + kSensor);
-  names_.back() = "drive_inertia_kg_m2";
+  names_[kInertiaColumn] = "drive_inertia_kg_m2", names_[kHullColumn] = "hull_mass_kg";
 }
 
 void BudgetRecorder::Sum::add(double number, const NumberError& error) noexcept {

@@ -101,7 +101,7 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
   const double by_inertia =
       drive.torque(crank.acceleration, hull.acceleration) - none.torque(crank.acceleration, hull.acceleration);
   columns.row(2).head<ConstantErrors::kSize>() += by_inertia * uncertainty.by_constant.row(CrankUncertainty::kInertia);
-  columns(2, ConstantErrors::kSize) = by_inertia * uncertainty.inertia;
+  columns(2, kInertiaColumn) = by_inertia * uncertainty.inertia;
   const Eigen::Matrix3d common = columns.lazyProduct(columns.transpose());
   const Eigen::Matrix3d all = g * uncertainty.own * g.transpose() + common;
   const Eigen::Vector3d of_crank = uncertainty.by_constant.topRows<3>().rowwise().squaredNorm();

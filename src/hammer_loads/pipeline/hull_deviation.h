@@ -46,9 +46,9 @@ inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& 
 }
 
 /// Errors of a wrench that are independent of each other, one standard deviation each, and the same in all samples: of
-/// the sensor's constants, of the hammer's (their order: ConstantErrors), of the learned drive inertia. Rows: force_x
-/// [N], force_z [N], torque_y [N m].
-constexpr int kLoadColumns = ConstantErrors::kSize + 1;
+/// the sensor's constants, of the hammer's (their order: ConstantErrors), of the learned drive inertia, of a hull whose
+/// motion is not measured. Rows: force_x [N], force_z [N], torque_y [N m].
+constexpr int kInertiaColumn = ConstantErrors::kSize, kHullColumn = kInertiaColumn + 1, kLoadColumns = kHullColumn + 1;
 using LoadColumns = ByConstants<3, kLoadColumns>;
 
 /// By samples and constants together, J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).

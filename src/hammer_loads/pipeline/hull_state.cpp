@@ -6,12 +6,6 @@
 namespace hammer_loads {
 namespace {
 
-// Priors of a hull whose mass is not given, and of its motion where nothing measures it.
-constexpr double kUsualMass = 10.0;      // times the rocker's
-constexpr double kUsualDeviation = 0.5;  // of the mass
-constexpr double kGyration = 0.4;        // [m] about D
-constexpr double kResonance = 2.0;       // acceleration over that of a free hull: blows near the boom's frequency
-
 /// Of the tip of a boom; none if it is rigid.
 HullMotion vibrationOf(const BoomState& boom) noexcept {
   if (!boom.choice.compliant) return {};
@@ -33,8 +27,7 @@ HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
 
 HullState::HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom)
     : source_(settings.hull_motion),
-      hull_mass_(hammer.hull_mass > 0.0 ? hammer.hull_mass : kUsualMass * hammer.rocker_mass),
-      hull_mass_std_(hammer.hull_mass > 0.0 ? hammer.hull_mass_std / hammer.hull_mass : kUsualDeviation),
+      prior_(hammer),
       weight_(settings, boom),
       imu_(settings.imu),
       filter_(settings.imu, hammer) {
@@ -57,16 +50,9 @@ void HullState::carry(const HullWrench& load, double duration) noexcept {
   now_.covariance = unmeasured();
 }
 
-/// By the scatter of the load in the last 2 s: the boom carries its mean. Near a resonance of the boom the hull moves
-/// by more than the load would move it alone.
+/// By the scatter of the load in the last 2 s: the boom carries its mean.
 HullMotionCovariance HullState::unmeasured() const noexcept {
-  const Eigen::Vector3d scatter = (load_square_.mean() - load_.mean().cwiseAbs2()).cwiseMax(0.0);
-  const double factor = square(kResonance / hull_mass_) * (1.0 + square(hull_mass_std_));
-  const double force = factor * (scatter[0] + scatter[1]);
-  HullMotionCovariance covariance = HullMotionCovariance::Zero();
-  covariance(0, 0) = covariance(1, 1) = force;
-  covariance(3, 3) = factor * scatter[2] / square(square(kGyration)) + force / square(kGyration);
-  return covariance;
+  return prior_.motion((load_square_.mean() - load_.mean().cwiseAbs2()).cwiseMax(0.0));
 }
 
 bool HullState::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {

@@ -14,6 +14,7 @@
 #include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/hull_motion_filter.h"
 #include "hammer_loads/pipeline/imu_trust.h"
+#include "hammer_loads/pipeline/unmeasured_hull.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
 namespace hammer_loads {
@@ -49,6 +50,8 @@ class HullState {
   void struck(StampNs blow) noexcept { imu_.struck(blow); }
   /// After a sample was taken: its motion again, with what the step's load shows. beside: DisplacedLinks at the sample.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
+  /// Prior of the motion where nothing measures it; null: the hull is held.
+  const UnmeasuredHull* prior() const noexcept { return source_ == HullMotionSource::kFixed ? nullptr : &prior_; }
   bool followsLoad() const noexcept { return source_ == HullMotionSource::kImu; }  ///< follow() has an effect
   /// Of D at the last blow by the IMU, where that is known.
   std::optional<TipVelocity> speedAtBlow() const noexcept {
@@ -85,8 +88,7 @@ class HullState {
   HullMotionCovariance unmeasured() const noexcept;
 
   HullMotionSource source_;
-  double hull_mass_;                                                                         ///< [kg]
-  double hull_mass_std_;                                                               ///< relative [-]
+  UnmeasuredHull prior_;
   RunningMean<Eigen::Vector3d> load_{look_back::kTenTurns, Eigen::Vector3d::Zero()};         ///< carry()
   RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< of its components
   HullGravity weight_;

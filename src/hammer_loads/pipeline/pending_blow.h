@@ -22,7 +22,7 @@ class PendingBlow {
     time_ = time;
     position_ = at;
     blow_ = {};
-    hull_speed_ = 0.0;
+    hull_speed_.reset();
     early_ = false;
     published_ = withheld_ = 0;
     blow_.speed = speed;
@@ -61,9 +61,9 @@ class PendingBlow {
   bool isMeasured(double time, const CrankPosition& now) const noexcept {
     return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > look_back::kTurn);
   }
-  /// The hull's own velocity at the striking point along z, at the blow [m/s].
+  /// The hull's own velocity at the striking point along z, at the blow [m/s]; nothing: not measured.
   void setHullSpeed(double speed) noexcept { hull_speed_ = speed; }
-  double hullSpeed() const noexcept { return hull_speed_; }
+  const std::optional<double>& hullSpeed() const noexcept { return hull_speed_; }
   double time() const noexcept { return time_; }                                                   ///< of the blow [s]
   double crankSpeedAfter() const noexcept { return (early_ ? 1.0 : blow_.factor) * blow_.speed; }  ///< [rad/s]
   CrankBlow take() noexcept {
@@ -82,7 +82,7 @@ class PendingBlow {
   CrankPosition position_;
   CrankBlow blow_;
   BlowColumns columns_{BlowColumns::Zero()};
-  double hull_speed_{};
+  std::optional<double> hull_speed_;
   int published_{}, withheld_{};
   bool early_{};  ///< the tool was met before the dead centre
 };

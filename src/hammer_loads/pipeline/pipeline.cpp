@@ -50,7 +50,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       rod_(model_),
       unknown_(mechanism_),
       elastic_(model_, settings_.level),
-      turn_(model_, columns_, crank_.step(), crank_.tracker(), rod_, elastic_),
+      turn_(model_, columns_, crank_.step(), crank_.tracker(), rod_, elastic_, hull_.prior()),
       sampler_(model_, columns_, crank_.step(), crank_.tracker(), elastic_, settings_),
       nominal_force_(
           pulseAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate, {}).pulse.amplitude),

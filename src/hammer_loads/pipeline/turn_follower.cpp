@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kRingPart = 5e-4;  // [s] between points of a turn where a rod rings; its peak is by a parabola
 // Numerical: kRingPart
+constexpr double kBlind = 3e-3;  // [s], measured on swinging hulls: until then a torque passes for part of the blow
 
 }  // namespace
 
@@ -188,6 +189,27 @@ void TurnFollower::doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) co
   addDoubt(end.blow, other, end.blow_errors);
 }
 
+/// A hull that yields takes part of the rocker's inertia, and its acceleration turns the crank.
+void TurnFollower::doubtHull(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept {
+  const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
+  const double per_acceleration = model_->mechanism().rockerFirstMoment() * inertia.u_before / inertia.before();
+  const double kick = kBlind * per_acceleration * std::sqrt(hull(1, 1));
+  crank.inertia_std = std::hypot(crank.inertia_std, prior_->reflectedInertia());
+  crank.factor_std = std::hypot(crank.factor_std, kick / crank.speed);
+}
+
+/// The tool rests on the rock, not in the hull: the hull's velocity works with the tool's impulse.
+void TurnFollower::countHullSpeed(TurnEnd& end) const noexcept {
+  RockerBlow& blow = end.blow;
+  if (pending_.hullSpeed()) {
+    blow.energy -= blow.tool_impulse_z * *pending_.hullSpeed();
+  } else if (prior_ != nullptr) {
+    NumberError& error = end.blow_errors.energy;
+    error.columns[kHullColumn] = blow.tool_impulse_z * prior_->speedAtBlow(turn_.swing());
+    blow.energy_std = error.deviation();
+  }
+}
+
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!pending_.isWaiting()) return;
   if (pending_.isWithheld() && !(tracker_->strikeConsistency() <= CrankTrust::kMost)) return discard();
@@ -210,6 +232,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
                    rod_->restitutionDoubt(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
                    crank.factor * rod_->lackingSpeed() / crank.speed);
   }
+  if (prior_ != nullptr && !result.hull.moves) doubtHull(result.hull.covariance, crank);
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
   const double doubt =
       std::hypot(measured.speed_std / measured.speed, measured.factor_std / measured.factor);
@@ -231,7 +254,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   voidImpossible(model_->mechanism(), model_->level(), blow);
   if (blow.impossible) doubtImpossible(crank, !elastic && pending_.isEarly(), pending_end_);
   impossible_ += blow.impossible;
-  blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull
+  countHullSpeed(pending_end_);
   pending_end_.mean_hold_down_force *= blow.tool_impulse_z;
   if (result.turn_ends < result.ends.size()) result.ends[result.turn_ends++] = pending_end_;
 }

@@ -13,15 +13,22 @@
 #include "hammer_loads/pipeline/rod_ring.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
+#include "hammer_loads/pipeline/unmeasured_hull.h"
 
 namespace hammer_loads {
 
 class TurnFollower {
  public:
-  /// Refers to them, which must outlive it.
+  /// Refers to them, which must outlive it. prior: of the hull's motion; null: the hull is held.
   TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankFilter& tracker,
-               const RodRing& rod, const ElasticFollower& elastic)
-      : model_(&model), columns_(&columns), step_(&step), tracker_(&tracker), rod_(&rod), elastic_(&elastic) {}
+               const RodRing& rod, const ElasticFollower& elastic, const UnmeasuredHull* prior)
+      : model_(&model),
+        columns_(&columns),
+        step_(&step),
+        tracker_(&tracker),
+        rod_(&rod),
+        elastic_(&elastic),
+        prior_(prior) {}
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
@@ -49,7 +56,7 @@ class TurnFollower {
     trackErrors(result);
   }
   bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
-  /// Velocity of the hull at that blow; zero until it is given.
+  /// Velocity of the hull at that blow; until it is given, the prior of the hull's motion counts.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
 
   double peakForce() const noexcept { return peak_force_; }  ///< of the last whole turn's strike [N], 0 before it
@@ -61,6 +68,8 @@ class TurnFollower {
  private:
   void doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept;
   void takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept;
+  void doubtHull(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept;
+  void countHullSpeed(TurnEnd& end) const noexcept;
   void countBackward(const CrankStep::Passage& passage) noexcept;
   double partOfStep(bool rings) const noexcept;
   void recordTo(double from, double to) noexcept;
@@ -77,6 +86,7 @@ class TurnFollower {
   const CrankFilter* tracker_;
   const RodRing* rod_;
   const ElasticFollower* elastic_;
+  const UnmeasuredHull* prior_;
   TurnRecorder turn_;
   TurnErrors errors_;
   PendingBlow pending_;

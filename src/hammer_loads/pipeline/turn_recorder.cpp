@@ -19,7 +19,7 @@ TurnRecorder::TurnRecorder() { points_.reserve(kCapacity + 1); }
 void TurnRecorder::begin(const TurnInstant& after_blow) noexcept {
   points_.clear();
   first_ = last_ = after_blow;
-  weight_impulse_x_ = weight_impulse_z_ = 0.0;
+  weight_impulse_x_ = weight_impulse_z_ = momentum_way_z_ = momentum_way_y_ = 0.0;
   stride_ = 1;
   skipped_ = 0;
   recording_ = true;
@@ -42,6 +42,8 @@ void TurnRecorder::add(const TurnInstant& instant) noexcept {
   if (!(step > 0.0)) return;
   weight_impulse_x_ += last_.weight_x * step;
   weight_impulse_z_ += last_.weight_z * step;
+  momentum_way_z_ += 0.5 * step * (last_.momentum.z + instant.momentum.z);
+  momentum_way_y_ += 0.5 * step * (last_.momentum.about_d + instant.momentum.about_d);
   last_ = instant;
   if (++skipped_ < stride_) return;
   skipped_ = 0;
@@ -52,9 +54,15 @@ void TurnRecorder::add(const TurnInstant& instant) noexcept {
 }
 
 std::optional<HalfSinePulse> TurnRecorder::end(const TurnInstant& before_blow) noexcept {
+  const LinkMomentum& end = before_blow.momentum;
+  swing_ = end;
   if (!recording_) return std::nullopt;
   stride_ = 1;
   add(before_blow);
+  const double turn = before_blow.time - first_.time;
+  if (turn > 0.0)
+    swing_ = {0.0, momentum_way_z_ / turn - 0.5 * (first_.momentum.z + end.z),
+              momentum_way_y_ / turn - 0.5 * (first_.momentum.about_d + end.about_d)};
   recording_ = false;
   const bool pushed = std::any_of(points_.begin(), points_.end(), [](const TurnPoint& p) { return p.force_z > 0.0; });
   if (points_.size() < 3 || !pushed) return std::nullopt;

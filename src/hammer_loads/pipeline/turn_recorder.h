@@ -35,6 +35,10 @@ class TurnRecorder {
   /// Coming samples may not belong to the turn: its pulse is not given.
   void abandon() noexcept { recording_ = false; }
   bool recording() const noexcept { return recording_; }
+  /// Momentum that the turn's load would have given a free hull by the blow that ended the last turn [N s, N m s]. The
+  /// hull returns each turn: its momentum has no trend and no mean, so that weight and blow are not in it. Of a turn
+  /// that was not seen whole, that of the links before the blow.
+  const LinkMomentum& swing() const noexcept { return swing_; }
   void add(const TurnInstant& instant) noexcept;
   /// Ends the turn just before a blow; no pulse if the turn was not seen whole or never pushed the hull up.
   std::optional<HalfSinePulse> end(const TurnInstant& before_blow) noexcept;
@@ -45,6 +49,8 @@ class TurnRecorder {
   std::vector<TurnPoint> points_;
   TurnInstant first_, last_;
   double weight_impulse_x_{}, weight_impulse_z_{};
+  double momentum_way_z_{}, momentum_way_y_{};  ///< integrals of the momentum since the blow [N s2, N m s2]
+  LinkMomentum swing_;
   std::size_t stride_{1}, skipped_{};
   bool recording_{};
 };
