@@ -158,7 +158,7 @@ std::string yamlOf(const BoomCalibration& c, const std::string& given, const std
   std::string text = std::string(kBoomYamlBegins) + " " + onOneLine(source) + ":\n";
   for (const JointWeight& joint : c.joints) text += "# " + jointLine(joint);
   for (const CylinderFit& cylinder : c.cylinders) text += "# " + cylinderLine(cylinder);
-  return text + "# A whole boom file, for boom:=FILE or --params. Values belong together: some cannot be separated.\n" +
+  return text + "# A whole boom file, for boom_file:=FILE or --params. Values belong together: some cannot be separated.\n" +
          lines.text();
 }
 

@@ -99,7 +99,7 @@ std::string nextStepOf(const Calibration& c) {
   if (std::max(c.fitted, c.held_out) > square(kLargeResidual))
     steps.emplace_back("check the lengths of the hammer file and the stamps, for the residuals are above 1.3");
   if (few && std::isfinite(c.more_blows)) steps.push_back("record " + needOf(c));
-  if (steps.empty()) return "start the node with this file as calibration:=FILE, or give it to --params";
+  if (steps.empty()) return "start the node with this file as calibration_file:=FILE, or give it to --params";
   std::string text;
   for (const std::string& step : steps) text += (text.empty() ? "" : "; ") + step;
   return text + "; then calibrate again (--verbose shows every figure)";

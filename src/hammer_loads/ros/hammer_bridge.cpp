@@ -10,7 +10,7 @@ namespace {
 
 /// Tip of the boom's chain.
 std::string hullFrame(const Settings& settings) {
-  return settings.boom ? settings.boom->parameters().chain.tip : "hammer_hull";
+  return settings.boom ? settings.boom->parameters().chain.tip : settings.pipeline.hull_frame;
 }
 
 }  // namespace

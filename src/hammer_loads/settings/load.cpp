@@ -49,21 +49,27 @@ std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, 
 }
 
 /// Nothing when there is none, or the reader got a problem with it.
-std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel model,
+std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, const PipelineSettings& pipeline,
                              const std::optional<RobotDescription>& description, std::vector<std::string>& notes) {
   const std::size_t problems_before = reader.problems().size();
+  const BoomModel model = pipeline.boom;
   const BoomParameters parameters = boom_file ? readBoomParameters(reader) : BoomParameters{};
+  const std::string& tip = parameters.chain.tip;
+  ChainRequest whole;
+  whole.tip = pipeline.hull_frame;
+  if (boom_file && whole.tip != ChainRequest{}.tip && whole.tip != tip)
+    reader.addProblem("hull_frame: " + whole.tip + ", must be tip_link of the boom file, " + tip);
   const std::string conflict = boomConflict(model, boom_file, description.has_value());
   if (!conflict.empty()) reader.addProblem(conflict);
   if (!description || model == BoomModel::kNone || reader.problems().size() != problems_before) return {};
   if (!boom_file && model == BoomModel::kAuto) {
-    const std::string missing = linksMissing(*description, {});
+    const std::string missing = linksMissing(*description, whole);
     if (!missing.empty()) {
       notes.push_back(missing + ": no boom, the hammer's loads on its hull alone");
       return {};
     }
   }
-  Checked<Boom> boom = boom_file ? Boom::make(*description, parameters) : Boom::make(*description);
+  Checked<Boom> boom = boom_file ? Boom::make(*description, parameters) : Boom::make(*description, whole);
   for (const std::string& problem : boom.problems) reader.addProblem(problem);
   notes.insert(notes.end(), boom.notes.begin(), boom.notes.end());
   return std::move(boom.value);
@@ -116,7 +122,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   const std::size_t before_boom = reader.yaml().size();
   std::optional<RobotDescription> description;
   if (!robot_description.empty()) description.emplace(robot_description);
-  std::optional<Boom> boom = readBoom(reader, boom_file, pipeline.boom, description, result.notes);
+  std::optional<Boom> boom = readBoom(reader, boom_file, pipeline, description, result.notes);
   const std::string boom_yaml = reader.yaml().substr(before_boom);
   const bool vibrates = boom_file && pipeline.boom != BoomModel::kNone && pipeline.boom != BoomModel::kRigid;
   const std::string conflict = vibrationConflict(pipeline, boom_file, vibrates);

@@ -82,6 +82,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.output = reader.choice("output", kOutputNames);
   s.output_rate = reader.number("output_rate_Hz", "Hz", kOutputRate);
   s.crank_joint = reader.text("crank_joint");
+  s.hull_frame = reader.text("hull_frame");
   s.pitch_joints = reader.names("pitch_joints");
   s.pitch_signs = reader.signs("pitch_signs");
   if (!s.pitch_signs.empty() && s.pitch_signs.size() != s.pitch_joints.size())

@@ -93,6 +93,7 @@ struct PipelineSettings {
   double turn_rate{};   ///< of the working turn by which `auto` judges [Hz], > 0
   OutputKind output{};
   double output_rate{};                   ///< of hull_wrench [Hz]; 0: one per crank sample
+  std::string hull_frame{"hammer_hull"};  ///< frame of the wrench where no boom file names its tip
   std::string crank_joint;                ///< joint whose position is the crank angle
   std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
   std::vector<int> pitch_signs;           ///< of each of them, 1 or -1: how it turns about +y; empty: all 1
