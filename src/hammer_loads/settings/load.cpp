@@ -209,9 +209,12 @@ std::string configDirectory() {
   std::vector<fs::path> candidates;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);  // PREFIX/lib/hammer_loads/PROGRAM
   if (!error) candidates.push_back(program.parent_path() / "../../share/hammer_loads/config");
-  Dl_info library{};  // PREFIX/lib/LIBRARY, for a nodelet in another package's program
-  if (dladdr(reinterpret_cast<void*>(&configDirectory), &library) != 0 && library.dli_fname != nullptr)
-    candidates.push_back(fs::path(library.dli_fname).parent_path() / "../share/hammer_loads/config");
+  // PREFIX/lib/LIBRARY or, by Debian, PREFIX/lib/ARCHITECTURE/LIBRARY: for a nodelet and Python, programs of others.
+  Dl_info library{};
+  if (dladdr(reinterpret_cast<void*>(&configDirectory), &library) != 0 && library.dli_fname != nullptr) {
+    for (const char* share : {"../share/hammer_loads/config", "../../share/hammer_loads/config"})
+      candidates.push_back(fs::path(library.dli_fname).parent_path() / share);
+  }
   for (const fs::path& candidate : candidates) {
     if (fs::exists(candidate / "pipeline.yaml", error)) return candidate.lexically_normal().string();
   }
