@@ -29,8 +29,8 @@ def ros1_values(value):
 
 def ros2_values(value):
     if dataclasses.is_dataclass(value):
-        return [number for field in dataclasses.fields(value) for number in ros2_values(getattr(value, field.name))
-                if field.name != "__msgtype__"]
+        names = [field.name for field in dataclasses.fields(value) if not field.name.isupper()]  # no constants
+        return [number for name in names if name != "__msgtype__" for number in ros2_values(getattr(value, name))]
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, list):
