@@ -1,7 +1,7 @@
 # cmake -DSOURCE=DIRECTORY -DHEADER=FILE -P revision.cmake
 # Writes the revision of the source to a header, at every build; an unchanged header keeps its time, so that nothing is
 # compiled again. Known to git: as `git describe` has it, with -dirty for changes not committed. From `git archive`: the
-# commit. Else, also in the midst of a checkout of something else: unknown.
+# commit; from scripts/deb: as `git describe` had it. Else, also in the midst of a checkout of something else: unknown.
 set(revision "")
 find_program(git git)
 if(git)
@@ -14,7 +14,7 @@ if(git)
   endif()
 endif()
 if(NOT revision)
-  file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/archived_revision.txt archived REGEX "^[0-9a-f]+$")
+  file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/archived_revision.txt archived REGEX "^[^$]+$")
   set(revision ${archived})
 endif()
 if(NOT revision)

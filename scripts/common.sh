@@ -68,6 +68,15 @@ installMissing() {
     fail "apt-get install failed; needed are the packages of $package_list"
 }
 
+# Into the directory in $1: what git knows, uncommitted changes included; without git the whole tree but its builds.
+copySource() {
+  if git -C "$root_dir" ls-files --error-unmatch package.xml > /dev/null 2>&1; then
+    git -C "$root_dir" ls-files -z --cached --others --exclude-standard | tar -c -C "$root_dir" --null -T - | tar -x -C "$1"
+  else
+    tar -c -C "$root_dir" --exclude=./build --exclude='./build_*' . | tar -x -C "$1"
+  fi
+}
+
 # A bare chroot or container may lack /etc/hosts; ROS then cannot reach itself.
 checkLocalhost() {
   getent hosts localhost > /dev/null && return 0
