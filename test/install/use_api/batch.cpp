@@ -1,5 +1,5 @@
-/// Many states, with nothing but what the README names.
-#include README_HEADER
+/// Many states, with nothing but what doc/api.md names.
+#include API_HEADER
 
 int main() {
   using namespace hammer_loads;

@@ -1,5 +1,5 @@
-/// Samples to loads, with nothing but what the README names.
-#include README_HEADER
+/// Samples to loads, with nothing but what doc/api.md names.
+#include API_HEADER
 
 int main() {
   using namespace hammer_loads;

@@ -1,0 +1,20 @@
+# Run by install, with HEADERS (relative to SOURCE): they and all headers of this package that they include go below
+# CMAKE_INSTALL_PREFIX/DESTINATION. Generated headers, those of messages, are installed where they are generated.
+cmake_policy(SET CMP0057 NEW)  # IN_LIST
+set(waiting ${HEADERS})
+set(found "")
+while(waiting)
+  list(GET waiting 0 header)
+  list(REMOVE_AT waiting 0)
+  if(header IN_LIST found OR NOT EXISTS "${SOURCE}/${header}")
+    continue()
+  endif()
+  list(APPEND found ${header})
+  file(STRINGS "${SOURCE}/${header}" includes REGEX "^#include \"hammer_loads/")
+  string(REGEX REPLACE "#include \"([^\"]+)\"[^;]*" "\\1" includes "${includes}")
+  list(APPEND waiting ${includes})
+endwhile()
+foreach(header ${found})
+  get_filename_component(directory ${header} DIRECTORY)
+  file(INSTALL "${SOURCE}/${header}" DESTINATION "${CMAKE_INSTALL_PREFIX}/${DESTINATION}/${directory}")
+endforeach()
