@@ -39,8 +39,10 @@ asRoot() {
 # Noetic's own environment where it is installed, else Debian's ROS packages under /usr.
 useRos() {
   package_list=$root_dir/scripts/packages.txt
+  test_package_list=$root_dir/scripts/packages_test.txt
   if [ -e /opt/ros/noetic/setup.bash ]; then
     package_list=$root_dir/scripts/packages_noetic.txt
+    test_package_list=$package_list
     set +u
     . /opt/ros/noetic/setup.bash
     set -u
@@ -126,4 +128,10 @@ prepare() {
   useRos
   installMissing
   checkLocalhost
+}
+
+# For tests.
+prepareTests() {
+  prepare
+  package_list=$test_package_list installMissing
 }
