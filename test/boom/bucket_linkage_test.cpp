@@ -24,7 +24,8 @@ RandomLinkage randomLinkage(std::mt19937& random) {
     const auto point = [&](double size) {
       return Eigen::Vector2d(test::between(random, -size, size), test::between(random, -size, size));
     };
-    RandomLinkage made{{point(2.0), point(0.6), point(0.5), test::between(random, -1.0, 1.0) > 0.0 ? 1.0 : -1.0}, {}, {}};
+    RandomLinkage made{
+        {point(2.0), point(0.6), point(0.5), test::between(random, -1.0, 1.0) > 0.0 ? 1.0 : -1.0}, {}, {}};
     made.lengths.guide_length = test::between(random, 0.15, 0.6);
     made.lengths.coupler_length = test::between(random, 0.15, 0.6);
     made.lengths.branch = test::between(random, -1.0, 1.0) > 0.0 ? 1.0 : -1.0;
@@ -52,14 +53,15 @@ TEST(BucketLinkages, LengthAndLeverAreThoseOfAnIndependentClosure) {
                                   guide = reference.rodPin(r.angle) - reference.pivot;
     ASSERT_GT(static_cast<double>(LinkageReference::moment(across, guide)) * r.lengths.branch, 0.0) << i;
     const auto arm = [&](long double q) {
-      return static_cast<long double>(linkage.at(std::cos(static_cast<double>(q)), std::sin(static_cast<double>(q))).arm);
+      return static_cast<long double>(
+          linkage.at(std::cos(static_cast<double>(q)), std::sin(static_cast<double>(q))).arm);
     };
     worst_length = std::max(worst_length, std::abs(at.length - static_cast<double>(reference.length(r.angle))));
-    worst_arm = std::max(worst_arm, std::abs(at.arm - static_cast<double>(reference.arm(r.angle))) /
-                                        std::max(1.0, std::abs(at.arm)));
-    worst_rate = std::max(worst_rate,
-                          std::abs(at.arm_rate - static_cast<double>(LinkageReference::slope(arm, r.angle))) /
-                              std::max(1.0, std::abs(at.arm_rate)));
+    worst_arm = std::max(
+        worst_arm, std::abs(at.arm - static_cast<double>(reference.arm(r.angle))) / std::max(1.0, std::abs(at.arm)));
+    worst_rate =
+        std::max(worst_rate, std::abs(at.arm_rate - static_cast<double>(LinkageReference::slope(arm, r.angle))) /
+                                 std::max(1.0, std::abs(at.arm_rate)));
   }
   EXPECT_LT(worst_length, 1e-12);
   EXPECT_LT(worst_arm, 1e-12);
@@ -81,8 +83,7 @@ TEST(BucketLinkages, PinForcesAreThoseOfEveryLinksEquilibriumAndDoTheJointsWork)
     };
     off(f.rod, expected.base), off(f.guide, expected.pivot), off(f.coupler, expected.driven);
     // A push of 1 N does arm dq of work on the joint.
-    const double torque =
-        r.pins.sense * (at.driven_pin.y() * -f.coupler.x() - at.driven_pin.x() * -f.coupler.y());
+    const double torque = r.pins.sense * (at.driven_pin.y() * -f.coupler.x() - at.driven_pin.x() * -f.coupler.y());
     worst_work = std::max(worst_work, std::abs(torque - at.arm) / std::max(1.0, std::abs(at.arm)));
   }
   EXPECT_LT(worst, 1e-10);
@@ -119,11 +120,13 @@ TEST_F(ShippedLinkage, TakesTheBranchThatFitsTheStroke) {
 TEST_F(ShippedLinkage, RefusesWhatCannotBeWithKeyValueAndRule) {
   CylinderParameters p = given_;
   p.linkage->coupler_length = 0.10;
-  EXPECT_EQ(problem(p).find("hammer_cylinder_coupler_length_m: 0.1 m, cannot close the linkage: at hammer_joint = "), 0U);
+  EXPECT_EQ(problem(p).find("hammer_cylinder_coupler_length_m: 0.1 m, cannot close the linkage: at hammer_joint = "),
+            0U);
   EXPECT_NE(problem(p).find("must be from "), std::string::npos);
   p = given_;
   p.linkage->branch = 1.0;
-  EXPECT_EQ(problem(p).find("hammer_cylinder_closed_length_m: 0.84 m, cannot close the linkage: at hammer_joint = "), 0U);
+  EXPECT_EQ(problem(p).find("hammer_cylinder_closed_length_m: 0.84 m, cannot close the linkage: at hammer_joint = "),
+            0U);
   p = given_;
   p.linkage->branch = 0.5;
   EXPECT_EQ(problem(p), "hammer_cylinder_linkage_branch: 0.5, must be 1 or -1");
@@ -136,8 +139,9 @@ TEST_F(ShippedLinkage, RefusesWhatCannotBeWithKeyValueAndRule) {
   p = given_;
   p.closed_length = 0.6, p.stroke = 0.59;  // from 0.6 m, which is shorter than either branch needs
   p.closed_length = 0.61, p.stroke = 0.60, p.joint = "swing_joint";
-  EXPECT_EQ(problem(p),
-            "hammer_cylinder_linkage: bucket, swing_joint must turn about y, with its origin at y = 0 of the link before");
+  EXPECT_EQ(
+      problem(p),
+      "hammer_cylinder_linkage: bucket, swing_joint must turn about y, with its origin at y = 0 of the link before");
 }
 
 TEST_F(ShippedLinkage, AsksForTheBranchWhereTheStrokeFitsBoth) {
@@ -180,7 +184,8 @@ TEST_F(ShippedLinkage, KeysOfTheBoomFileAreRequiredTogether) {
     return text.substr(0, at) + text.substr(text.find('\n', at) + 1);
   };
   ASSERT_EQ(problemsOf(without("hammer_cylinder_coupler_length_m")).size(), 1U);
-  EXPECT_EQ(problemsOf(without("hammer_cylinder_coupler_length_m")).front().find("hammer_cylinder_coupler_length_m"), 0U);
+  EXPECT_EQ(problemsOf(without("hammer_cylinder_coupler_length_m")).front().find("hammer_cylinder_coupler_length_m"),
+            0U);
   EXPECT_EQ(problemsOf(without("hammer_cylinder_linkage:")).size(), 4U);  // its keys are then unknown
   EXPECT_FALSE(problemsOf(test::withFirstReplaced(text, "linkage: bucket", "linkage: dogbone")).empty());
 }

@@ -75,7 +75,9 @@ struct LinkageReference {
       A(4 + axis, 2 + axis) = A(4 + axis, 4 + axis) = 1;  // common pin: the rod's push goes into both
       b[4 + axis] = push[axis];
     }
-    const auto about = [&](int row, int column, const Point& r) { A(row, column) = r.y(), A(row, column + 1) = -r.x(); };
+    const auto about = [&](int row, int column, const Point& r) {
+      A(row, column) = r.y(), A(row, column + 1) = -r.x();
+    };
     about(6, 2, c - pivot);
     about(7, 4, c - d);
     const Eigen::Matrix<Real, 8, 1> x = A.fullPivLu().solve(b);

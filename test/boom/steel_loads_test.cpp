@@ -74,11 +74,10 @@ class Steel : public testing::Test {
       const Eigen::Vector2d from(origin.x(), origin.z());
       BucketLinkageParameters lengths = *p.linkage;
       lengths.branch = -1.0;
-      const test::LinkageReference reference(
-          {{p.base_x - from.x(), p.base_z - from.y()},
-           {lengths.guide_x - from.x(), lengths.guide_z - from.y()},
-           {p.rod_x, p.rod_z}},
-          lengths);
+      const test::LinkageReference reference({{p.base_x - from.x(), p.base_z - from.y()},
+                                              {lengths.guide_x - from.x(), lengths.guide_z - from.y()},
+                                              {p.rod_x, p.rod_z}},
+                                             lengths);
       const Real q = c.motion.position[joint], force = -torque / reference.arm(q);
       const test::LinkageReference::Forces f = reference.forces(q);
       const Matrix turn = places[link - 1].R;

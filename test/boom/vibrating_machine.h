@@ -124,8 +124,7 @@ class VibratingMachine {
                                        {p.rod_x, p.rod_z}};
         return static_cast<double>(LinkageReference(pins, lengths).length(q));
       }
-      return std::abs(kPivot[joint] +
-                      std::exp(std::complex<double>(0.0, -q)) * std::complex<double>(p.rod_x, p.rod_z) -
+      return std::abs(kPivot[joint] + std::exp(std::complex<double>(0.0, -q)) * std::complex<double>(p.rod_x, p.rod_z) -
                       std::complex<double>(p.base_x, p.base_z));
     };
     const double q = pose_[joint], arm = (length(q + 1e-5) - length(q - 1e-5)) / 2e-5;

@@ -68,8 +68,7 @@ TEST(BoomCalibration, WeighsWhatADrawingHasWrong) {
       ++joints, weight_as_asked += error[k] < 0.015;
       const CylinderFit& cylinder = found.cylinders[k];
       const double truth = machine.friction_force[k] + machine.friction[k] * cylinder.force;
-      EXPECT_NEAR(cylinder.friction, truth, std::max(0.3 * truth, 3.0 * cylinder.friction_std))
-          << i << cylinder.name;
+      EXPECT_NEAR(cylinder.friction, truth, std::max(0.3 * truth, 3.0 * cylinder.friction_std)) << i << cylinder.name;
       friction_as_asked += std::abs(cylinder.friction - truth) < 0.3 * truth;
       EXPECT_LT(cylinder.held_out, 2.0 * cylinder.left) << i << cylinder.name;
     }

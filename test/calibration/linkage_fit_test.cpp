@@ -54,7 +54,8 @@ TEST(LinkageFits, FindTheLeverFromTheTableAlone) {
   EXPECT_FALSE(fit.correlations.empty());
 }
 
-/// With a tape's centimetre on every length as well: each is within three deviations, the lever better than by the tape.
+/// With a tape's centimetre on every length as well: each is within three deviations, the lever better than by the
+/// tape.
 TEST(LinkageFits, ImproveWhatATapeHasMeasured) {
   const LinkageReference truth = excavator();
   const Unknowns::Vector value =

@@ -11,7 +11,6 @@
 
 namespace hammer_loads::test {
 
-
 inline simulation::MachineSettings atWork(double seconds, double rate) {
   simulation::MachineSettings s = simulation::workingMo100();
   s.duration = seconds + 2.0;

@@ -103,7 +103,7 @@ TEST(SymbolTable, EveryKeyExistsAndNoHammerKeyIsMissing) {
   ParameterMap parameters = readParameterFile((kRoot / "config/hammer_mo100.yaml").string(), problems).value();
   for (const auto& [key, parameter] : parameters) {
     const bool is_std = key.find("_std") != std::string::npos ||
-                              key.find("_std_") != std::string::npos;  // of a symbol that has its row
+                        key.find("_std_") != std::string::npos;  // of a symbol that has its row
     EXPECT_TRUE(is_std || names.count(key) == 1U) << key;
   }
   merge(readParameterFile((kRoot / "config/pipeline.yaml").string(), problems).value(), parameters);

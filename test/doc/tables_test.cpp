@@ -57,8 +57,9 @@ TEST_F(TablesPage, EveryColumnHasUnitAndDescription) {
             pairs("SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c WHERE m.type = 'table' "
                   "ORDER BY 1, 2"));
   EXPECT_TRUE(pairs("SELECT table_name, column_name FROM columns WHERE length(description) < 5").empty());
-  EXPECT_EQ(pairs("SELECT unit, description FROM columns WHERE table_name = 'blows' AND column_name = 'energy'")[0].first,
-            "J");
+  EXPECT_EQ(
+      pairs("SELECT unit, description FROM columns WHERE table_name = 'blows' AND column_name = 'energy'")[0].first,
+      "J");
 }
 
 TEST_F(TablesPage, StatesUnitAndDescriptionAsTheDatabase) {

@@ -179,10 +179,10 @@ TEST_F(DownstreamTest, LaunchArgumentsBecomeParameters) {
   const fs::path calibration = build_ / "calibration.yaml";
   std::ofstream(calibration) << "crank_zero_rad: 0.125\ndrive_inertia_kg_m2: 0.375\n";
   for (const char* launch : {"hammer_loads", "hammer_loads_nodelet", "replay", "demo"}) {
-    const Answer merged = inInstallSpace(
-        "roslaunch --dump-params hammer_loads " + std::string(launch) + ".launch calibration_file:=" + calibration.string() +
-        " hammer_file:=" + (kPrefix / "share/hammer_loads/config/hammer_mo100.yaml").string() +
-        (std::string(launch) == "replay" ? " bag:=some.bag" : ""));
+    const Answer merged = inInstallSpace("roslaunch --dump-params hammer_loads " + std::string(launch) +
+                                         ".launch calibration_file:=" + calibration.string() + " hammer_file:=" +
+                                         (kPrefix / "share/hammer_loads/config/hammer_mo100.yaml").string() +
+                                         (std::string(launch) == "replay" ? " bag:=some.bag" : ""));
     for (const char* line : {"/crank_zero_rad: 0.125", "/drive_inertia_kg_m2: 0.375", "/crank_length_m: 0.048"})
       EXPECT_NE(merged.text.find(std::string("/hammer_loads") + line), std::string::npos)
           << launch << line << merged.text;

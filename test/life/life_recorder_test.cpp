@@ -15,8 +15,7 @@ namespace {
 using namespace test;
 constexpr std::int64_t kSecond = 1000000000;
 
-const std::vector<std::string> kInputs{"hull_wrench/force_x", "hull_wrench/force_z",
-                                       "section_loads/foot/torque_y"};
+const std::vector<std::string> kInputs{"hull_wrench/force_x", "hull_wrench/force_z", "section_loads/foot/torque_y"};
 
 LifeSettings settings() {
   const LoadGrid force = LoadGrid::make(-1000.0, 1000.0, 400).value.value();

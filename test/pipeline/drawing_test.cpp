@@ -15,8 +15,7 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
   settings.pipeline.level = Level::kLinkage;
   HammerParameters parameters = settings.mechanism.parameters();
   // The drawn machines have no such forces after a blow.
-  parameters.rod_std.play = parameters.rod_std.friction_radius = parameters.rod_std.damping_ratio =
-      0.0;
+  parameters.rod_std.play = parameters.rod_std.friction_radius = parameters.rod_std.damping_ratio = 0.0;
   settings.mechanism = test::mechanismOf(parameters);
   double covered[3]{}, energy = 0.0, impulse = 0.0, amplitude = 0.0;
   int ranges = 0, low = 0;

@@ -60,12 +60,8 @@ Coverage coverage(const MachineSettings& machine) {
                            CrankAngle::wrapToPi(output.crank.position.angle.offset - truth->angle),
                            output.crank.speed - truth->speed,
                            output.crank.acceleration - truth->acceleration};
-      const Coverage sigma{deviation.wrench.force_x,
-                           deviation.wrench.force_z,
-                           deviation.wrench.torque_y,
-                           deviationElsewhere(deviation),
-                           deviation.angle,
-                           deviation.speed,
+      const Coverage sigma{deviation.wrench.force_x,      deviation.wrench.force_z, deviation.wrench.torque_y,
+                           deviationElsewhere(deviation), deviation.angle,          deviation.speed,
                            deviation.acceleration};
       for (std::size_t k = 0; k < error.size(); ++k) inside[k] += std::abs(error[k]) <= 2.0 * sigma[k];
       ++count;

@@ -21,12 +21,12 @@ namespace {
 
 /// Of all blows together.
 struct Blows {
-  double worst{};                           ///< energy off, of the true one
-  double deviation{}, largest_std{};  ///< of the energy as estimated: mean and largest, of the true one
-  std::size_t struck{};                     ///< in truth
-  std::size_t count{}, known{}, within{};   ///< known: their energy; within: two deviations
-  double impulse_bias{};                    ///< of the tool's impulse, of the true one
-  std::size_t impulse_within{};             ///< two deviations
+  double worst{};                          ///< energy off, of the true one
+  double deviation{}, largest_std{};       ///< of the energy as estimated: mean and largest, of the true one
+  std::size_t struck{};                    ///< in truth
+  std::size_t count{}, known{}, within{};  ///< known: their energy; within: two deviations
+  double impulse_bias{};                   ///< of the tool's impulse, of the true one
+  std::size_t impulse_within{};            ///< two deviations
 };
 
 Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, double rate, std::uint64_t seed) {

@@ -16,7 +16,7 @@ constexpr char kByPressures[] = "hull_motion: model\nboom_stiffness: identified\
 constexpr char kByImuToo[] = "hull_motion: imu\nboom_stiffness: identified\n";
 
 struct Rock {
-  double hold_down_force;       ///< [N]
+  double hold_down_force;   ///< [N]
   double stiffness;         ///< [N/m]
   double oil{1.0};          ///< over the boom file's
   unsigned pose{};          ///< 0: as the other sessions; else drawn

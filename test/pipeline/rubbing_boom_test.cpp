@@ -16,8 +16,8 @@ simulation::Session rubbingSession(double friction) {
 std::string knownFriction(double friction, double deviation) {
   std::string keys = "boom_stiffness: identified\n";
   for (const char* name : simulation::kBoomCylinders)
-    keys += format("%s_friction: %.9g\n%s_friction_std: %.9g\n%s_friction_force_std_N: 0.0\n", name,
-                   friction, name, deviation, name);
+    keys += format("%s_friction: %.9g\n%s_friction_std: %.9g\n%s_friction_force_std_N: 0.0\n", name, friction, name,
+                   deviation, name);
   return keys;
 }
 

@@ -74,10 +74,11 @@ TEST_P(StrikingPointOfTheNode, GivesTheImpulsesOfARigidBodyImpact) {
   EXPECT_GE(seen, 12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pipeline, StrikingPointOfTheNode,
-                         testing::Values(StrikingCase{Level::kRocker, 0.0, 0.4}, StrikingCase{Level::kRocker, 0.02, 0.25},
-                                         StrikingCase{Level::kRocker, -0.02, 0.25}, StrikingCase{Level::kLinkage, 0.015, 0.4},
-                                         StrikingCase{Level::kLinkage, -0.03, 0.4}, StrikingCase{Level::kLinkage, 0.02, 0.0}));
+INSTANTIATE_TEST_SUITE_P(
+    Pipeline, StrikingPointOfTheNode,
+    testing::Values(StrikingCase{Level::kRocker, 0.0, 0.4}, StrikingCase{Level::kRocker, 0.02, 0.25},
+                    StrikingCase{Level::kRocker, -0.02, 0.25}, StrikingCase{Level::kLinkage, 0.015, 0.4},
+                    StrikingCase{Level::kLinkage, -0.03, 0.4}, StrikingCase{Level::kLinkage, 0.02, 0.0}));
 
 }  // namespace
 }  // namespace hammer_loads

@@ -116,8 +116,7 @@ Covered coveredOf(const test::WornMachineSettings& machine, const Mechanism& fil
       for (const auto& blow : blows) {
         if (std::abs(blow.time - time) > 0.02) continue;
         ++covered.blows;
-        covered.energies +=
-            std::abs(result.ends[k].blow.energy - blow.energy) <= 2.0 * result.ends[k].blow.energy_std;
+        covered.energies += std::abs(result.ends[k].blow.energy - blow.energy) <= 2.0 * result.ends[k].blow.energy_std;
       }
     }
     const bool touches =

@@ -175,7 +175,8 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
             "0.0002,"
             " pressure_hose_lag_s: 0.004, pressure_count_Pa: 39000, bus_delay_s: 0.002, joint_count_rad: 0.002, "
             "link_bending_frequency_Hz: 16,"
-            " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, machine_seal_constant: 0.013, joint_noise_rad: 0.0001, "
+            " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, machine_seal_constant: 0.013, "
+            "joint_noise_rad: 0.0001, "
             "restitution_drawn: true,"
             " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, hold_down_force_N: 700}"));
   ASSERT_TRUE(loaded.value) << loaded.problems.front();

@@ -67,8 +67,8 @@ TEST(TurnTraces, TypicalIsNearTheMedian) {
     ASSERT_NE(typical, nullptr);
     expectWhole(*typical, 60);
     EXPECT_EQ(typical->amplitude, amplitudes[typical->turn - 1]);
-    const auto below = std::count_if(amplitudes.begin(), amplitudes.end(),
-                                     [&](double value) { return value <= typical->amplitude; });
+    const auto below =
+        std::count_if(amplitudes.begin(), amplitudes.end(), [&](double value) { return value <= typical->amplitude; });
     // The rank of a median of at least 16 turns scatters by 0.5/sqrt(16) at most; three of these.
     EXPECT_NEAR(static_cast<double>(below) / static_cast<double>(turns), 0.5, turns < 16 ? 0.5 : 0.38) << turns;
   }

@@ -19,10 +19,10 @@ constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
 using Change = void (*)(simulation::MachineSettings&);
 struct BoomKind {
   const char* name;
-  double oil;          // over the boom file's
+  double oil;              // over the boom file's
   double hold_down_force;  // on rock [N]; 0: the hull hangs
-  double drive;        // of the operator [rad/s]
-  Change change;       // of a machine with clean sensors and a boom without flaws; null: none
+  double drive;            // of the operator [rad/s]
+  Change change;           // of a machine with clean sensors and a boom without flaws; null: none
 };
 
 void rub(simulation::MachineSettings& m) { m.on_boom.seals.friction = 0.01; }

@@ -167,7 +167,8 @@ std::vector<ElasticRow> elasticTable(const Settings& settings, const MachineChoi
   std::vector<ElasticRow> rows;
   for (const ElasticKind& kind : elasticKinds(settings.mechanism.parameters(), choice.seed)) {
     for (const Level level : {Level::kRocker, Level::kLinkage, Level::kElastic})
-      if (choice.has(kind.name + ' ' + nameOf(level))) rows.push_back({kind.name, level, elasticErrors(settings, kind, level)});
+      if (choice.has(kind.name + ' ' + nameOf(level)))
+        rows.push_back({kind.name, level, elasticErrors(settings, kind, level)});
   }
   return rows;
 }

@@ -24,8 +24,8 @@ struct BoomParameters {
   VibrationSettings vibration;
   std::optional<Supports> supports;         ///< [m]; nothing: not known
   std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
-  double link_mass_std{0.03};         ///< standard, of each link that is not weighed, relative [-]
-  double link_com_std{0.02};          ///< standard, of its centre of mass in x and z each [m]
+  double link_mass_std{0.03};               ///< standard, of each link that is not weighed, relative [-]
+  double link_com_std{0.02};                ///< standard, of its centre of mass in x and z each [m]
   // Prior: link_mass_std, link_com_std
   double rigid_tolerance{};  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
@@ -33,11 +33,11 @@ struct BoomParameters {
 /// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the
 /// joint forward. The part that holds the joint - a cylinder - gives the opposite of the total.
 struct BoomLoads {
-  JointVector hammer;                             ///< J^T w, as on a rigid boom
-  JointVector weight;                             ///< of the links
-  JointVector motion;                             ///< inertia of the links as the boom moves
-  JointVector vibration;                          ///< inertia of the links as the boom vibrates; zero for a rigid boom
-  JointVector total;                              ///< sum of the four
+  JointVector hammer;                              ///< J^T w, as on a rigid boom
+  JointVector weight;                              ///< of the links
+  JointVector motion;                              ///< inertia of the links as the boom moves
+  JointVector vibration;                           ///< inertia of the links as the boom vibrates; zero for a rigid boom
+  JointVector total;                               ///< sum of the four
   std::array<CylinderForce, kMaxJoints> cylinder;  ///< of the total, index as in Boom::cylinders()
 };
 
@@ -185,11 +185,11 @@ class Boom {
   Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane, nor the rows, half of all, that are then 0
   Eigen::VectorXi rows_in_plane_;      ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
-  JointVector weight_std_;  ///< at response_at_
-  JointMatrix bending_;           ///< at response_at_: torque of a joint per N m/s2 at the middle of a link [s2]
-  JointVector response_at_;       ///< steady_position_ where it belongs; NaN: nowhere yet
-  Eigen::VectorXd variance_;      ///< one entry a row of response_in_plane_
-  Eigen::VectorXd deviation_;     ///< one entry a row
+  JointVector weight_std_;     ///< at response_at_
+  JointMatrix bending_;        ///< at response_at_: torque of a joint per N m/s2 at the middle of a link [s2]
+  JointVector response_at_;    ///< steady_position_ where it belongs; NaN: nowhere yet
+  Eigen::VectorXd variance_;   ///< one entry a row of response_in_plane_
+  Eigen::VectorXd deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

@@ -176,8 +176,7 @@ JointVector Boom::findWeightDeviation() const noexcept {
     for (int j = 0; j < chain_.joints() && chain_.linkBeyond(j) <= i; ++j) {
       const auto joint = static_cast<std::size_t>(j);
       if (pose_.prismatic[joint]) {
-        if (!weighed)
-          variance[j] += square(parameters_.link_mass_std * body.mass * pose_.axis_B[joint].dot(g_B_));
+        if (!weighed) variance[j] += square(parameters_.link_mass_std * body.mass * pose_.axis_B[joint].dot(g_B_));
         continue;
       }
       const auto of = [&](const Eigen::Vector3d& moment_B) { return pose_.axis_B[joint].dot(moment_B.cross(g_B_)); };

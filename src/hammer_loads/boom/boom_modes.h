@@ -16,7 +16,7 @@ namespace hammer_loads {
 /// stiffness of the EO-2621); oil moving between chambers (valves shut).
 struct BoomModes {
   int count{};                          ///< modes = joints with a cylinder; 0 at a dead centre or without inertia
-  bool zero_moment_arm{};                   ///< some cylinder does not hold its joint: there are no modes
+  bool zero_moment_arm{};               ///< some cylinder does not hold its joint: there are no modes
   std::array<int, kMaxJoints> joint{};  ///< index in the chain of the joints that vibrate
   JointVector stiffness;                ///< of the cylinders of those [N m/rad]
   JointMatrix mass;                     ///< M of all joints [kg m2]

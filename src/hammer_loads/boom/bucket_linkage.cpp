@@ -42,8 +42,7 @@ BucketLinkagePosition BucketLinkage::at(double c, double s) const noexcept {
   const double guide_change =
       (coupler.dot(guide_rate * guide_rate * guide - p.driven_pin) - coupler_rate.squaredNorm()) / gear;
   p.arm = rod.dot(rate) / p.length;
-  p.arm_rate = (rate.squaredNorm() + rod.dot(guide_change * across - guide_rate * guide_rate * guide) -
-                p.arm * p.arm) /
+  p.arm_rate = (rate.squaredNorm() + rod.dot(guide_change * across - guide_rate * guide_rate * guide) - p.arm * p.arm) /
                p.length;
   return p;
 }

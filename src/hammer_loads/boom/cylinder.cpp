@@ -53,8 +53,7 @@ void checkOptional(const CylinderParameters& p, std::vector<std::string>& proble
   constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
   // Limit: kLeastLength, kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
   within("friction_force_N", p.friction_force, " N", 0.0, 1e6);
-  if (!std::isnan(p.friction_force_std))
-    within("friction_force_std_N", p.friction_force_std, " N", 0.0, 1e6);
+  if (!std::isnan(p.friction_force_std)) within("friction_force_std_N", p.friction_force_std, " N", 0.0, 1e6);
   within("friction", p.friction, "", 0.0, kMostFriction);
   within("friction_std", p.friction_std, "", 0.0, kMostFriction);
   within("stiffness_std", p.stiffness_std, "", 0.0, 1.0);

@@ -43,9 +43,9 @@ struct CylinderParameters {
 
 /// Length and leverage at a joint angle.
 struct CylinderPosition {
-  double length{};     ///< L between the cylinder's pins [m]
-  double arm{};        ///< dL/dq [m]; positive: extending drives the joint forward
-  double arm_rate{};   ///< d2L/dq2 [m]
+  double length{};         ///< L between the cylinder's pins [m]
+  double arm{};            ///< dL/dq [m]; positive: extending drives the joint forward
+  double arm_rate{};       ///< d2L/dq2 [m]
   bool zero_moment_arm{};  ///< the arm is so short that no finite force holds the joint
   /// Places in a linkage: x, z of the rod's pin and of the coupler's on the link beyond, from the joint's origin, axes
   /// of the link before [m].

@@ -11,7 +11,7 @@ enum CylinderFlag : std::uint16_t {
   kChamberEmpty = 1,   ///< a chamber's oil would have to pull: it parts, and the cylinder is softer than computed
   kForceReversed = 2,  ///< the force is against the steady one: the pins cross their play
   kReliefReached = 4,  ///< a chamber carries its relief pressure: the valve opens, the joint yields
-  kZeroMomentArm = 8,     ///< the cylinder does not hold the joint
+  kZeroMomentArm = 8,  ///< the cylinder does not hold the joint
 };
 
 /// Gauge pressures in both chambers of trapped oil [Pa].

@@ -9,7 +9,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kInPlane = 1e-6;  // [-], [m]: pins and joint count as in one plane
-constexpr int kRangeSteps = 1000;       // over the joint's range
+constexpr int kRangeSteps = 1000;  // over the joint's range
 // Numerical: kInPlane, kRangeSteps
 
 Eigen::Vector2d inPlane(const Eigen::Vector3d& v) { return {v.x(), v.z()}; }
@@ -48,7 +48,8 @@ void Cylinder::findLinkage(const Chain& chain, std::vector<std::string>& problem
   if (given.branch == 0.0) {
     const double one = miss(1.0), other = miss(-1.0);
     if (one == 0.0 && other == 0.0)
-      problems.push_back(format("%s_linkage_branch: not given, must be 1 or -1: closed length and stroke fit both", name));
+      problems.push_back(
+          format("%s_linkage_branch: not given, must be 1 or -1: closed length and stroke fit both", name));
     given.branch = one < other ? 1.0 : -1.0;
   }
   linkage_.emplace(pins, given);

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kDelayWalk = 2e-5;  // of a delay in a second [s]: clocks drift by some 20 ppm
 // Prior: kDelayWalk
-constexpr double kOilWithDelay = 0.1;  // deviation of log stiffness, beside what was known without a delay
+constexpr double kOilWithDelay = 0.1;      // deviation of log stiffness, beside what was known without a delay
 constexpr double kWrongPart = 0.05;        // of a delay that is found
 constexpr double kWrongByPressures = 0.3;  // by them alone
-constexpr double kDoubt = 0.6;      // deviations of an expected lead: they are large, see ConstantErrors
-constexpr double kWrongLead = 0.3;  // of what is taken for the crank's: it may be a sensor's
+constexpr double kDoubt = 0.6;             // deviations of an expected lead: they are large, see ConstantErrors
+constexpr double kWrongLead = 0.3;         // of what is taken for the crank's: it may be a sensor's
 
 /// Of two of one sign the one nearer to 0; else 0.
 double lesserOf(double a, double b) noexcept {

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kKnown = 0.03;  // deviation of log frequency of a mode that is known
+constexpr double kKnown = 0.03;                          // deviation of log frequency of a mode that is known
 constexpr double kMostEarly = 0.004, kMostLate = 0.012;  // [s]
 // Prior: kMostEarly, kMostLate
 

@@ -29,8 +29,7 @@ inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, do
   const CylinderParameters& p = cylinder.parameters();
   const double size = std::abs(arm), force = std::abs(oil_torque / arm);
   return {size * (p.friction_force + p.friction * force),
-          size * std::sqrt(square(p.friction_force_std) + square(p.friction_std * force)), driven,
-          kSlowRod / size};
+          size * std::sqrt(square(p.friction_force_std) + square(p.friction_std * force)), driven, kSlowRod / size};
 }
 
 }  // namespace hammer_loads

@@ -21,7 +21,7 @@ HAMMER_LOADS_INLINE Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3
 }  // namespace
 
 struct SteelLoadFinder::Working {
-  std::array<Wrench, kMaxLinks> beyond;                     ///< hammer, weight, inertia of this link and all beyond
+  std::array<Wrench, kMaxLinks> beyond;                      ///< hammer, weight, inertia of this link and all beyond
   std::array<std::array<Wrench, kPins>, kMaxJoints> by_pin;  ///< ON the chain's links, by each cylinder
 };
 
@@ -86,7 +86,8 @@ void SteelLoadFinder::findCylinders(const ChainState& state, Working& working, S
     const double force = a.cylinder.load(state.cylinders[i], torque).force;
     std::array<Eigen::Vector3d, kPins> by{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     if (a.cylinder.linkage()) {
-      const BucketLinkageForces links = a.cylinder.linkage()->forces(state.cylinders[i].rod_pin, state.cylinders[i].driven_pin);
+      const BucketLinkageForces links =
+          a.cylinder.linkage()->forces(state.cylinders[i].rod_pin, state.cylinders[i].driven_pin);
       const auto of = [&](const Eigen::Vector2d& share) -> Eigen::Vector3d {
         return X_BP.linear() * Eigen::Vector3d(-force * share.x(), 0.0, -force * share.y());
       };
@@ -95,7 +96,9 @@ void SteelLoadFinder::findCylinders(const ChainState& state, Working& working, S
       const Eigen::Vector3d along = rod - X_BP * a.base_P;
       by[kRod] = force / along.norm() * along, by[kBase] = -by[kRod];
     }
-    const auto at = [](const Eigen::Vector3d& pin, const Eigen::Vector3d& push) { return Wrench{push, pin.cross(push)}; };
+    const auto at = [](const Eigen::Vector3d& pin, const Eigen::Vector3d& push) {
+      return Wrench{push, pin.cross(push)};
+    };
     working.by_pin[i] = {at(X_BP * a.base_P, by[kBase]), at(X_BP * a.guide_P, by[kGuide]), at(rod, by[kRod])};
     const auto before = X_BP.linear().transpose();
     result.pins[i] = {before * by[kBase], before * by[kGuide], X_BL.linear().transpose() * by[kRod]};

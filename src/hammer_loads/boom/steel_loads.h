@@ -55,8 +55,8 @@ class SteelLoadFinder {
   /// A cylinder with its pins on the two links of a joint.
   struct Anchors {
     Cylinder cylinder;
-    int beyond{};                              ///< link of the rod's pin; the others are on the one before
-    Eigen::Vector3d base_P, guide_P, rod_L;    ///< in the frames of the two links [m]
+    int beyond{};                            ///< link of the rod's pin; the others are on the one before
+    Eigen::Vector3d base_P, guide_P, rod_L;  ///< in the frames of the two links [m]
   };
   enum Pin { kBase, kGuide, kRod, kPins };
   /// A pin whose force acts on what lies beyond a section, of a cylinder that has others before it.

@@ -23,7 +23,7 @@ struct VibrationReading {
   Clock clock{Clock::kCrank};  ///< its stamp is late by ModeIdentifier::delay()
   double noise{};              ///< standard deviation of one reading, unit of value
   double neglected{};          ///< of what modes cannot say of it: it weighs less, and is as surprising
-  double offset_std{};   ///< of its offset at the start, unit of value
+  double offset_std{};         ///< of its offset at the start, unit of value
   double offset_walk{};        ///< how far the offset wanders in a second, unit of value
 };
 

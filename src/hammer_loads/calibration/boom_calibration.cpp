@@ -68,10 +68,11 @@ class Finder {
       if (weights_[r].mass == 0.0)
         free.points.insert(free.points.end(), points_[r].points.begin(), points_[r].points.end());
     }
-    const auto add = [this](const std::string& line) { result_.problem += (result_.problem.empty() ? "" : "\n") + line; };
+    const auto add = [this](const std::string& line) {
+      result_.problem += (result_.problem.empty() ? "" : "\n") + line;
+    };
     for (const std::string& line : misreadings(model, free)) add(line);
-    for (const std::string& line : noisySensors(model.given().chain(), points_, result_.names))
-      add(line);
+    for (const std::string& line : noisySensors(model.given().chain(), points_, result_.names)) add(line);
     return result_.problem.empty();
   }
 
@@ -118,7 +119,8 @@ class Finder {
       }
       for (std::size_t i = 0; i < late.size(); ++i)
         if (late[i].cylinder == k) out.push_back(unseen[static_cast<Eigen::Index>(i)]);
-      for (std::size_t r = 0; r < points_.size() && points_.size() > 1; ++r) c.left_in.push_back(rmsOf(rows, after, k, r));
+      for (std::size_t r = 0; r < points_.size() && points_.size() > 1; ++r)
+        c.left_in.push_back(rmsOf(rows, after, k, r));
       c.rows = force.size(), c.force = rms(force), c.left = rms(left), c.before = rms(was), c.held_out = rms(out);
       const auto friction = [&](const Eigen::VectorXd& x) {
         return model.valueOf(x, BoomUnknown::kFrictionForce, k) + c.force * model.valueOf(x, BoomUnknown::kFriction, k);

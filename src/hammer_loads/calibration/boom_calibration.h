@@ -37,7 +37,7 @@ struct CylinderFit {
   std::vector<double> left_in;  ///< the same of each recording, where there are several [N]; NaN: no rows there
   double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
   double friction{};            ///< at that force [N]
-  double friction_std{};  ///< standard [N]
+  double friction_std{};        ///< standard [N]
   /// Held-out rows fit far worse than fitted ones: the model does not hold, whatever its deviations are.
   bool holds() const { return !(held_out > std::max(kHeldOutOverLeft * left, kHeldOutOverForce * force)); }
 

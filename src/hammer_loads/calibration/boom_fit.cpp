@@ -13,8 +13,8 @@ constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and
 constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
 constexpr double kHuber = 3.0;           // standard deviations of what is left
 constexpr int kMostRounds = 40;
-constexpr double kSettled = 1e-3;              // of a standard deviation
-constexpr double kStep = 0.05;                 // of differences, in standard deviations before the recording
+constexpr double kSettled = 1e-3;               // of a standard deviation
+constexpr double kStep = 0.05;                  // of differences, in standard deviations before the recording
 constexpr std::size_t kNeighbouringRows = 100;  // of a row that may be alike: 20 s
 
 bool isFriction(BoomUnknown kind) {
@@ -184,7 +184,8 @@ Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& 
     if (i == 0 || row.recording != rows[i - 1].recording) boom = model.boomAt(x, row.recording);
     if (!boom) return left.setConstant(std::numeric_limits<double>::quiet_NaN());
     model.move(*boom, x, *row.point);
-    left[static_cast<Eigen::Index>(i)] = row.measured - model.shownForce(*boom, x, row.cylinder, row.recording, *row.point);
+    left[static_cast<Eigen::Index>(i)] =
+        row.measured - model.shownForce(*boom, x, row.cylinder, row.recording, *row.point);
   }
   return left;
 }

@@ -52,9 +52,9 @@ enum class BoomUnknown {
 
 struct Unknown {
   BoomUnknown kind;
-  std::size_t of;      ///< index of cylinder (links: of the cylinder whose joint they hang on) or recording
-  double given{};      ///< the value at which its entry is zero
-  double deviation{};  ///< standard, before the recording
+  std::size_t of;           ///< index of cylinder (links: of the cylinder whose joint they hang on) or recording
+  double given{};           ///< the value at which its entry is zero
+  double deviation{};       ///< standard, before the recording
   std::size_t recording{};  ///< of kRecording
 };
 

@@ -67,8 +67,7 @@ std::optional<BoomPoint> pointAt(const BoomRecording& recording, double time, do
   BoomPoint point;
   point.time = time, point.half_width = half_width;
   const auto joints = static_cast<Eigen::Index>(recording.joint.size());
-  for (JointVector* v :
-       {&point.motion.position, &point.motion.velocity, &point.motion.acceleration, &point.rate_std})
+  for (JointVector* v : {&point.motion.position, &point.motion.velocity, &point.motion.acceleration, &point.rate_std})
     v->setZero(joints);
   for (Eigen::Index j = 0; j < joints; ++j) {
     const Trace& trace = recording.joint[static_cast<std::size_t>(j)];

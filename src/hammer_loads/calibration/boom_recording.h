@@ -33,7 +33,7 @@ double endOf(const BoomRecording& recording);
 struct BoomPoint {
   double time{};                                             ///< [s]
   JointMotion motion;                                        ///< as read
-  JointVector rate_std;                                ///< standard, of motion.velocity [rad/s]
+  JointVector rate_std;                                      ///< standard, of motion.velocity [rad/s]
   std::array<std::array<double, 2>, kMaxJoints> pressure{};  ///< per cylinder: bore, rod [Pa]
   double half_width{};                                       ///< of the readings around it [s]
 };

@@ -102,8 +102,8 @@ std::string cylinderLine(const CylinderFit& f) {
       "%-20s %zu instants, force %.0f N rms; off before %.1f %%, left %.2f %%, last quarter by the others %.2f "
       "%%%s; friction %.0f +- %.0f N (%.1f %%)\n",
       f.name.c_str(), f.rows, f.force, percent(f.before, f.force), percent(f.left, f.force),
-      percent(f.held_out, f.force), f.holds() ? "" : ": DOES NOT FIT, nothing is written", f.friction,
-      f.friction_std, percent(f.friction, f.force));
+      percent(f.held_out, f.force), f.holds() ? "" : ": DOES NOT FIT, nothing is written", f.friction, f.friction_std,
+      percent(f.friction, f.force));
 }
 
 /// Residuals of each recording; nothing where there is one recording.
@@ -158,7 +158,8 @@ std::string yamlOf(const BoomCalibration& c, const std::string& given, const std
   std::string text = std::string(kBoomYamlBegins) + " " + onOneLine(source) + ":\n";
   for (const JointWeight& joint : c.joints) text += "# " + jointLine(joint);
   for (const CylinderFit& cylinder : c.cylinders) text += "# " + cylinderLine(cylinder);
-  return text + "# A whole boom file, for boom_file:=FILE or --params. Values belong together: some cannot be separated.\n" +
+  return text +
+         "# A whole boom file, for boom_file:=FILE or --params. Values belong together: some cannot be separated.\n" +
          lines.text();
 }
 

@@ -12,11 +12,11 @@ namespace hammer_loads::calibration {
 struct CalibrationBasis {
   const Mechanism& mechanism;
   Level level;
-  double ratio{1.0};                      ///< encoder turns per crank turn [-]
-  double rocker_inertia_std{0.02};  ///< relative, of the given rocker inertia [-]
-  double torque_walk{};                   ///< random walk of the net torque [N m/sqrt(s)]
-  double torque_std{};              ///< of the net torque [N m]
-  Globals in_force{Globals::Zero()};      ///< to compare with: zero and eccentricities of the parameters in force
+  double ratio{1.0};                  ///< encoder turns per crank turn [-]
+  double rocker_inertia_std{0.02};    ///< relative, of the given rocker inertia [-]
+  double torque_walk{};               ///< random walk of the net torque [N m/sqrt(s)]
+  double torque_std{};                ///< of the net torque [N m]
+  Globals in_force{Globals::Zero()};  ///< to compare with: zero and eccentricities of the parameters in force
 };
 
 /// One key of the file that the other commands read.

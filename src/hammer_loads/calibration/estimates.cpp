@@ -102,8 +102,7 @@ void addEstimates(const Found& found, Calibration& result) {
   const double counts_hide = fit.noise.angle / 30.0, timing = fit.noise.timing;
   const double timing_std =
       std::sqrt(2.0 / samples) * (timing > 0.0 ? timing + 0.5 * counts_hide * counts_hide / timing : counts_hide);
-  result.estimates.push_back({"crank_timing_noise_s", "s", timing, timing_std,
-                              std::max(kTimingLimit * timing, 2e-5),
+  result.estimates.push_back({"crank_timing_noise_s", "s", timing, timing_std, std::max(kTimingLimit * timing, 2e-5),
                               result.facts.retimed ? "after re-timing: the stamps repeat or change places"
                                                    : "of a stamp against the instant of the measurement",
                               timing_std});

@@ -43,7 +43,7 @@ struct LinkageFit {
   LinkageUnknowns::Vector value;  ///< [m]
   double branch{};                ///< BucketLinkageParameters::branch
   std::size_t rows{};
-  double left{}, worst{};         ///< rms and largest of the strokes' residuals [m]
+  double left{}, worst{};   ///< rms and largest of the strokes' residuals [m]
   double arm{}, arm_std{};  ///< rms of the lever over the table; standard deviation, rms [m/rad]
   std::vector<Estimate> estimates;
   std::vector<Correlation> correlations;  ///< beyond 0.9 in size

@@ -116,10 +116,10 @@ std::vector<std::string> noisySensors(const Chain& chain, const std::vector<Boom
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
       const double usual = middleOf(others);
       if (!(usual > 0.0) || noise[r] <= kFaultyNoise * usual) continue;
-      lines.push_back(format("%s: its sensor's noise is %.0f times that of the other recordings in %s, must be within "
-                             "%.0f times: faulty there, leave that recording out",
-                             chain.jointNames()[static_cast<std::size_t>(j)].c_str(), noise[r] / usual,
-                             names[r].c_str(), kFaultyNoise));
+      lines.push_back(format(
+          "%s: its sensor's noise is %.0f times that of the other recordings in %s, must be within "
+          "%.0f times: faulty there, leave that recording out",
+          chain.jointNames()[static_cast<std::size_t>(j)].c_str(), noise[r] / usual, names[r].c_str(), kFaultyNoise));
     }
   }
   return lines;

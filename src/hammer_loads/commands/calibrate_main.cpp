@@ -187,8 +187,7 @@ int run(int argc, const char* const* argv) {
   CommandLine line(
       "Crank sensor's place and drive's inertia from a recording of the hammer at work; or, with --boom, the boom's "
       "masses and friction from one of its free movement",
-      "calibrate",
-      "A table of stroke and angle gives the lengths of a bucket linkage: calibrate --linkage --help");
+      "calibrate", "A table of stroke and angle gives the lengths of a bucket linkage: calibrate --linkage --help");
   Arguments given;
   BagJob job;
   addOptions(line, given, job);

@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kFirstTurns = 4;  // the drive inertia is learned first
+constexpr int kFirstTurns = 4;   // the drive inertia is learned first
 constexpr int kTurnsToKnow = 6;  // nothing is concluded before
 constexpr double kUnmodelledCounts =
     0.5;  // what a clean machine shows, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
@@ -20,9 +20,9 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
 
-constexpr double kNotSeen = 0.6;  // of the zero's prior
-constexpr double kGiven = 0.01;   // standard deviation of a zero as it is given [rad]
-constexpr int kTurnsToSee = 2;    // between the ends of the first and the second turn there is a blow
+constexpr double kNotSeen = 0.6;   // of the zero's prior
+constexpr double kGiven = 0.01;    // standard deviation of a zero as it is given [rad]
+constexpr int kTurnsToSee = 2;     // between the ends of the first and the second turn there is a blow
 constexpr double kUnseen = 0.026;  // standard deviation of a zero before any blow: couplings slip by up to 10 deg [rad]
 
 }  // namespace

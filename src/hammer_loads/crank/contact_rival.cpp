@@ -11,8 +11,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kDecided = 12.0;  // logarithm of odds: the less likely belief is set aside, and never less likely
-constexpr double kChange = 9.0;  // as above at which the other one becomes the estimate
-constexpr double kMostFit = 8.0;  // as above that one sample may add: it may be an outlier
+constexpr double kChange = 9.0;    // as above at which the other one becomes the estimate
+constexpr double kMostFit = 8.0;   // as above that one sample may add: it may be an outlier
 
 }  // namespace
 

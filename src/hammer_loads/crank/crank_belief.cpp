@@ -13,7 +13,7 @@ namespace {
 constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
 // Prior: kLeastFactor, kMostFactor
-constexpr double kMostDoubt = 1.0;  // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
+constexpr double kMostDoubt = 1.0;     // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
 constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
 
 /// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].

@@ -16,7 +16,7 @@ namespace hammer_loads {
 
 // A path is cut into smooth pieces that end at the blow.
 constexpr double kMaxStepAngle = 0.04;  ///< [rad] of the crank in one piece
-constexpr int kMaxSteps = 4096;  ///< bounds the work for absurd speeds; steps get longer beyond it
+constexpr int kMaxSteps = 4096;         ///< bounds the work for absurd speeds; steps get longer beyond it
 // Numerical: kMaxSteps
 /// [rad/s]: a slower crank is moved by friction and stopped by the tool; nothing jumps there.
 constexpr double kSlowCrank = 5.0;

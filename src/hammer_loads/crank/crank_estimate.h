@@ -51,9 +51,9 @@ struct CrankWays {
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
-  double drive_inertia{};      ///< Jc, on which the blow acts; gives the restitution [kg m2]; 0: not known
-  double inertia_std{};  ///< relative [-]
-  bool early{};                ///< it acted before the dead centre, where the crank passed with its speed after
+  double drive_inertia{};  ///< Jc, on which the blow acts; gives the restitution [kg m2]; 0: not known
+  double inertia_std{};    ///< relative [-]
+  bool early{};            ///< it acted before the dead centre, where the crank passed with its speed after
   /// What independent errors of constants make of the factor [-] and, relatively, of the inertia, a standard deviation
   /// each.
   ByConstants<2, ConstantErrors::kSize> by_constant{ByConstants<2, ConstantErrors::kSize>::Zero()};

@@ -12,19 +12,19 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kKick = 0.35;  // of the speed: what no torque changes between two samples
+constexpr double kKick = 0.35;           // of the speed: what no torque changes between two samples
 constexpr double kLeastInertia = 0.1;    // of the first guess: no drawing is further off
 constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held at constant speed looks that heavy
 constexpr double kRelearn = 0.05;        // relative deviation of the inertia after what it cannot explain
-constexpr double kMostTorque = 3.0;  // times its first deviation: more is what a bad sample left behind
+constexpr double kMostTorque = 3.0;      // times its first deviation: more is what a bad sample left behind
 // Prior: kMostTorque
 constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: more is a diverged filter
 // Prior: kLeastInertia, kMostInertia
-constexpr int kOneSided = 3;       // innovations in a row beyond 5 deviations: no jitter of stamps
-constexpr int kOneSidedLost = 10;  // the same where readings made no sense: they do again, elsewhere
+constexpr int kOneSided = 3;              // innovations in a row beyond 5 deviations: no jitter of stamps
+constexpr int kOneSidedLost = 10;         // the same where readings made no sense: they do again, elsewhere
 constexpr double kSurpriseLength = 50.0;  // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;    // of them: more than a supply's jolts
-constexpr double kSlip = 3e-3;  // [s]: stamps that are off by so much, again and again alike
+constexpr double kSlip = 3e-3;            // [s]: stamps that are off by so much, again and again alike
 
 }  // namespace
 

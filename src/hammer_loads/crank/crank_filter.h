@@ -23,18 +23,18 @@ namespace hammer_loads {
 
 /// What the filter assumes about sensors and supply.
 struct CrankFilterSettings {
-  CrankSensor sensor;                  ///< where the encoder sits
-  double angle_resolution{};           ///< encoder count [rad], >= 0; 0: read off the readings
-  double angle_noise{};                ///< standard deviation beside the count [rad], >= 0
-  double timing_noise{};               ///< standard deviation of a stamp, first guess [s], >= 0
-  double speed_noise{};                ///< standard deviation of a measured speed, first guess [rad/s], > 0
-  double torque_walk{};                ///< random walk of the net torque [N m/sqrt(s)], > 0
-  double speed_walk{};                 ///< random walk of the speed [rad/s/sqrt(s)], > 0
-  double inertia_walk{};               ///< relative random walk of the drive inertia [1/sqrt(s)], >= 0
+  CrankSensor sensor;            ///< where the encoder sits
+  double angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings
+  double angle_noise{};          ///< standard deviation beside the count [rad], >= 0
+  double timing_noise{};         ///< standard deviation of a stamp, first guess [s], >= 0
+  double speed_noise{};          ///< standard deviation of a measured speed, first guess [rad/s], > 0
+  double torque_walk{};          ///< random walk of the net torque [N m/sqrt(s)], > 0
+  double speed_walk{};           ///< random walk of the speed [rad/s/sqrt(s)], > 0
+  double inertia_walk{};         ///< relative random walk of the drive inertia [1/sqrt(s)], >= 0
   double initial_torque_std{};   ///< [N m], > 0
   double initial_inertia_std{};  ///< relative [-], >= 0
-  double max_speed{};                  ///< bound of an unknown speed [rad/s], > 0
-  double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
+  double max_speed{};            ///< bound of an unknown speed [rad/s], > 0
+  double blow_factor{1.0};       ///< a blow's factor on the crank's speed, first guess [-], > 0
   ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
   double blow_std{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
   // Prior: blow_std

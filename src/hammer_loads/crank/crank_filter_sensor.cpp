@@ -15,11 +15,11 @@ using Belief = CrankBelief;
 
 constexpr double kSpeedNoiseGain = 1.0 / look_back::kReadings;
 constexpr double kLeastSpeedNoise = 0.3;  // of the first guess
-constexpr double kLagTakenOff = 1e-3;  // [s]: an encoder that is eccentric by 0.4 deg looks like half of it
-constexpr double kNotSlip = 0.04;  // [rad] from the blow: there the tool stops and throws the crank
-constexpr double kBeganOfLate = 0.5;  // beginnings of late: some 1.4 s after a single one
-constexpr double kStrikeBegins = 0.6;  // [rad] before the blow: a rod that gives is calm until there
-constexpr double kRodMoves = 0.017;    // [rad] of a reading at most, there: worn pins, a rod that was learned
+constexpr double kLagTakenOff = 1e-3;     // [s]: an encoder that is eccentric by 0.4 deg looks like half of it
+constexpr double kNotSlip = 0.04;         // [rad] from the blow: there the tool stops and throws the crank
+constexpr double kBeganOfLate = 0.5;      // beginnings of late: some 1.4 s after a single one
+constexpr double kStrikeBegins = 0.6;     // [rad] before the blow: a rod that gives is calm until there
+constexpr double kRodMoves = 0.017;       // [rad] of a reading at most, there: worn pins, a rod that was learned
 
 }  // namespace
 

@@ -14,7 +14,7 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kUnlearnEvery = 3.0;  // [s]
+constexpr double kUnlearnEvery = 3.0;   // [s]
 constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
 constexpr double kForgetDoubts = 30.0;  // [s]
 

@@ -182,8 +182,8 @@ class EncoderSlip {
 
   static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
-  double before_{};  ///< innovation of the sample before [rad]
-  double seen_{};    ///< the same where it may be a slip; else 0
+  double before_{};                        ///< innovation of the sample before [rad]
+  double seen_{};                          ///< the same where it may be a slip; else 0
   double last_{}, deviation_{};
   int count_{}, quiet_turns_{}, turns_since_{};
 };

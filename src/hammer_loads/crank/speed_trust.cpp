@@ -16,7 +16,7 @@ constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by n
 constexpr double kNotableScale = 0.01;  // likewise
 constexpr double kLeastSquare = 1e-4;   // of a residual, over that expected: no reading is a hundred times better
 constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
-constexpr double kMostOfOne = 0.999;  // of a correlation
+constexpr double kMostOfOne = 0.999;    // of a correlation
 // Prior: kMostScale
 // Numerical: kMostOfOne
 

@@ -11,24 +11,24 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMemorySamples = 4096.0;  // samples
-constexpr double kScatterSamples = 300.0;  // over which scatter is learned, but no fewer than kWarm runs
-constexpr int kWarm = 20;                  // runs from which on the line is good enough to judge by
-constexpr int kFirst = 4;                  // runs until there is a line
-constexpr int kKnown = 6;       // runs until regular bursts show themselves
-constexpr double kBurst = 2.0;  // samples in the mean
-constexpr double kRegular = 0.1;  // scatter of bursts over the time between them
-constexpr double kClip = gate::kVeryRare;  // root mean squares: a stamp further off counts as that far off
-constexpr double kExact = 0.01;            // of the interval: stamps without scatter have this much
+constexpr double kMemorySamples = 4096.0;   // samples
+constexpr double kScatterSamples = 300.0;   // over which scatter is learned, but no fewer than kWarm runs
+constexpr int kWarm = 20;                   // runs from which on the line is good enough to judge by
+constexpr int kFirst = 4;                   // runs until there is a line
+constexpr int kKnown = 6;                   // runs until regular bursts show themselves
+constexpr double kBurst = 2.0;              // samples in the mean
+constexpr double kRegular = 0.1;            // scatter of bursts over the time between them
+constexpr double kClip = gate::kVeryRare;   // root mean squares: a stamp further off counts as that far off
+constexpr double kExact = 0.01;             // of the interval: stamps without scatter have this much
 constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for certain
 constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
 constexpr double kNoLoss = 3.0;             // likewise that none was: 20 to 1
-constexpr double kLeastScatter = 0.15;  // of the interval: a run's beginning is not known better
-constexpr double kGrown = 2.0;  // scatter about the line over that of white jitter with such steps
+constexpr double kLeastScatter = 0.15;      // of the interval: a run's beginning is not known better
+constexpr double kGrown = 2.0;              // scatter about the line over that of white jitter with such steps
 
 // Of the sequence.
-constexpr double kMany = 5.0;  // irregular stamps of a thousand: not a single late message
-constexpr double kSingle = 1.5;  // likewise
+constexpr double kMany = 5.0;              // irregular stamps of a thousand: not a single late message
+constexpr double kSingle = 1.5;            // likewise
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
 // Numerical: kLeastStep
 

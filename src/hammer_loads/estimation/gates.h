@@ -10,9 +10,9 @@ namespace hammer_loads {
 /// Deviations of a Gaussian, and how often one alone is beyond them. Measurements come a thousand times a second: what
 /// is to happen by noise once an hour at most needs five.
 namespace gate {
-constexpr double kUsual = 2.0;  ///< 5 in 100
-constexpr double kRare = 3.0;   ///< 3 in 1000: three times a second
-constexpr double kVeryRare = 4.0;  ///< 6 in 100 000: some four times a minute
+constexpr double kUsual = 2.0;       ///< 5 in 100
+constexpr double kRare = 3.0;        ///< 3 in 1000: three times a second
+constexpr double kVeryRare = 4.0;    ///< 6 in 100 000: some four times a minute
 constexpr double kImpossible = 5.0;  ///< 6 in 10 million: twice an hour
 }  // namespace gate
 

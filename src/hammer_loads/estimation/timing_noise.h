@@ -48,8 +48,8 @@ class TimingNoise {
   static constexpr int kLearning =
       60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
   static constexpr double kFirstCounts = 50.0;  // samples that the first guess stands for
-  static constexpr double kVisible = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
-  static constexpr double kLargest = 0.02;  // [s]: more is no jitter
+  static constexpr double kVisible = 9e-8;      // [s2]: a sample that could not see 0.3 ms is not asked
+  static constexpr double kLargest = 0.02;      // [s]: more is no jitter
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};

@@ -8,7 +8,6 @@
 namespace hammer_loads {
 namespace {
 
-
 std::optional<std::string> printRows(const Grapple& grapple, double from, double to, int steps, std::ostream& out) {
   out << motionCsvHeader() << '\n';
   std::optional<GrappleMotion> motion;

@@ -139,8 +139,8 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
       return earlyBlow(rocker, of, speed, factor).energy - blow.energy;
     };
     blow.energy_std = std::hypot(change(inertia, crank.speed + crank.speed_std, crank.factor),
-                                       change(inertia, crank.speed, crank.factor + crank.factor_std),
-                                       change(heavier, crank.speed, crank.factor));
+                                 change(inertia, crank.speed, crank.factor + crank.factor_std),
+                                 change(heavier, crank.speed, crank.factor));
     return blow;
   }
   const double by_factor = inertia.restitutionPerFactor() * crank.factor_std;
@@ -162,8 +162,8 @@ void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) n
   const auto isOutside = [](double value, double deviation, double limit) {
     return value < -kDeviations * deviation || value > limit + kDeviations * deviation;
   };
-  blow.impossible = isOutside(blow.restitution, blow.restitution_std, 1.0) ||
-                    isOutside(blow.energy, blow.energy_std, most);
+  blow.impossible =
+      isOutside(blow.restitution, blow.restitution_std, 1.0) || isOutside(blow.energy, blow.energy_std, most);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (blow.impossible || !(blow.restitution >= 0.0 && blow.restitution <= 1.0)) blow.restitution = kNone;
   if (blow.impossible || !(blow.energy >= 0.0 && blow.energy <= most)) blow.energy = kNone;

@@ -31,13 +31,13 @@ struct RockerBlow {
 
 /// A blow as the crank felt it.
 struct CrankBlow {
-  double speed{};              ///< of the crank just before, > 0 [rad/s]
-  double speed_std{};    ///< standard [rad/s]
-  double factor{1.0};          ///< k: crank speed after over before [-]
-  double factor_std{};   ///< standard [-]
-  double drive_inertia{};      ///< Jc [kg m2], > 0
-  double inertia_std{};  ///< standard, relative [-]
-  bool early{};                ///< the tool was met before the dead centre
+  double speed{};          ///< of the crank just before, > 0 [rad/s]
+  double speed_std{};      ///< standard [rad/s]
+  double factor{1.0};      ///< k: crank speed after over before [-]
+  double factor_std{};     ///< standard [-]
+  double drive_inertia{};  ///< Jc [kg m2], > 0
+  double inertia_std{};    ///< standard, relative [-]
+  bool early{};            ///< the tool was met before the dead centre
 };
 
 /// A point in hammer_hull axes, from the pivot D [m].

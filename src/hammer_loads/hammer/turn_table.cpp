@@ -12,7 +12,6 @@
 namespace hammer_loads {
 namespace {
 
-
 /// Results of several states, column by column.
 struct Columns {
   explicit Columns(std::size_t count) {

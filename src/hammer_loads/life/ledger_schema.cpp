@@ -209,10 +209,9 @@ void beginReading(Database& database) {
 }
 
 std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch) {
-  Database::Statement rows(
-      database,
-      "SELECT channel, name, least, greatest, classes, sn_knee_range, sn_knee_cycles, sn_slope, "
-      "sn_slope_below, mean_stress_sensitivity FROM channels WHERE epoch = ?1 ORDER BY channel");
+  Database::Statement rows(database,
+                           "SELECT channel, name, least, greatest, classes, sn_knee_range, sn_knee_cycles, sn_slope, "
+                           "sn_slope_below, mean_stress_sensitivity FROM channels WHERE epoch = ?1 ORDER BY channel");
   std::vector<ChannelRow> channels;
   rows.with(epoch);
   while (rows.step()) {

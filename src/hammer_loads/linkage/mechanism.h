@@ -35,9 +35,9 @@ struct HammerParameters {
   double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
   double drive_reaction_ratio{1.0};     ///< r of DriveReaction [-], finite
   RodSpring rod;                        ///< what is 0 in it is not known: see priorOf()
-  RodSpring rod_std;              ///< standard deviations of it, >= 0
+  RodSpring rod_std;                    ///< standard deviations of it, >= 0
   double hull_mass{};                   ///< housing and what is fixed to it [kg]; 0: hullMass() assumes it
-  double hull_mass_std{};         ///< standard deviation [kg], >= 0; counts with hull_mass > 0
+  double hull_mass_std{};               ///< standard deviation [kg], >= 0; counts with hull_mass > 0
   HammerDeviations deviations{};        ///< what is known of the above but the spring; all exact where nothing is said
 };
 

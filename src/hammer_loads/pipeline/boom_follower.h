@@ -59,18 +59,18 @@ struct BoomState {
   BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
   BoomDeviations common;      ///< the part of them that constants of crank sensor, hammer and boom make
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
-  bool zero_moment_arm{};               ///< a cylinder does not hold its joint: no modes, taken as rigid
-  JointVector frequency;            ///< natural frequencies, per mode [Hz]; none when vibration is not followed
-  JointVector frequency_std;  ///< standard [Hz]
-  JointVector damping;              ///< of each mode [-]
-  bool identified{};                ///< frequencies and damping follow the sensors
-  JointVector contact_torque;       ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
-  Wrench contact;                   ///< the same on the tip, axes of the tip; zero where it is not measured
-  bool measured{};                  ///< the cylinders' forces are those of measured pressures
-  bool contact_unknown{};           ///< the IMU shows that the rock bears on the hull, pressures do not show its force
-  bool hold_down_force_lost{};          ///< the rock does not press on the hull, by measured pressures
-  ReducedHull reduced;              ///< along hull z; infinite without modes
-  Boom::TipVibration tip;           ///< zero for a rigid boom
+  bool zero_moment_arm{};       ///< a cylinder does not hold its joint: no modes, taken as rigid
+  JointVector frequency;        ///< natural frequencies, per mode [Hz]; none when vibration is not followed
+  JointVector frequency_std;    ///< standard [Hz]
+  JointVector damping;          ///< of each mode [-]
+  bool identified{};            ///< frequencies and damping follow the sensors
+  JointVector contact_torque;   ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
+  Wrench contact;               ///< the same on the tip, axes of the tip; zero where it is not measured
+  bool measured{};              ///< the cylinders' forces are those of measured pressures
+  bool contact_unknown{};       ///< the IMU shows that the rock bears on the hull, pressures do not show its force
+  bool hold_down_force_lost{};  ///< the rock does not press on the hull, by measured pressures
+  ReducedHull reduced;          ///< along hull z; infinite without modes
+  Boom::TipVibration tip;       ///< zero for a rigid boom
   /// By vibration (a rigid boom has none), mean of before and after the step's last blow; none: no blow.
   std::optional<TipVelocity> at_blow;
   BoomChoice choice;

@@ -38,8 +38,7 @@ std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept {
     BoomHealth::OfMode& m = health.mode[at];
     m.frequency = state.frequency[i], m.deviation = state.frequency_std[i];
     m.damping = state.damping[i];
-    m.damping_std =
-        m.damping * std::hypot(vibration.identifier()->dampingDeviation(i), ModeIdentifier::kLeftDamping);
+    m.damping_std = m.damping * std::hypot(vibration.identifier()->dampingDeviation(i), ModeIdentifier::kLeftDamping);
   }
   return health;
 }

@@ -18,7 +18,7 @@ struct BoomHealth {
     double stiffness{}, deviation{};  ///< of the oil over that of the boom file, its standard deviation [-]
   };
   struct OfMode {
-    double frequency{}, deviation{};        ///< standard [Hz]
+    double frequency{}, deviation{};  ///< standard [Hz]
     double damping{}, damping_std{};  ///< ratio; standard [-]
   };
   std::array<OfCylinder, kMaxJoints> cylinder;

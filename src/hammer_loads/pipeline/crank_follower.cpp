@@ -10,8 +10,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kSettlingSamples = 5;  // without measured speeds: until then they are known from linearised steps
-constexpr double kSettledDeviations = gate::kRare;  // that the predicted error has
-constexpr double kFrozenCounts = 5;                 // a crank that turned further gives another angle
+constexpr double kSettledDeviations = gate::kRare;       // that the predicted error has
+constexpr double kFrozenCounts = 5;                      // a crank that turned further gives another angle
 constexpr double kFrozenDeviations = gate::kImpossible;  // of a sensor's noise, as well
 
 /// resolution: of the angle sensor [rad].

@@ -17,8 +17,8 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 // Numerical: kWalks, kWalksOfIntegral
-constexpr double kBlowPart = 0.3;  // of a blow's impulse, which is known when the crank has turned on
-constexpr double kNoisiest = 3.0;  // times the first guess: a unit whose noise at rest was not seen
+constexpr double kBlowPart = 0.3;                // of a blow's impulse, which is known when the crank has turned on
+constexpr double kNoisiest = 3.0;                // times the first guess: a unit whose noise at rest was not seen
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
 constexpr double kComplianceWalk = 0.01;         // of the first guess's deviation in a second: a pose that changes
 // Prior: kComplianceWalk

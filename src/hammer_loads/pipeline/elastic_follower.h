@@ -44,7 +44,7 @@ class ElasticFollower {
   struct Beside {
     HullWrench wrench;
     Eigen::Matrix3d covariance;  ///< of the whole wrench by readings and rod
-    double crank{};                ///< acceleration [rad/s2]
+    double crank{};              ///< acceleration [rad/s2]
   };
   /// Once a sample. ring: of the rocker's acceleration beside a rigid rod's, of any phase (RodRing) [rad/s2]. That of
   /// the two bodies is weighed with it, or with its own mean since the blow where that is more, by the variances: what

@@ -41,8 +41,7 @@ HullDeviation unknownDeviation() noexcept {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr HullWrench kWrench{kUnknown, kUnknown, kUnknown};
   const Eigen::Vector3d correlation = Eigen::Vector3d::Constant(kUnknown);
-  return {kWrench,  kWrench,  correlation, correlation, kUnknown, kUnknown,
-          kUnknown, kUnknown, kUnknown,    kUnknown};
+  return {kWrench, kWrench, correlation, correlation, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 }
 
 HullWrench deviationOf(const Eigen::Matrix3d& covariance) noexcept {
@@ -78,12 +77,9 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
   const Eigen::Matrix3d of_load = g * covariance * g.transpose();
-  return {deviationOf(of_load),
-          {},
-          correlationOf(of_load),
-          Eigen::Vector3d::Zero(),
-          std::sqrt(covariance(0, 0)),
-          std::sqrt(covariance(1, 1)),
+  return {deviationOf(of_load),        {},
+          correlationOf(of_load),      Eigen::Vector3d::Zero(),
+          std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
           std::sqrt(covariance(2, 2))};
 }
 
@@ -106,16 +102,9 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
   const Eigen::Matrix3d all = g * uncertainty.own * g.transpose() + common;
   const Eigen::Vector3d of_crank = uncertainty.by_constant.topRows<3>().rowwise().squaredNorm();
   const Eigen::Vector3d crank_all = (uncertainty.own.diagonal() + of_crank).cwiseSqrt();
-  return {deviationOf(all),
-          deviationOf(common),
-          correlationOf(all),
-          correlationOf(common),
-          crank_all[0],
-          crank_all[1],
-          crank_all[2],
-          std::sqrt(of_crank[0]),
-          std::sqrt(of_crank[1]),
-          std::sqrt(of_crank[2])};
+  return {deviationOf(all),       deviationOf(common),   correlationOf(all), correlationOf(common),
+          crank_all[0],           crank_all[1],          crank_all[2],       std::sqrt(of_crank[0]),
+          std::sqrt(of_crank[1]), std::sqrt(of_crank[2])};
 }
 
 void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,

@@ -16,13 +16,13 @@ class CrankFilter;
 
 /// Standard deviations; NaN where the crank's covariance is not known.
 struct HullDeviation {
-  HullWrench wrench;      ///< of force_x [N], force_z [N], torque_y [N m]
-  HullWrench common;      ///< the part of it that is the same in all samples: of constants
+  HullWrench wrench;  ///< of force_x [N], force_z [N], torque_y [N m]
+  HullWrench common;  ///< the part of it that is the same in all samples: of constants
   /// Coefficients of (force_x, force_z), (force_x, torque_y), (force_z, torque_y) [-]; 0 beside a deviation of 0.
   Eigen::Vector3d correlation, common_correlation;
-  double angle{};         ///< of the crank [rad]
-  double speed{};         ///< [rad/s]
-  double acceleration{};  ///< [rad/s2]
+  double angle{};                                                ///< of the crank [rad]
+  double speed{};                                                ///< [rad/s]
+  double acceleration{};                                         ///< [rad/s2]
   double common_angle{}, common_speed{}, common_acceleration{};  ///< the part of constants of these
 };
 

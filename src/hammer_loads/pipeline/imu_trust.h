@@ -59,8 +59,8 @@ class ImuTrust {
   double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]
 
  private:
-  static constexpr double kMostPart = 0.5;  // of the weight
-  static constexpr double kMostRate = 3.0;  // [rad/s]
+  static constexpr double kMostPart = 0.5;             // of the weight
+  static constexpr double kMostRate = 3.0;             // [rad/s]
   static constexpr double kFrozen = look_back::kTurn;  // of one reading again and again
 
   RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()},

@@ -73,9 +73,9 @@ class MeasuredTorques {
   /// What is open of the pressures' stamps.
   struct Doubt {
     double delay{}, delay_std{};  ///< [s]
-    double stamp_noise{};               ///< of the sample [s]
-    double lag{};   ///< of the swing's mean square: how late readings that do not fit are is not known
-    bool misfit{};  ///< it is, and they do not fit
+    double stamp_noise{};         ///< of the sample [s]
+    double lag{};                 ///< of the swing's mean square: how late readings that do not fit are is not known
+    bool misfit{};                ///< it is, and they do not fit
   };
   /// Of weight, motion and oil at the sample [N m], and by the second.
   struct Model {

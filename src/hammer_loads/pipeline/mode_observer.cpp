@@ -21,7 +21,7 @@ constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
 constexpr Doubt kTorque{0.004, 0.02, 0.002};  // of the torque that the cylinder's relief valve allows
 constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at the mean of their places
 // Prior: kTorque
-constexpr double kMoved = 0.02;  // [rad]: a jump
+constexpr double kMoved = 0.02;     // [rad]: a jump
 constexpr double kOfSample = 0.75;  // of the step between samples: what lies further from one is of another
 
 void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {

@@ -15,9 +15,9 @@ namespace {
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
-constexpr double kPeakLasts = 60.0;  // [s]
-constexpr double kUncertain = 5.0;   // times withhold_above: half of the peak, beyond it a load says nothing
-constexpr double kLeastPeak = 0.1;   // of that at constant speed: a hammer that idles is judged as one that works
+constexpr double kPeakLasts = 60.0;                           // [s]
+constexpr double kUncertain = 5.0;  // times withhold_above: half of the peak, beyond it a load says nothing
+constexpr double kLeastPeak = 0.1;  // of that at constant speed: a hammer that idles is judged as one that works
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
 

@@ -6,7 +6,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kAtWork = 0.3;  // of the nominal speed: blows are struck
+constexpr double kAtWork = 0.3;      // of the nominal speed: blows are struck
 constexpr double kLeadOfZero = 0.6;  // of the time that the crank needs at the blow: what a zero makes of the vibration
 
 }  // namespace

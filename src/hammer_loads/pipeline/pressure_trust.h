@@ -50,8 +50,8 @@ class PressureTrust {
 
  private:
   static constexpr double kAcross = 0.1, kTurning = 0.3;  // of the load along the tool and the weight; with its arm
-  static constexpr double kLongestHose = 8e-3;      ///< time constant [s]
-  static constexpr double kUntilTriedAgain = 60.0;  ///< [s]
+  static constexpr double kLongestHose = 8e-3;            ///< time constant [s]
+  static constexpr double kUntilTriedAgain = 60.0;        ///< [s]
 
   double turning() const noexcept { return mean_.mean()[2]; }
 

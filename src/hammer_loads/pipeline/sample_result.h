@@ -74,7 +74,7 @@ struct SampleResult {
   /// Covariance of the wrench's errors that are not of the crank's motion: of rod, contact and unknown forces, in
   /// products of [N], [N], [N m].
   Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
-  HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
+  HullWrench rod_ring;  ///< part of the deviation that the rod makes, whose spring the level leaves out
   UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< likewise, that no level has: squares, by source
   bool rod_followed{};      ///< else rod_ring is a root mean square over a phase that is not known
   HullDeviation deviation;  ///< at the sample, with what the hull's motion adds

@@ -227,15 +227,13 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   CrankBlow crank = elastic.value_or(measured);
   if (!elastic) {
     const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
-    crank.factor_std =
-        std::hypot(crank.factor_std,
-                   rod_->restitutionDoubt(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
-                   crank.factor * rod_->lackingSpeed() / crank.speed);
+    crank.factor_std = std::hypot(
+        crank.factor_std, rod_->restitutionDoubt(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
+        crank.factor * rod_->lackingSpeed() / crank.speed);
   }
   if (prior_ != nullptr && !result.hull.moves) doubtHull(result.hull.covariance, crank);
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
-  const double doubt =
-      std::hypot(measured.speed_std / measured.speed, measured.factor_std / measured.factor);
+  const double doubt = std::hypot(measured.speed_std / measured.speed, measured.factor_std / measured.factor);
   const HullWrench read{std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0};
   errors_.momentumAfterBlow({{read.force_x, std::hypot(read.force_z, taken_up), 0.0}, read},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),

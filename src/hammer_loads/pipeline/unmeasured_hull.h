@@ -16,8 +16,8 @@ class UnmeasuredHull {
  public:
   explicit UnmeasuredHull(const HammerParameters& hammer) noexcept
       : mass_(hammer.hull_mass > 0.0 ? hammer.hull_mass : kUsualMass * hammer.rocker_mass),
-        resonance_(kResonance * std::hypot(1.0, hammer.hull_mass > 0.0 ? hammer.hull_mass_std / hammer.hull_mass
-                                                                       : kUsualDeviation)),
+        resonance_(kResonance *
+                   std::hypot(1.0, hammer.hull_mass > 0.0 ? hammer.hull_mass_std / hammer.hull_mass : kUsualDeviation)),
         striking_distance_(hammer.striking_distance),
         reflected_(square(hammer.rocker_mass * hammer.rocker_com_distance) / hammer.rocker_inertia_about_pivot) {}
 

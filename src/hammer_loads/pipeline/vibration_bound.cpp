@@ -7,7 +7,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongestDecay = 10.0;  // [s]
-constexpr double kMostRate = 1.0;  // [rad/s]: no operator swings a boom as fast, no rock throws it so
+constexpr double kMostRate = 1.0;       // [rad/s]: no operator swings a boom as fast, no rock throws it so
 
 }  // namespace
 

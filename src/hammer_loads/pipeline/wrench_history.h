@@ -15,7 +15,7 @@ struct SmoothPiece {
   HullWrench from, to;  ///< at its ends
   HullWrench mean;      ///< over it, exact by the momentum difference
   bool ends_in_blow{};
-  HullWrench blow;          ///< impulse of that blow BY links and drive ON the hull about D [N s, N s, N m s]
+  HullWrench blow;    ///< impulse of that blow BY links and drive ON the hull about D [N s, N s, N m s]
   double blow_std{};  ///< of that blow's instant, standard [s]
 };
 

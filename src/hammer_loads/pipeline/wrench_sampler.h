@@ -65,7 +65,7 @@ class WrenchSampler {
   LoadImpulse impulse_;                              ///< since the last output
   LoadColumns columns_{LoadColumns::Zero()};         ///< at the last sample
   LoadColumns column_impulse_{LoadColumns::Zero()};  ///< since the last output, of a mean
-  HullWrench momentum_std_;                    ///< at the last output
+  HullWrench momentum_std_;                          ///< at the last output
   HullWrench blow_doubt_;                            ///< ElasticFollower::Impulse::doubt since the last output
 };
 

@@ -109,8 +109,7 @@ void BagTables::takeSample(const HullLoads& message) {
   const double step = record.last_stamp ? seconds(stamp - *record.last_stamp) : 0.0;
   if (step > 0.0 && step <= longest_step_) record.duration += step;
   record.last_stamp = stamp;
-  traces_.add({stamp, message.force_x, message.force_z, message.torque_y, message.force_z_std,
-               message.crank_angle});
+  traces_.add({stamp, message.force_x, message.force_z, message.torque_y, message.force_z_std, message.crank_angle});
 }
 
 void BagTables::takeHealth(std::uint64_t turn, const BoomFollower& boom) {

@@ -54,8 +54,7 @@ void prepareReactions(const Boom& boom, JointReactions& message) {
   message.header.frame_id = boom.parameters().chain.root;
   message.joint.clear(), message.cylinder.clear();
   for (const std::string& name : boom.chain().jointNames()) message.joint.emplace_back().name = name;
-  for (const Cylinder& cylinder : boom.cylinders())
-    message.cylinder.emplace_back().name = cylinder.parameters().name;
+  for (const Cylinder& cylinder : boom.cylinders()) message.cylinder.emplace_back().name = cylinder.parameters().name;
 }
 
 CylinderJoints::CylinderJoints(const Boom& boom, sensor_msgs::JointState& message) {

@@ -31,7 +31,6 @@ class CylinderJoints {
   std::vector<CylinderDrawing> drawings_;
 };
 
-
 void prepareVibration(const Boom& boom, BoomVibration& message);
 
 /// The follower's last sample must have no fault.

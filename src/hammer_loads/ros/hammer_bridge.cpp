@@ -136,7 +136,8 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   // Pure functions of the result: nothing else depends on them.
   if (outputs_.mechanism.attached()) {
     fillMechanism(result, outputs_.mechanism.message);
-    if (cylinder_joints_ && result.boom != nullptr) cylinder_joints_->fill(pipeline_->boom()->boom(), outputs_.mechanism.message);
+    if (cylinder_joints_ && result.boom != nullptr)
+      cylinder_joints_->fill(pipeline_->boom()->boom(), outputs_.mechanism.message);
   }
   outputs_.mechanism.send(record_time);
   if (outputs_.pin_forces.attached()) fillPinForces(result, outputs_.pin_forces.message);

@@ -78,8 +78,8 @@ class HammerBridge {
   std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
   HammerOutputs outputs_;
   std::optional<CylinderJoints> cylinder_joints_;  ///< of the boom's cylinders, in the mechanism's message
-  std::optional<LifeFlow> life_;  ///< of the pipeline, replaced with each count
-  life::PieceSink* pieces_{};     ///< null: none
+  std::optional<LifeFlow> life_;                   ///< of the pipeline, replaced with each count
+  life::PieceSink* pieces_{};                      ///< null: none
   std::vector<ChainLink> chain_links_;
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
   std::optional<FrameWrenches> frame_wrenches_;

@@ -104,9 +104,9 @@ void LoadDisplay::showText() const {
   text.pose.orientation.w = 1.0;
   text.scale.z = kTextHeight;
   text.color.a = 1.0, text.color.r = text.color.g = text.color.b = 0.15F;
-  text.text = pulse_.period > 0.0 ? format("%.2f blows/s   %.0f J   peak %.1f kN", 1.0 / pulse_.period,
-                                             blow_.energy, 1e-3 * pulse_.amplitude)
-                                    : "no blow yet";
+  text.text = pulse_.period > 0.0 ? format("%.2f blows/s   %.0f J   peak %.1f kN", 1.0 / pulse_.period, blow_.energy,
+                                           1e-3 * pulse_.amplitude)
+                                  : "no blow yet";
   text_.publish(text);
 }
 

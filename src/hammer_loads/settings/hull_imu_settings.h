@@ -7,7 +7,7 @@ namespace hammer_loads {
 
 struct HullImuSettings {
   Eigen::Vector3d position{0.0, 0.0, 0.0};                ///< from D, axes of hammer_hull [m]
-  double position_std{};                            ///< standard deviation of each of them [m]
+  double position_std{};                                  ///< standard deviation of each of them [m]
   Eigen::Matrix3d rotation{Eigen::Matrix3d::Identity()};  ///< from the unit's axes to those of hammer_hull
   double max_age{};  ///< of the last reading [s], > 0; older, the motion is not known
 };

@@ -103,8 +103,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", NumberRule::within(1e-3, 1e6));
   s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", NumberRule::within(0.0, 1e3));
   s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", NumberRule::within(0.0, 1.0));
-  s.initial_torque_std =
-      reader.number("initial_torque_std_rad_s2", "rad/s2", NumberRule::within(1e-3, 1e6));
+  s.initial_torque_std = reader.number("initial_torque_std_rad_s2", "rad/s2", NumberRule::within(1e-3, 1e6));
   s.initial_inertia_std = reader.number("initial_inertia_std", "", NumberRule::within(0.0, 10.0));
   s.torque_std_part = reader.number("torque_std_part", "", NumberRule::within(0.0, 1.0));
   s.near_blow = kDegree * reader.number("near_blow_deg", "deg", NumberRule::within(0.0, 89.0));

@@ -102,26 +102,26 @@ struct PipelineSettings {
                                           ///< has them and there is no boom: its axes and zeros count for the weight
   double hull_pitch{};                    ///< until every pitch joint has been heard [rad]
   HullMotionSource hull_motion{};
-  HullImuSettings imu;                 ///< where the IMU sits
-  double gravity{};                    ///< [m/s2], >= 0
-  BaseTilt base;                       ///< of the ground that the machine stands on
-  CrankSensor crank_sensor;            ///< where it sits
-  double crank_latency{};              ///< header stamp less the instant of the measurement [s], >= 0
-  double crank_angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings
-  double crank_angle_noise{};          ///< standard deviation beside the count [rad], >= 0
-  CrankStamps crank_stamps{};          ///< which instants the samples get
-  double crank_timing_noise{};         ///< standard deviation of a sample's stamp, first guess [s], >= 0
-  double crank_speed_noise{};          ///< standard deviation of a measured speed [rad/s], > 0
-  double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
-  double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0
-  double inertia_walk{};               ///< relative to the drive inertia [1/sqrt(s)], >= 0
-  double initial_torque_std{};   ///< of the net torque per rocker inertia about D [rad/s2], > 0
-  double initial_inertia_std{};  ///< relative to the drive inertia [-], >= 0
-  double torque_std_part{};      ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
-  double near_blow{};                  ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
-  double stale_after{};                ///< no crank sample for longer: nothing is published [s], > 0
-  double max_crank_speed{};            ///< a faster sample is implausible [rad/s], > 0
-  double withhold_above{};             ///< predicted error of the wrench over the turn's peak [-], > 0
+  HullImuSettings imu;              ///< where the IMU sits
+  double gravity{};                 ///< [m/s2], >= 0
+  BaseTilt base;                    ///< of the ground that the machine stands on
+  CrankSensor crank_sensor;         ///< where it sits
+  double crank_latency{};           ///< header stamp less the instant of the measurement [s], >= 0
+  double crank_angle_resolution{};  ///< encoder count [rad], >= 0; 0: read off the readings
+  double crank_angle_noise{};       ///< standard deviation beside the count [rad], >= 0
+  CrankStamps crank_stamps{};       ///< which instants the samples get
+  double crank_timing_noise{};      ///< standard deviation of a sample's stamp, first guess [s], >= 0
+  double crank_speed_noise{};       ///< standard deviation of a measured speed [rad/s], > 0
+  double torque_walk{};             ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
+  double speed_walk{};              ///< [rad/s/sqrt(s)], >= 0
+  double inertia_walk{};            ///< relative to the drive inertia [1/sqrt(s)], >= 0
+  double initial_torque_std{};      ///< of the net torque per rocker inertia about D [rad/s2], > 0
+  double initial_inertia_std{};     ///< relative to the drive inertia [-], >= 0
+  double torque_std_part{};         ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
+  double near_blow{};               ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
+  double stale_after{};             ///< no crank sample for longer: nothing is published [s], > 0
+  double max_crank_speed{};         ///< a faster sample is implausible [rad/s], > 0
+  double withhold_above{};          ///< predicted error of the wrench over the turn's peak [-], > 0
   BoomModel boom{};
   BoomAcceleration boom_acceleration{};
   BoomStiffness boom_stiffness{};

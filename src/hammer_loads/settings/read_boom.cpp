@@ -60,8 +60,7 @@ std::optional<BucketLinkageParameters> readLinkage(ParameterReader& reader, cons
   constexpr std::array<Named<bool>, 1> kKinds{{{"bucket", true}}};
   reader.choice(key, kKinds);
   BucketLinkageParameters linkage;
-  for (const LinkageKey& k : kLinkageKeys)
-    linkage.*k.field = reader.number(name + "_" + k.key, "m", NumberRule::any());
+  for (const LinkageKey& k : kLinkageKeys) linkage.*k.field = reader.number(name + "_" + k.key, "m", NumberRule::any());
   if (reader.given(key + "_branch")) linkage.branch = reader.number(key + "_branch", "", NumberRule::any());
   return linkage;
 }
@@ -157,8 +156,7 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
   readOil(reader, !p.cylinders.empty(), p);
   if (reader.given("weighed_links"))
     for (const std::string& name : reader.names("weighed_links")) p.chain.weighed.push_back(readWeighed(reader, name));
-  if (reader.given("link_mass_std"))
-    p.link_mass_std = reader.number("link_mass_std", "", NumberRule::within(0.0, 1.0));
+  if (reader.given("link_mass_std")) p.link_mass_std = reader.number("link_mass_std", "", NumberRule::within(0.0, 1.0));
   if (reader.given("link_com_std_m"))
     p.link_com_std = reader.number("link_com_std_m", "m", NumberRule::within(0.0, 10.0));
   if (reader.given("sections")) {

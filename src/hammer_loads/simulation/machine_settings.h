@@ -147,8 +147,8 @@ struct PressureSensors {
 /// The ground under the tool. It holds the hull up at its foot and lets go of it: a spring with a loss, along the tool.
 /// It gives way as fast as the operator moves the hull on.
 struct RockSettings {
-  double stiffness{};    ///< of rock and tool [N/m]; 0: no rock, the hull hangs free
-  double damping{};      ///< the spring's force counts 1 + this times the speed of going down [s/m]
+  double stiffness{};        ///< of rock and tool [N/m]; 0: no rock, the hull hangs free
+  double damping{};          ///< the spring's force counts 1 + this times the speed of going down [s/m]
   double hold_down_force{};  ///< of the operator on the hull before it works [N], >= 0
 };
 

@@ -28,9 +28,7 @@ OilCylinder::Pins OilCylinder::pins(double angle) const {
 }
 
 /// By the work of the force on the driven link.
-double OilCylinder::arm(double angle) const {
-  return momentOf(turnedBy(angle) * rod, pins(angle).on_driven);
-}
+double OilCylinder::arm(double angle) const { return momentOf(turnedBy(angle) * rod, pins(angle).on_driven); }
 
 double OilCylinder::boreShare(double angle) const {
   return bore_area / (bore_hose + bore_area * (length(angle) - closed_length));

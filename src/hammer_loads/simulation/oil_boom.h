@@ -25,7 +25,7 @@ struct OilBoomLink {
 
 /// Bucket linkage of a cylinder: a link from a pivot on the link before to the rod's pin, another from there on.
 struct OilLinkage {
-  PlanePoint pivot;  ///< from the joint, axes of the link before
+  PlanePoint pivot;           ///< from the joint, axes of the link before
   double guide{}, coupler{};  ///< lengths [m]; zero: the cylinder acts directly
   double side{};              ///< 1: the guide is turned about +y from the line between pivot and driven pin; or -1
 };
@@ -40,7 +40,7 @@ struct OilCylinder {
   /// Where the cylinder's rod ends, and the forces on the chain's pins for each N of its push; from the joint, axes of
   /// the link before.
   struct Pins {
-    PlanePoint rod;                   ///< [m]
+    PlanePoint rod;                           ///< [m]
     PlanePoint on_base, on_pivot, on_driven;  ///< [-]
   };
   Pins pins(double angle) const;

@@ -33,13 +33,13 @@ struct RunRecord {
   std::uint64_t samples{}, published{}, restarts{}, turns{}, blows{}, backward_passes{};
   std::uint64_t blank_firings{}, judged_blows{};
   std::optional<std::uint64_t> blows_without_hold_down;  ///< of the judged ones; nothing where none was
-  double still_time{kUnknown};                   ///< hammering without penetration [s]
-  double hull_pitch{kUnknown};                   ///< at the end of the run [rad]
+  double still_time{kUnknown};                           ///< hammering without penetration [s]
+  double hull_pitch{kUnknown};                           ///< at the end of the run [rad]
   double consistency{kUnknown};
-  double timing_noise{kUnknown};             ///< [s]
-  double speed_noise{kUnknown};              ///< [rad/s]
-  double angle_resolution{kUnknown};         ///< [rad]
-  double drive_inertia{kUnknown};            ///< [kg m2]
+  double timing_noise{kUnknown};                ///< [s]
+  double speed_noise{kUnknown};                 ///< [rad/s]
+  double angle_resolution{kUnknown};            ///< [rad]
+  double drive_inertia{kUnknown};               ///< [kg m2]
   double drive_inertia_relative_std{kUnknown};  ///< relative [-]
   double equivalent_cycles_per_hour{kUnknown};
   std::vector<Parameter> parameters;

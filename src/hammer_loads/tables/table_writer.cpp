@@ -82,11 +82,10 @@ void TableWriter::channel(std::int64_t run, std::int64_t number, const ChannelRe
 void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRecord& record) {
   const ChannelCount& c = *record.count;
   Statement(database_, insertSql("channels", 23).c_str())
-      .run(run, channel, record.name, life::unitOf(record.name), std::int64_t{1}, finite(c.least), finite(c.greatest), c.classes,
-           c.samples, c.skipped, c.below, c.above, c.gaps, finite(c.minimum), finite(c.maximum),
-           finite(c.mean_std), finite(c.range_own_std), finite(c.range_systematic_std),
-           finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope), finite(c.sn_slope_below),
-           finite(c.mean_stress_sensitivity));
+      .run(run, channel, record.name, life::unitOf(record.name), std::int64_t{1}, finite(c.least), finite(c.greatest),
+           c.classes, c.samples, c.skipped, c.below, c.above, c.gaps, finite(c.minimum), finite(c.maximum),
+           finite(c.mean_std), finite(c.range_own_std), finite(c.range_systematic_std), finite(c.sn_knee_range),
+           finite(c.sn_knee_cycles), finite(c.sn_slope), finite(c.sn_slope_below), finite(c.mean_stress_sensitivity));
   Statement cycle(database_, insertSql("cycles", 5).c_str());
   for (std::size_t i = 0; i < c.count.size(); ++i) cycle.run(run, channel, c.steps[i], c.low[i], c.count[i]);
   Statement residue(database_, insertSql("residues", 4).c_str());

@@ -16,10 +16,10 @@ inline bool isAblated(const char* name) {
 }  // namespace hammer_loads
 
 /// True while the mechanism of this name is switched off.
-#define HAMMER_LOADS_ABLATE(name)                                        \
-  ([]() noexcept {                                                       \
+#define HAMMER_LOADS_ABLATE(name)                                    \
+  ([]() noexcept {                                                   \
     static const bool is_ablated = ::hammer_loads::isAblated(#name); \
-    return is_ablated;                                                   \
+    return is_ablated;                                               \
   }())
 #else
 #define HAMMER_LOADS_ABLATE(name) false
