@@ -51,6 +51,23 @@ TEST_F(LogTest, KeepsEveryMessageWithTypeTimeAndOrder) {
   EXPECT_FALSE(inputs[0].latched);
 }
 
+TEST_F(LogTest, CompressionChangesTheSizeAlone) {
+  for (const LogCompression compression : {LogCompression::kNone, LogCompression::kLz4}) {
+    settings_.compression = compression;
+    settings_.prefix = compression == LogCompression::kNone ? "1_plain" : "2_packed";
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    for (std::size_t i = 0; i < 3000; ++i) log.write("/node/hull_wrench", at(i), wrench(i));
+  }
+  ASSERT_EQ(files().size(), 2u);
+  const std::vector<Entry> plain = readBag(files()[0]), packed = readBag(files()[1]);
+  ASSERT_EQ(plain.size(), 3000u);
+  ASSERT_EQ(packed.size(), 3000u);
+  for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(plain[i].bytes, packed[i].bytes);
+  EXPECT_GT(std::filesystem::file_size(files()[0]), 3000u * plain[0].bytes.size());
+  EXPECT_LT(2 * std::filesystem::file_size(files()[1]), std::filesystem::file_size(files()[0]));
+}
+
 TEST_F(LogTest, EverySplitStandsAlone) {
   settings_.split_size = 200'000;
   constexpr std::size_t kCount = 20000;
@@ -204,7 +221,7 @@ TEST_F(LogTest, NeedsTheMemoryOfItsQueueOnlyFromTheFirstStartOn) {
 /// rosbag keeps a copy of what passed through chunks that were not ended by their size.
 TEST_F(LogTest, MemoryStaysFlatWhenChunksAreEndedByTime) {
   unsigned number = 0;
-  LogFile file(std::move(*LogName::take(directory_, "test", number).value), 768 * 1024);
+  LogFile file(std::move(*LogName::take(directory_, "test", number).value), 768 * 1024, LogCompression::kLz4);
   ASSERT_FALSE(file.open());
   LogTopic topic(0, "/a", {"std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n"}, false, "");
   std::vector<std::uint8_t> bytes(100'000);

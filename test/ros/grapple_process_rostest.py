@@ -68,7 +68,7 @@ class GrappleProcessTest(unittest.TestCase):
 
     def node_at_work(self, name, **parameters):
         """The node and a function that lets it work through some samples."""
-        node = NodeProcess(name, dict(claims(), log_directory=self.directory, log_min_free_mb=0, **parameters),
+        node = NodeProcess(name, dict(claims(), log_directory=self.directory, log_min_free_mb=0, log_outputs='all', **parameters),
                            'grapple_node')
         joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=1000)
         mechanisms = []
@@ -103,7 +103,7 @@ class GrappleProcessTest(unittest.TestCase):
         def outputs(bag_path):
             with rosbag.Bag(bag_path) as bag:
                 return sorted((topic, time.to_nsec(), raw[1]) for topic, raw, time in bag.read_messages(raw=True)
-                              if topic != '/%s/joints' % name)
+                              if topic not in ('/%s/joints' % name, '/diagnostics'))
 
         logged = outputs(path)
         self.assertEqual(len(logged), 7 * SAMPLES + 1)

@@ -117,6 +117,35 @@ TEST(WhoListens, AndComesBackGetsWhatTheOthersGot) {
   }
 }
 
+TEST(WhoListens, WantsTheTurnsAloneGetsTheSameAndNoSampleIsComputed) {
+  const Settings settings = test::settingsWith("boom: compliant\nboom_wrench_links: [arm_link]\n");
+  Kept all, turns;
+  HammerBridge with_all(settings), with_turns(settings);
+  attach(with_all, kAll, all);
+  with_turns.outputs().forEach([&](auto& output) {
+    output.attach(
+        [&kept = turns[output.name()]](const auto& message, const ros::Time&) { kept.push_back(bytesOf(message)); },
+        [from = output.loggedFrom()] { return from <= LoggedOutputs::kPerTurn; });
+  });
+  for (HammerBridge* bridge : {&with_all, &with_turns}) {
+    play(*bridge, 1000.0, true, kNothing);
+    bridge->finishRun();
+  }
+  std::size_t once_a_turn = 0;
+  with_turns.outputs().forEach([&](auto& output) {
+    EXPECT_EQ(all[output.name()].size(), output.sent()) << output.name();
+    if (output.loggedFrom() <= LoggedOutputs::kPerTurn) {
+      ++once_a_turn;
+      EXPECT_EQ(turns[output.name()], all[output.name()]) << output.name();
+    } else {
+      EXPECT_TRUE(turns[output.name()].empty()) << output.name();
+      if constexpr (!std::is_same_v<std::decay_t<decltype(output.message)>, RunInfo>)
+        EXPECT_TRUE(output.message.header.stamp.isZero()) << output.name();
+    }
+  });
+  EXPECT_EQ(once_a_turn, 5U);
+}
+
 /// Says which pieces came.
 class Notes final : public life::PieceSink {
  public:

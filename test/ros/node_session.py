@@ -100,6 +100,11 @@ def messages(path, topic):
         return [message for _, message, _ in bag.read_messages(topic)]
 
 
+def topics_in(path):
+    with rosbag.Bag(path) as bag:
+        return set(bag.get_type_and_topic_info().topics)
+
+
 def process_again(path, session):
     """process_bag over a log of the node, with the parameters in force then."""
     info = messages(path, session.node + '/run_info')[0]
@@ -115,9 +120,8 @@ def process_again(path, session):
 
 def expect_reproduced(test, path, session):
     """Every logged output again, bit for bit, at its record time. The topics it has."""
-    inputs = (session.crank_topic, session.joint_topic, '/tf_static')
-    logged = sorted(entry for entry in entries(path) if entry[0] not in inputs)
-    again = sorted(entries(process_again(path, session)))
+    logged = sorted(entries(path, *(topic for topic in topics_in(path) if topic.startswith(session.node + '/'))))
+    again = sorted(entries(process_again(path, session), *{topic for topic, _, _ in logged}))
     test.assertEqual([(topic, time) for topic, time, _ in logged], [(topic, time) for topic, time, _ in again])
     test.assertTrue(logged == again, path)
     return {topic for topic, _, _ in logged}

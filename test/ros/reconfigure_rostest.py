@@ -14,9 +14,10 @@ from hammer_loads.msg import RunInfo
 from std_srvs.srv import Trigger
 
 from node_session import (NodeSession, START, TURN, active_bags, closed_bags, crank_stamps, expect_reproduced,
-                          messages, recorded)
+                          messages, recorded, topics_in)
 from process_rostest import eventually
 
+PER_TURN = {'/hammer_loads/' + name for name in ('run_info', 'blow', 'pulse', 'turn_loads', 'load_cycles')}
 AT_START = {'log_enabled': True, 'output_rate_Hz': 0.0, 'tolerance': 0.5, 'withhold_above': 0.1}
 
 
@@ -105,7 +106,7 @@ class ReconfigureTest(unittest.TestCase):
             infos = messages(path, '/hammer_loads/run_info')
             self.assertEqual(len(infos), 1, path)
             rates.append(yaml.safe_load(infos[0].parameters_yaml)['output_rate_Hz'])
-            expect_reproduced(self, path, self.session)
+            self.assertEqual(expect_reproduced(self, path, self.session), PER_TURN)
         self.assertEqual(rates, [0.0, 50.0, 0.0])
         self.log('start')
 
@@ -119,6 +120,7 @@ class ReconfigureTest(unittest.TestCase):
         self.log('stop')
         path, = self.closed(1)
         expect_reproduced(self, path, self.session)
+        self.assertEqual(topics_in(path) - PER_TURN - {'/diagnostics'}, {'/crank', '/joint_states'})
         self.log('start')
 
     def test_3_services_and_log_enabled_say_the_same(self):

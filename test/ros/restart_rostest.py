@@ -13,8 +13,8 @@ import rospy
 import rostest
 from std_srvs.srv import Trigger
 
-from node_session import (NodeSession, TURN, active_bags, bags, crank_stamps, entries, messages, process_again,
-                          recorded)
+from node_session import (NodeSession, TURN, active_bags, bags, closed_bags, crank_stamps, entries, messages,
+                          process_again, recorded, topics_in)
 from process_rostest import NodeProcess, eventually
 
 SLICE = 20  # messages, some 20 ms
@@ -82,6 +82,7 @@ class RestartTest(unittest.TestCase):
         self.assertTrue(rospy.ServiceProxy('/a/hammer_loads/log/stop', Trigger)().success)
         self.assertTrue(eventually(lambda: active_bags(self.directory) == [active]))
         self.expect_output_soon()
+        self.expect_outputs_alone(known)
         self.expect_recovered(active, crank_stamps(recorded(3.0, 4.0) + first_life), answered)
 
     def expect_output_soon(self):
@@ -90,6 +91,16 @@ class RestartTest(unittest.TestCase):
         sample = messages(path, '/a/crank')[0].header.stamp
         wrench = messages(path, '/a/hammer_loads/hull_wrench')[0].header.stamp
         self.assertLess((wrench - sample).to_sec(), 2.0 * TURN)
+
+    def expect_outputs_alone(self, stamps):
+        """In the log of the other, which is to hold no inputs."""
+        directory = rospy.get_param('/b/hammer_loads/log_directory')
+        self.addCleanup(shutil.rmtree, directory)
+        self.assertTrue(rospy.ServiceProxy('/b/hammer_loads/log/stop', Trigger)().success)
+        path, = closed_bags(directory, 1)
+        self.assertEqual({t for t in topics_in(path) if not t.startswith('/b/hammer_loads/')}, {'/diagnostics'})
+        logged = {m.header.stamp for m in messages(path, '/b/hammer_loads/hull_wrench')}
+        self.assertGreater(logged, stamps)
 
     def expect_recovered(self, active, sent, answered):
         """The first life's log but for its last second."""
@@ -102,7 +113,9 @@ class RestartTest(unittest.TestCase):
         last = entries(path, '/a/crank')[-1][1]  # its outputs may be lost
 
         def outputs(file):
-            return sorted(e for e in entries(file) if e[1] < last and e[0] not in ('/a/crank', '/a/joint_states'))
+            return sorted(e for e in entries(file, *topics) if e[1] < last)
+        topics = [topic for topic in topics_in(path) if topic.startswith('/a/hammer_loads/')]
+        self.assertIn('/a/hammer_loads/hull_wrench', topics)
         self.assertTrue(outputs(path) == outputs(process_again(path, self.a)))
 
     def test_3_a_log_directory_that_cannot_be_written(self):

@@ -16,8 +16,8 @@ std::string limitText(const SliderLimit& limit) { return format("%.13g, %s", lim
 }  // namespace
 
 GrappleDiagnostics::GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow,
-                                       const BagLog& log)
-    : flow_(flow), publisher_(node, private_node) {
+                                       BagLog& log, const RecordClock& clock)
+    : flow_(flow), publisher_(node, private_node, log, clock) {
   publisher_.add("slider", this, &GrappleDiagnostics::describeSlider);
   publisher_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.

@@ -16,7 +16,8 @@ namespace hammer_loads {
 /// with the slider positions that are allowed, log health.
 class GrappleDiagnostics {
  public:
-  GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, const BagLog& log);
+  GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, BagLog& log,
+                     const RecordClock& clock);
 
   /// An input arrived that has the slider joint; its age decides whether the slider is stale.
   void sliderArrived() { last_slider_ = Clock::now(); }

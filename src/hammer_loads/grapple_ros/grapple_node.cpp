@@ -13,7 +13,7 @@ GrappleNode::GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, con
     : log_(std::move(log)),
       flow_(settings),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
-      diagnostics_(node, private_node, flow_, *log_),
+      diagnostics_(node, private_node, flow_, *log_, clock_),
       log_services_(
           private_node, *log_, [] {}, [this] { beginRun(); }, [] {}) {
   attachToNode(flow_.outputs(), private_node, *log_);
@@ -31,7 +31,7 @@ void GrappleNode::onJointStates(const ros::MessageEvent<const sensor_msgs::Joint
     beginRun();
     log_->split();
   }
-  log_->write(topic_, tick.time, *event.getConstMessage());
+  if (log_->logsInputs()) log_->write(topic_, tick.time, *event.getConstMessage());
   const std::uint64_t foreign = flow_.messagesWithoutJoint();
   flow_.jointStates(*event.getConstMessage(), tick.time);
   if (flow_.messagesWithoutJoint() == foreign) diagnostics_.sliderArrived();

@@ -17,7 +17,9 @@ namespace hammer_loads {
 struct JawOutputs {
   /// jaw: left or right.
   explicit JawOutputs(const std::string& jaw)
-      : edge("jaw_edge/" + jaw), twist("jaw_edge/" + jaw + "_twist"), accel("jaw_edge/" + jaw + "_accel") {}
+      : edge("jaw_edge/" + jaw, LoggedOutputs::kWrench),
+        twist("jaw_edge/" + jaw + "_twist", LoggedOutputs::kWrench),
+        accel("jaw_edge/" + jaw + "_accel", LoggedOutputs::kWrench) {}
 
   Output<geometry_msgs::PointStamped> edge;   ///< P [m]
   Output<geometry_msgs::TwistStamped> twist;  ///< velocity of P [m/s], turning speed of the jaw about z [rad/s]
@@ -25,7 +27,7 @@ struct JawOutputs {
 };
 
 struct GrappleOutputs {
-  Output<RunInfo> run_info{"run_info", Delivery::kLatched};
+  Output<RunInfo> run_info{"run_info", LoggedOutputs::kNone, Delivery::kLatched};
   JawOutputs left{"left"}, right{"right"};
   /// Joints of scripts/grapple_urdf [m, rad] with their speeds if the slider's is known.
   Output<sensor_msgs::JointState> mechanism{"mechanism"};

@@ -63,6 +63,10 @@ class BagLog {
   /// How to recover such a bag, one line.
   static std::string recoveryHint(const std::string& path);
 
+  /// Whether the settings log the outputs of that class, or the inputs. The caller obeys.
+  bool logs(LoggedOutputs outputs) const noexcept { return outputs <= settings_.outputs; }
+  bool logsInputs() const noexcept { return settings_.inputs; }
+
   bool isRecording() const noexcept { return session_ != 0 && writer_.faultySession() != session_; }
   LogHealth health() const;
 

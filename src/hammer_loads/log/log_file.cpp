@@ -72,7 +72,8 @@ std::string LogFile::prepare() {
   return {};
 }
 
-LogFile::LogFile(LogName name, std::uint32_t chunk_size) : name_(std::move(name)), chunk_size_(chunk_size) {}
+LogFile::LogFile(LogName name, std::uint32_t chunk_size, LogCompression compression)
+    : name_(std::move(name)), chunk_size_(chunk_size), compression_(compression) {}
 
 LogFile::~LogFile() {
   if (is_open_) close();
@@ -112,7 +113,8 @@ std::optional<LogFault> LogFile::open() {
       bag_ = std::make_unique<rosbag::Bag>();
     }
     bag_->open(name_.active(), rosbag::bagmode::Write);
-    bag_->setCompression(rosbag::compression::LZ4);
+    bag_->setCompression(compression_ == LogCompression::kLz4 ? rosbag::compression::LZ4
+                                                              : rosbag::compression::Uncompressed);
     bag_->setChunkThreshold(chunk_size_);
     is_open_ = true;
   });

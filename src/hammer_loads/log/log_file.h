@@ -14,6 +14,7 @@
 
 #include "hammer_loads/log/log_directory.h"
 #include "hammer_loads/log/log_name.h"
+#include "hammer_loads/log/log_settings.h"
 #include "hammer_loads/log/log_status.h"
 #include "hammer_loads/log/log_topic.h"
 
@@ -47,7 +48,7 @@ class LogFile {
   static bool hasRoomFor(const LogName& name, std::uint64_t free) noexcept;
 
   /// chunk_size: a chunk is closed at the latest with this many bytes before compression.
-  LogFile(LogName name, std::uint32_t chunk_size);
+  LogFile(LogName name, std::uint32_t chunk_size, LogCompression compression);
   LogFile(const LogFile&) = delete;
   LogFile& operator=(const LogFile&) = delete;
   ~LogFile();
@@ -83,6 +84,7 @@ class LogFile {
 
   LogName name_;
   std::uint32_t chunk_size_;
+  LogCompression compression_;
   std::unique_ptr<rosbag::Bag> bag_;
   std::vector<std::unique_ptr<Connection>> connections_;  // by LogTopic::index
   bool is_open_{};

@@ -7,9 +7,17 @@
 
 namespace hammer_loads {
 
+/// Outputs of a node in its log: the value of log_outputs, and of an output the least value that logs it.
+enum class LoggedOutputs { kNone, kPerTurn, kWrench, kAll };
+
+enum class LogCompression { kNone, kLz4 };
+
 /// Sizes are in bytes here and in MB = 1e6 bytes in the file.
 struct LogSettings {
   bool enabled{};
+  bool inputs{true};                           ///< the node's inputs are logged
+  LoggedOutputs outputs{LoggedOutputs::kAll};  ///< run_info is logged with any value
+  LogCompression compression{LogCompression::kLz4};
   std::string directory;           ///< as given; a leading ~/ means the home directory of the node's user
   std::string prefix;              ///< file names begin with it; without /; empty: name of the node
   std::string node;                ///< name of the node that logs, not from a file: see forNode()

@@ -173,7 +173,7 @@ std::optional<LogFault> LogWriter::checkDisk() {
 void LogWriter::begin(LogName name) {
   makeRoom();
   const std::uint64_t chunk_size = std::min(kChunkSize, settings_.split_size / 4);
-  file_ = std::make_unique<LogFile>(std::move(name), static_cast<std::uint32_t>(chunk_size));
+  file_ = std::make_unique<LogFile>(std::move(name), static_cast<std::uint32_t>(chunk_size), settings_.compression);
   opened_ = Clock::now();
   next_check_ = opened_ + kDiskCheckInterval;
   auto fault = file_->open();

@@ -15,8 +15,8 @@ namespace hammer_loads {
 
 constexpr std::uint32_t kTopicQueue = 10000;  ///< ten seconds at 1 kHz, in and out: a stalled machine loses nothing
 
-/// Private topics, published when subscribed, and logged whether or not they are. A latched output is only logged: the
-/// node itself publishes it. The log must outlive the outputs.
+/// Private topics, each published while it has a subscriber and logged while a log records that wants it; else it is
+/// not computed. A latched output is only logged: the node itself publishes it. The log must outlive the outputs.
 template <typename Outputs>
 void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) {
   outputs.forEach([&](auto& output) {
@@ -26,13 +26,14 @@ void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) 
                         const Message& message, const ros::Time& time) { log.writeLatched(topic, time, message); });
       return;
     }
-    const bool last = output.delivery() == Delivery::kLast, logged = last || output.delivery() == Delivery::kLogged;
+    const bool last = output.delivery() == Delivery::kLast;
     const ros::Publisher publisher = private_node.advertise<Message>(output.name(), kTopicQueue, last);
-    output.attach(
-        [&log, publisher, last, logged, topic = publisher.getTopic()](const Message& message, const ros::Time& time) {
-          if (last || publisher.getNumSubscribers() > 0) publisher.publish(message);
-          if (logged) log.write(topic, time, message);
-        });
+    output.attach([publisher](const Message& message, const ros::Time&) { publisher.publish(message); },
+                  [publisher, last] { return last || publisher.getNumSubscribers() > 0; });
+    if (output.delivery() == Delivery::kOnRequest || !log.logs(output.loggedFrom())) return;
+    output.attach([&log, topic = publisher.getTopic()](const Message& message,
+                                                       const ros::Time& time) { log.write(topic, time, message); },
+                  [&log] { return log.isRecording(); });
   });
 }
 

@@ -1,4 +1,4 @@
-/// The tasks of diagnostic_updater on /diagnostics, without its arithmetic on ROS time.
+/// The tasks of diagnostic_updater on /diagnostics and in the log, without its arithmetic on ROS time.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -8,14 +8,20 @@
 
 #include <string>
 
+#include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/log/record_clock.h"
+
 namespace hammer_loads {
 
 /// Replaces diagnostic_updater::Updater, which adds its period to the time now. That throws within the last second
 /// before 2^32 s, in the constructor as well, and a /clock may say anything.
 class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
  public:
-  DiagnosticsPublisher(ros::NodeHandle node, const ros::NodeHandle& private_node)
-      : publisher_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),
+  /// clock: of the node's inputs; a logged report has the record time of the last one. Both must outlive this.
+  DiagnosticsPublisher(ros::NodeHandle node, const ros::NodeHandle& private_node, BagLog& log, const RecordClock& clock)
+      : log_(log),
+        clock_(clock),
+        publisher_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),
         period_(private_node.param("diagnostic_period", 1.0)),
         // The name space is the node's own, a nodelet's in a manager as well.
         name_(private_node.getNamespace().substr(1)) {}
@@ -33,9 +39,13 @@ class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
     }
     message.header.stamp = ros::Time::now();
     publisher_.publish(message);
+    if (log_.logs(LoggedOutputs::kPerTurn) && !clock_.last().isZero())
+      log_.write(publisher_.getTopic(), clock_.last(), message);
   }
 
  private:
+  BagLog& log_;
+  const RecordClock& clock_;
   ros::Publisher publisher_;
   double period_;
   std::string name_;

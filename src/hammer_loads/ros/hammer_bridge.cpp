@@ -1,5 +1,7 @@
 #include "hammer_loads/ros/hammer_bridge.h"
 
+#include <algorithm>
+
 #include "hammer_loads/ros/fill_boom.h"
 #include "hammer_loads/ros/fill_hammer.h"
 #include "hammer_loads/ros/stamp.h"
@@ -133,15 +135,11 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
   if (!result.isPublished()) return;
   if (result.boom != nullptr && !result.boom->fault) sendBoom(record_time);
-  // Pure functions of the result: nothing else depends on them.
-  if (outputs_.mechanism.attached()) {
-    fillMechanism(result, outputs_.mechanism.message);
-    if (cylinder_joints_ && result.boom != nullptr)
-      cylinder_joints_->fill(pipeline_->boom()->boom(), outputs_.mechanism.message);
-  }
-  outputs_.mechanism.send(record_time);
-  if (outputs_.pin_forces.attached()) fillPinForces(result, outputs_.pin_forces.message);
-  outputs_.pin_forces.send(record_time);
+  outputs_.mechanism.send(record_time, [&](sensor_msgs::JointState& m) {
+    fillMechanism(result, m);
+    if (cylinder_joints_ && result.boom != nullptr) cylinder_joints_->fill(pipeline_->boom()->boom(), m);
+  });
+  outputs_.pin_forces.send(record_time, [&](PinForces& m) { fillPinForces(result, m); });
 }
 
 void HammerBridge::end() {
@@ -152,40 +150,36 @@ void HammerBridge::end() {
 }
 
 void HammerBridge::send(const WrenchOutput& output, const ros::Time& record_time) {
-  fillWrench(output.stamp, output.wrench, outputs_.hull_wrench.message);
-  outputs_.hull_wrench.send(record_time);
-  fillHullLoads(pipeline_->result(), output, outputs_.hull_loads.message);
-  outputs_.hull_loads.send(record_time);
-  if (frame_wrenches_) frame_wrenches_->wrench(outputs_.hull_wrench.message, record_time);
+  const auto fill = [&](geometry_msgs::WrenchStamped& m) { fillWrench(output.stamp, output.wrench, m); };
+  outputs_.hull_wrench.send(record_time, fill);
+  outputs_.hull_loads.send(record_time, [&](HullLoads& m) { fillHullLoads(pipeline_->result(), output, m); });
+  const bool frames = std::any_of(frame_outputs_.begin(), frame_outputs_.end(),
+                                  [&](std::size_t i) { return outputs_.boom_wrench[i].isWanted(); });
+  if (frames) {
+    fill(outputs_.hull_wrench.message);
+    frame_wrenches_->wrench(outputs_.hull_wrench.message, record_time);
+  }
   if (!pipeline_->boom() || !pipeline_->boom()->known()) return;
   for (const ChainLink& link : chain_links_) {
-    auto& wrench = outputs_.boom_wrench[link.output];
-    fillWrench(output.stamp, pipeline_->boom()->wrenchAtLink(link.link, output.wrench), wrench.message);
-    wrench.send(record_time);
+    outputs_.boom_wrench[link.output].send(record_time, [&](geometry_msgs::WrenchStamped& m) {
+      fillWrench(output.stamp, pipeline_->boom()->wrenchAtLink(link.link, output.wrench), m);
+    });
   }
 }
 
 void HammerBridge::sendBoom(const ros::Time& record_time) {
   const BoomFollower& boom = *pipeline_->boom();
-  fillJointLoads(boom.state(), outputs_.joint_loads.message);
-  outputs_.joint_loads.send(record_time);
-  if (!boom.boom().sections().empty()) {
-    fillSections(boom.state(), outputs_.section_loads.message);
-    outputs_.section_loads.send(record_time);
-  }
-  fillReactions(boom.state(), outputs_.joint_reactions.message);
-  outputs_.joint_reactions.send(record_time);
-  fillVibration(boom, outputs_.boom_vibration.message);
-  outputs_.boom_vibration.send(record_time);
+  outputs_.joint_loads.send(record_time, [&](JointLoads& m) { fillJointLoads(boom.state(), m); });
+  if (!boom.boom().sections().empty())
+    outputs_.section_loads.send(record_time, [&](SectionLoads& m) { fillSections(boom.state(), m); });
+  outputs_.joint_reactions.send(record_time, [&](JointReactions& m) { fillReactions(boom.state(), m); });
+  outputs_.boom_vibration.send(record_time, [&](BoomVibration& m) { fillVibration(boom, m); });
 }
 
 void HammerBridge::send(const TurnEnd& end, const ros::Time& record_time) {
-  fillBlow(end, outputs_.blow.message);
-  outputs_.blow.send(record_time);
+  outputs_.blow.send(record_time, [&](Blow& m) { fillBlow(end, m); });
   life_->sendTurn(end, record_time);
-  if (!end.pulse) return;
-  fillPulse(end, outputs_.pulse.message);
-  outputs_.pulse.send(record_time);
+  if (end.pulse) outputs_.pulse.send(record_time, [&](Pulse& m) { fillPulse(end, m); });
 }
 
 }  // namespace hammer_loads

@@ -17,7 +17,7 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
       inputs_(settings),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       config_(configInForce(log_->isRecording())),
-      diagnostics_(node, private_node, bridge_, inputs_, *log_, ledger_.get()),
+      diagnostics_(node, private_node, bridge_, inputs_, *log_, clock_, ledger_.get()),
       reconfigure_(reconfigure_mutex_, private_node),
       log_services_(
           private_node, *log_, [this] { bridge_.finishRun(); }, [this] { beginRun(); }, [this] { logSwitched(); }) {
@@ -63,8 +63,10 @@ void HammerLoadsNode::take(Input<Message>& input, const Event<Message>& event) {
   // With simulated time a bag may be played, whose topics can be of several publishers.
   if constexpr (ros::message_traits::HasHeader<Message>::value)
     if (!again && !ros::Time::isSimTime()) input.missing.take(event.getPublisherName(), message.header.seq);
-  if (input.latched) log_->writeLatched(input.topic, record_time, message, event.getPublisherName());
-  if (!input.latched && !again) log_->write(input.topic, record_time, message);
+  if (log_->logsInputs()) {
+    if (input.latched) log_->writeLatched(input.topic, record_time, message, event.getPublisherName());
+    if (!input.latched && !again) log_->write(input.topic, record_time, message);
+  }
   input.take(bridge_, message, record_time);
 }
 
@@ -74,7 +76,8 @@ void HammerLoadsNode::sayWhatRuns() const {
   for (const std::string& note : settings.notes) notes += "; " + note;
   ROS_INFO("hammer: %s; level %s%s", settings.hammer_given ? "its own file" : "the shipped MO-100",
            nameOf(settings.pipeline.level), notes.c_str());
-  ROS_INFO("log: %s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "not recording");
+  ROS_INFO("log: %s%s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "not recording",
+           log_->logsInputs() ? "" : ", without the inputs: its outputs cannot be computed again");
   if (ledger_) ROS_INFO("ledger of load cycles: %s", ledger_->path().c_str());
   const std::string imu = inputs_.hull_imu.wanted ? ", " + inputs_.hull_imu.topic : "";
   ROS_INFO("waits for %s with joint %s, %s%s", inputs_.crank.topic.c_str(), settings.pipeline.crank_joint.c_str(),

@@ -23,20 +23,20 @@
 namespace hammer_loads {
 
 struct HammerOutputs {
-  Output<RunInfo> run_info{"run_info", Delivery::kLatched};
-  Output<geometry_msgs::WrenchStamped> hull_wrench{"hull_wrench"};
-  Output<HullLoads> hull_loads{"hull_loads"};
+  Output<RunInfo> run_info{"run_info", LoggedOutputs::kNone, Delivery::kLatched};
+  Output<geometry_msgs::WrenchStamped> hull_wrench{"hull_wrench", LoggedOutputs::kWrench};
+  Output<HullLoads> hull_loads{"hull_loads", LoggedOutputs::kWrench};
   std::deque<Output<geometry_msgs::WrenchStamped>> boom_wrench;  ///< one per boom_wrench link, in their order
   Output<JointLoads> joint_loads{"joint_loads"};
   Output<SectionLoads> section_loads{"section_loads"};
   Output<JointReactions> joint_reactions{"joint_reactions"};
   Output<BoomVibration> boom_vibration{"boom_vibration"};
   Output<sensor_msgs::JointState> mechanism{"mechanism"};
-  Output<PinForces> pin_forces{"pin_forces", Delivery::kOnRequest};
-  Output<Blow> blow{"blow"};
-  Output<Pulse> pulse{"pulse"};
-  Output<TurnLoads> turn_loads{"turn_loads"};
-  Output<LoadCycles> load_cycles{"load_cycles", Delivery::kLast};
+  Output<PinForces> pin_forces{"pin_forces", LoggedOutputs::kAll, Delivery::kOnRequest};
+  Output<Blow> blow{"blow", LoggedOutputs::kPerTurn};
+  Output<Pulse> pulse{"pulse", LoggedOutputs::kPerTurn};
+  Output<TurnLoads> turn_loads{"turn_loads", LoggedOutputs::kPerTurn};
+  Output<LoadCycles> load_cycles{"load_cycles", LoggedOutputs::kPerTurn, Delivery::kLast};
 
   template <typename Visit>
   void forEach(const Visit& visit) {

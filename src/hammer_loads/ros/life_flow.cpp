@@ -118,8 +118,7 @@ std::string LifeFlow::contradiction() const {
 void LifeFlow::sendTurn(const TurnEnd& end, const ros::Time& record_time) {
   const life::TurnLoads* turn = follower_.turnLoads(end);
   if (turn == nullptr) return;
-  fillTurnLoads(end, *turn, outputs_.turn_loads.message);
-  outputs_.turn_loads.send(record_time);
+  outputs_.turn_loads.send(record_time, [&](TurnLoads& m) { fillTurnLoads(end, *turn, m); });
 }
 
 void LifeFlow::finish() {
@@ -136,8 +135,8 @@ void LifeFlow::finish() {
 life::LifePiece LifeFlow::sendCycles(const ros::Time& record_time) {
   life::LifePiece piece = follower_.take();
   if (!follower_.since()) return piece;
-  fillLoadCycles(*follower_.since(), *follower_.total(), machine_, outputs_.load_cycles.message);
-  outputs_.load_cycles.send(record_time);
+  outputs_.load_cycles.send(
+      record_time, [&](LoadCycles& m) { fillLoadCycles(*follower_.since(), *follower_.total(), machine_, m); });
   return piece;
 }
 

@@ -15,8 +15,9 @@ using diagnostic_msgs::DiagnosticStatus;
 }  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                                 const HammerInputs& inputs, const BagLog& log, const life::LiveLedger* ledger)
-    : bridge_(bridge), inputs_(inputs), log_(log), ledger_(ledger), publisher_(node, private_node) {
+                                 const HammerInputs& inputs, BagLog& log, const RecordClock& clock,
+                                 const life::LiveLedger* ledger)
+    : bridge_(bridge), inputs_(inputs), log_(log), ledger_(ledger), publisher_(node, private_node, log, clock) {
   publisher_.add("inputs", this, &NodeDiagnostics::describeInputs);
   publisher_.add("crank", this, &NodeDiagnostics::describeCrank);
   publisher_.add("hull pitch", this, &NodeDiagnostics::describePitch);
@@ -247,8 +248,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
 
 void NodeDiagnostics::describeFrames(Status& status) {
   const FrameWrenches& wrenches = *bridge_.frameWrenches();
-  status.summary(DiagnosticStatus::OK, "every frame known");
-  bool silent = false;
+  bool silent = false, used = false;
   for (std::size_t i = 0; i < wrenches.frames().size(); ++i) {
     const std::string complaint = wrenches.complaint(i);
     if (!complaint.empty()) {
@@ -259,7 +259,9 @@ void NodeDiagnostics::describeFrames(Status& status) {
     status.add(wrenches.frames()[i] + ": published", counts.published);
     status.add(wrenches.frames()[i] + ": dropped", counts.dropped + counts.crowded);
     status.add(wrenches.frames()[i] + ": waiting", counts.waiting);
+    used = used || counts.published + counts.dropped + counts.crowded + counts.waiting > 0;
   }
+  if (!silent) status.summary(DiagnosticStatus::OK, used ? "every frame known" : "not computed: no subscriber, no log");
 }
 
 }  // namespace hammer_loads

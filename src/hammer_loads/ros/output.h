@@ -3,18 +3,21 @@
 
 #include <ros/time.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "hammer_loads/log/log_settings.h"
+
 namespace hammer_loads {
 
 enum class Delivery {
-  kLogged,     ///< published and logged
-  kOnRequest,  ///< published, but left out of logs and bags unless asked for: it follows from what they hold
-  kLast,       ///< published and logged; late subscribers get the last one
+  kEach,
+  kOnRequest,  ///< left out of every log, and of bags unless asked for
+  kLast,       ///< late subscribers get the last one
   kLatched,    ///< one message per run, repeated for late subscribers and in every file
 };
 
@@ -24,30 +27,50 @@ class Output {
   using Message = MessageType;
   /// record_time: that of the input that caused the message.
   using Deliver = std::function<void(const Message&, const ros::Time& record_time)>;
+  using Wants = std::function<bool()>;
 
-  /// name: below the node's private name space or the prefix of a bag's outputs.
-  explicit Output(std::string name, Delivery delivery = Delivery::kLogged)
-      : name_(std::move(name)), delivery_(delivery) {}
+  /// name: below the node's private name space or the prefix of a bag's outputs. logged_from: least log_outputs that
+  /// logs it.
+  explicit Output(std::string name, LoggedOutputs logged_from = LoggedOutputs::kAll,
+                  Delivery delivery = Delivery::kEach)
+      : name_(std::move(name)), logged_from_(logged_from), delivery_(delivery) {}
 
   Message message;  ///< what does not change from one to the next is filled once
 
   const std::string& name() const { return name_; }
   Delivery delivery() const { return delivery_; }
-  /// What is attached takes every message from now on, in the order of attaching.
-  void attach(Deliver deliver) { attached_.push_back(std::move(deliver)); }
+  LoggedOutputs loggedFrom() const { return logged_from_; }
+  /// What is attached takes every message from now on, in the order of attaching; with `wants`, those for which it
+  /// holds.
+  void attach(Deliver deliver, Wants wants = {}) { attached_.push_back({std::move(deliver), std::move(wants)}); }
   void detachAll() { attached_.clear(); }
-  /// Whether a message goes anywhere: else what only the message shows need not be computed.
-  bool attached() const { return !attached_.empty(); }
-  void send(const ros::Time& record_time) {
-    ++sent_;
-    for (const Deliver& deliver : attached_) deliver(message, record_time);
+  bool isWanted() const {
+    return std::any_of(attached_.begin(), attached_.end(), [](const Attached& to) { return !to.wants || to.wants(); });
   }
-  std::uint64_t sent() const { return sent_; }  ///< messages since the start
+  /// Sends the message as fill(message) leaves it; nothing is computed where nobody wants it.
+  template <typename Fill>
+  void send(const ros::Time& record_time, const Fill& fill) {
+    ++sent_;
+    if (!isWanted()) return;
+    fill(message);
+    for (const Attached& to : attached_)
+      if (!to.wants || to.wants()) to.deliver(message, record_time);
+  }
+  void send(const ros::Time& record_time) {
+    send(record_time, [](const Message&) {});
+  }
+  std::uint64_t sent() const { return sent_; }  ///< messages since the start, wanted or not
 
  private:
+  struct Attached {
+    Deliver deliver;
+    Wants wants;  ///< empty: always
+  };
+
   std::string name_;
+  LoggedOutputs logged_from_;
   Delivery delivery_;
-  std::vector<Deliver> attached_;
+  std::vector<Attached> attached_;
   std::uint64_t sent_{};
 };
 

@@ -1,10 +1,18 @@
 #include "hammer_loads/settings/read_log.h"
 
+#include <array>
+
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
 namespace {
 
+constexpr std::array<Named<LoggedOutputs>, 4> kOutputs{{{"all", LoggedOutputs::kAll},
+                                                        {"wrench", LoggedOutputs::kWrench},
+                                                        {"per_turn", LoggedOutputs::kPerTurn},
+                                                        {"none", LoggedOutputs::kNone}}};
+constexpr std::array<Named<LogCompression>, 2> kCompressions{
+    {{"none", LogCompression::kNone}, {"lz4", LogCompression::kLz4}}};
 constexpr std::int64_t kMostMb = 1000 * 1000 * 1000;
 
 std::uint64_t bytes(ParameterReader& reader, const char* key, std::int64_t least_mb) {
@@ -17,6 +25,11 @@ std::uint64_t bytes(ParameterReader& reader, const char* key, std::int64_t least
 LogSettings readLogSettings(ParameterReader& reader) {
   LogSettings s;
   s.enabled = reader.boolean("log_enabled");
+  s.outputs = reader.choice("log_outputs", kOutputs);
+  s.inputs = reader.boolean("log_inputs");
+  if (s.outputs == LoggedOutputs::kNone && !s.inputs)
+    reader.addProblem("log_inputs: false, must be true with log_outputs: none; log_enabled: false switches the log off");
+  s.compression = reader.choice("log_compression", kCompressions);
   s.directory = reader.text("log_directory");
   s.prefix = reader.text("log_prefix");
   if (s.prefix.find('/') != std::string::npos)
