@@ -99,5 +99,5 @@ def loads(parameters, phi, w, e, pitch=None, gravity=9.80665, massless=False):
     result["torque_y"] = hull_moment
     result["drive_torque"] = forces[:, 8]
     for name, k in place.items():
-        result[name + "_x_N"], result[name + "_z_N"] = in_hull(forces[:, k] + 1j * forces[:, k + 1])
+        result[name + "_x"], result[name + "_z"] = in_hull(forces[:, k] + 1j * forces[:, k + 1])
     return result

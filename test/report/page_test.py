@@ -30,7 +30,7 @@ class Page(ReportTest):
     def test_statistics_are_those_of_all_turns(self):
         rows = self.page_of(self.file).table("Over all turns")
         peaks = [row[0] / 1000 for row in self.ask("SELECT amplitude FROM turns")]
-        shown = rows["Peak force [kN]"]
+        shown = rows["Peak force along the tool [kN]"]
         self.assertAlmostEqual(number(shown["Median"]), statistics.median(peaks), delta=1e-3 * max(peaks))
         self.assertAlmostEqual(number(shown["Greatest"]), max(peaks), delta=1e-3 * max(peaks))
         self.assertEqual(number(shown["Values"]), len(peaks))
@@ -142,7 +142,7 @@ class Comparison(ReportTest):
 
     def test_side_by_side_and_overlaid(self):
         page = self.page_of(*self.files)
-        peaks = page.table("Machines side by side")["Peak force [kN]"]
+        peaks = page.table("Machines side by side")["Peak force along the tool [kN]"]
         self.assertAlmostEqual(number(peaks["second"]) / number(peaks["first"]), 1.5, delta=0.05)
         self.assertAlmostEqual(number(peaks["Diff. [%]"]), 50.0, delta=5.0)
         curves = [p for p in page.pictures if p.title.endswith("over the time of work")]

@@ -81,7 +81,7 @@ class Work(ReportTest):
     def test_histograms_hold_every_blow(self):
         page = self.page_of(self.file)
         for caption, sql in (("Blows by blow energy", "SELECT energy FROM blows"),
-                             ("Blows by peak force", "SELECT amplitude / 1000 FROM turns")):
+                             ("Blows by peak force along the tool", "SELECT amplitude / 1000 FROM turns")):
             values = [v for v, in self.ask(sql)]
             rows = page.table(caption)
             self.assertEqual(sum(number(row["Blows"]) for row in rows.values()), len(values))
@@ -238,15 +238,6 @@ class Misuse(ReportTest):
         self.assertEqual(rows["Blows without press force"]["Count"], "not known")
         self.assertEqual(rows["Hammering at one place [s]"]["Count"], "not known")
 
-    def test_an_older_database_knows_none(self):
-        file = self.directory / "site.sqlite"
-        sample.make(file, seconds=50.0)
-        db = sqlite3.connect(str(file))
-        for column in ("blank_firings", "judged_blows", "blows_without_hold_down", "still_time"):
-            db.execute(f"ALTER TABLE runs RENAME COLUMN {column} TO older_{column}")
-        db.commit()
-        db.close()
-        self.assertEqual({row["Count"] for row in self.page_of(file).table("Misuse").values()}, {"not known"})
 
 
 if __name__ == "__main__":

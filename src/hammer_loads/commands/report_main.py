@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""report, budget and certificate, by the name it has: pages and figures of what process_bag --db and ledgers hold."""
+"""report, budget, check and test_report, by its name: pages and figures of recordings and ledgers."""
 import importlib
 import pathlib
 import sys
@@ -12,7 +12,7 @@ for home in (HERE.parent, HERE.parents[1] / SHARE, HERE.parent / SHARE):  # in t
         break
 sys.dont_write_bytecode = True  # the source tree stays as it is
 
-MODULES = {"report": "command", "budget": "budget", "certificate": "certificate"}
+MODULES = {"report": "command", "budget": "budget", "check": "check", "test_report": "test_report"}
 name = pathlib.Path(sys.argv[0]).stem
 try:
     sys.exit(importlib.import_module("report." + MODULES.get(name, "command")).main(sys.argv[1:]))

@@ -1,1 +1,1 @@
-"""Pages, tables, budgets and certificates from the databases of process_bag --db, ledgers and fleets."""
+"""Pages, tables, checks, budgets and test reports from the databases of process_bag --db, ledgers and fleets."""

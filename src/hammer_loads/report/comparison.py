@@ -148,7 +148,7 @@ def runs_compared(subject, series):
     names = recording_of(subject)
     figures_of_runs = [run_figures(run, series, at) for at, run in enumerate(subject.runs)]
     first, header, rows = figures_of_runs[0], ["Run"], []
-    compared = [title for title in first if title.startswith(("Blow energy [", "Peak force ["))]
+    compared = [title for title in first if title.startswith(("Blow energy [", "Peak force along the tool ["))]
     for title in first:
         header += [title, "Diff. [%]"] if title in compared else [title]
     for run, figures in zip(subject.runs, figures_of_runs):

@@ -6,10 +6,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from report.boom_health import boom_health
 from report.boom_loads import boom_loads
 from report.budget import budget
+from report.check import check_section
 from report.comparison import comparison, runs_compared
 from report.costs import costs
 from report.cycle_figures import cycle_figures
-from report.database import LEDGER
+from report.database import LEDGER, RECORDING
 from report.formats import shown, utc
 from report.ledger_section import ledger_section
 from report.misuse import misuse
@@ -38,7 +39,8 @@ def machine(subject, series, most_points):
     """Content of one machine's section, by the names that machine.html has for it."""
     channels = subject.counted_channels()
     return {"label": subject.label, "runs": subject.runs, "turns": turn_pictures(subject),
-            "overview": overview(subject, series), "compared": runs_compared(subject, series),
+            "check": check_section(subject) if subject.database.kind == RECORDING and subject.runs else None,
+            "first": utc(subject.first_ns), "last": utc(subject.last_ns), "overview": overview(subject, series), "compared": runs_compared(subject, series),
             "work": over_time(series, most_points), "loads": boom_loads(subject),
             "health": boom_health(subject), "misuse": misuse(subject),
             "cycles": cycle_figures(channels) if channels else None, "costs": costs(subject, channels),

@@ -11,7 +11,7 @@ QUANTITIES = [
              "lost by rocker and rod at the blow. Not the tool energy of AEM, which is measured in the tool's steel"),
     Quantity("restitution", "Restitution", "blows", "restitution", "", 1.0, "restitution_std",
              "rocker's speed after the blow over that before"),
-    Quantity("amplitude", "Peak force", "turns", "amplitude", "kN", 1e-3, "amplitude_std",
+    Quantity("amplitude", "Peak force along the tool", "turns", "amplitude", "kN", 1e-3, "amplitude_std",
              "largest force along the tool in a turn"),
     Quantity("mean_hold_down_force", "Hold-down needed", "blows", "mean_hold_down_force", "kN", 1e-3,
              "mean_hold_down_force_std",

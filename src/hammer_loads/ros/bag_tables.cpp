@@ -28,7 +28,7 @@ std::string withoutPaths(const std::string& yaml) {
   return kept;
 }
 
-/// A certificate states the uncertainty of every input: also those that no file gives.
+/// A test report states the uncertainty of every input: also those that no file gives.
 void addUsualDeviations(const HammerParameters& hammer, RunRecord& record) {
   for (const auto& [key, deviation] : deviationsInForce(hammer)) {
     const auto has_key = [&key = key](const RunRecord::Parameter& p) { return p.key == key; };

@@ -9,14 +9,14 @@ from support import HERE, REPORT, Reader, ReportTest, SOURCE, program
 
 import sample_database as sample
 from budget_test import with_budget
-from report.certificate import deviation_key, rounded
+from report.test_report import deviation_key, rounded
 
 
-class Certificate(ReportTest):
+class TestReport(ReportTest):
     ROWS = [("blow/energy", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy", 900.0, 20.0, "readings", 0.36)]
 
     def command(self, *arguments):
-        certificate = self.directory / "certificate"
+        certificate = self.directory / "test_report"
         if not certificate.exists():
             certificate.symlink_to(REPORT)
         return subprocess.run([str(certificate), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,

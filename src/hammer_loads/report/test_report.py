@@ -1,4 +1,4 @@
-"""A test certificate, and its command: one page that says what was measured, with which uncertainty, and how that is known."""
+"""A test report, and its command: one page with results, their uncertainty, inputs, checks and method."""
 import tempfile
 
 from report import output
@@ -64,14 +64,14 @@ def inputs(subject, figures):
                  ["Input quantity", "Estimate", "u", "Largest contribution"], listed)
 
 
-def certificate(subject, version):
+def test_report(subject, version, site=""):
     """The page's bytes: the same for the same file."""
     figures = budget_of(subject)
     if not figures:
         raise Problem(f"{subject.database.path}: holds no budget; it has no whole turn, or is of an older process_bag --db")
     checks = [row for row in health_rows(subject) if row[2]]
     return rendered(
-        "certificate.html", version=version, label=subject.label, run=subject.runs[0], first=utc(subject.first_ns),
+        "test_report.html", version=version, label=subject.label, site=site, run=subject.runs[0], first=utc(subject.first_ns),
         last=utc(subject.last_ns), work=duration(subject.total("duration")), turns=subject.total("turns"),
         blows=subject.total("blows"), results=results(figures), inputs=inputs(subject, figures),
         checks=Table("The crank's sensor", ["Check", "Found", "Verdict"], [row[:3] for row in checks], "words"),
@@ -82,14 +82,15 @@ def certificate(subject, version):
 
 def parser():
     result = Parser(
-        prog="certificate",
-        description="A test certificate of one recording: results with their uncertainty, inputs, checks, method.",
+        prog="test_report",
+        description="A test report of one recording: results with their uncertainty, inputs, checks, method.",
         epilog="One page of A4; the same bags, parameters and version give the same bytes. Words and rules are those of "
                "JCGM 100:2008. Errors are one line each; exit code 1, or 2 for wrong usage.")
     result.add_argument("files", nargs="+", metavar="FILE",
                         help="bags of one machine, or a database of process_bag --db; splits of one recording count as one")
     result.add_argument("--html", required=True, metavar="OUT.html", help="page to write, which must not exist")
     result.add_argument("--machine", metavar="NAME", help="of a file with more than one")
+    result.add_argument("--site", default="", metavar="TEXT", help="place of the measurement, printed as it is")
     result.add_argument("--force", action="store_true", help="replace a page of this package")
     add_bag_options(result)
     return result
@@ -98,15 +99,16 @@ def parser():
 def the_subject(paths, machine):
     found = [s for path in paths for s in subjects_of(Database(path), machine) if s.database.kind == RECORDING]
     if len(found) != 1:
-        raise Problem(f"a certificate is of one machine's recording, not of {len(found)}"
+        raise Problem(f"a test report is of one machine's recording, not of {len(found)}"
                       + (": " + ", ".join(s.label for s in found) if found else ""))
     return found[0]
 
 
 def run(given):
     output.check_file(given.html, given.files, given.force, output.why_page_must_stay)
-    with tempfile.TemporaryDirectory(prefix="hammer_loads_certificate") as folder:
-        content = certificate(the_subject(databases(given, folder), given.machine), package_version())
+    with tempfile.TemporaryDirectory(prefix="hammer_loads_test_report") as folder:
+        content = test_report(the_subject(databases(given, folder), given.machine), package_version(),
+                              given.site)
     output.publish_file(given.html, content, given.force)
     print(f"{given.html}: {len(content) / 1e3:.0f} kB")
 
