@@ -1,8 +1,12 @@
 /// process_bag --db as its user runs it: the tables say what the output bag and the console say.
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <numeric>
 
 #include "commands/bag_tables.h"
+#include "hammer_loads/Alarms.h"
 #include "hammer_loads/Blow.h"
 #include "hammer_loads/HullLoads.h"
 #include "hammer_loads/LoadCycles.h"
@@ -86,6 +90,46 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
     std::vector<std::string> residue;
     for (const std::uint32_t turning_point : channel.residue) residue.push_back(std::to_string(turning_point));
     EXPECT_EQ(ask("out.sqlite", "SELECT class" + of_channel("residues") + " ORDER BY place"), residue);
+  }
+}
+
+/// Each alarm of the output bag, from its first message to the last of its level.
+TEST_F(Tables, HoldTheAlarms) {
+  const test::TemporaryFile limits(
+      "limit_blow_energy_least_warn_J: 980.0\nlimit_blow_energy_greatest_warn_J: 1020.0\n"
+      "limit_hold_down_force_error_N: 1.0\n");
+  ASSERT_EQ(
+      run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite") + " --params " + limits.path()).exit_code,
+      0);
+  std::map<std::pair<std::string, std::uint64_t>, std::vector<Alarm>> alarms;  // by name and beginning
+  std::map<std::uint64_t, double> energies;                                    // by turn
+  std::size_t other_side = 0;
+  rosbag::Bag bag(path("out.bag"));
+  for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
+    if (const auto b = item.instantiate<Blow>()) energies[b->turn] = b->energy;
+    const auto message = item.instantiate<Alarms>();
+    if (!message) continue;
+    for (const Alarm& alarm : message->alarm) {
+      alarms[{alarm.name, alarm.since.toNSec()}].push_back(alarm);
+      const double energy = energies.count(message->turn) == 1 ? energies[message->turn] : 0.0;
+      if (alarm.name == "blow_energy_least") other_side += energy >= 980.0;
+      if (alarm.name == "blow_energy_greatest") other_side += energy <= 1020.0;
+    }
+  }
+  EXPECT_EQ(other_side, 0U) << "an alarm of a turn is that of its blow";
+  ASSERT_GT(alarms.size(), 3U);
+  EXPECT_EQ(number("out.sqlite", "SELECT count(*) FROM alarms"), static_cast<double>(alarms.size()));
+  for (const auto& [key, seen] : alarms) {
+    const std::string where =
+        " FROM alarms WHERE name = '" + key.first + "' AND since_ns = " + std::to_string(key.second);
+    const auto beyond = [](const Alarm& a, const Alarm& b) {
+      return std::abs(a.value - a.limit) < std::abs(b.value - b.limit);
+    };
+    const Alarm& farthest = *std::max_element(seen.begin(), seen.end(), beyond);
+    EXPECT_EQ(number("out.sqlite", "SELECT turns" + where), static_cast<double>(seen.size()));
+    EXPECT_EQ(number("out.sqlite", "SELECT value" + where), farthest.value);
+    EXPECT_EQ(number("out.sqlite", "SELECT value_std" + where), farthest.value_std);
+    EXPECT_EQ(number("out.sqlite", "SELECT level" + where), farthest.level);
   }
 }
 

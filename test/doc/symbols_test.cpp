@@ -44,7 +44,7 @@ std::string shown(const YAML::Node& value) {
 TEST(Parameters, TablesHoldEachOneWithItsShippedValue) {
   const std::string readme = textOf("doc/parameters.md");
   for (const std::string file : {"config/hammer_mo100.yaml", "config/pipeline.yaml", "config/log.yaml",
-                                 "config/life.yaml", "config/grapple_node.yaml"}) {
+                                 "config/life.yaml", "config/limits.yaml", "config/grapple_node.yaml"}) {
     std::vector<std::string> problems;
     const ParameterMap parameters = readParameterFile((kRoot / file).string(), problems).value();
     std::istringstream headings(readme);

@@ -48,6 +48,8 @@ CREATE TABLE boom_cylinders(run_id INTEGER, turn INTEGER, cylinder TEXT, joint_a
   stiffness_ratio_std REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder));
 CREATE TABLE boom_modes(run_id INTEGER, turn INTEGER, mode INTEGER, frequency REAL, frequency_std REAL,
   damping_ratio REAL, damping_ratio_std REAL, PRIMARY KEY(run_id, turn, mode));
+CREATE TABLE alarms(run_id INTEGER, name TEXT, level INTEGER, unit TEXT, value REAL, value_std REAL, "limit" REAL,
+  since_ns INTEGER, until_ns INTEGER, turns INTEGER, PRIMARY KEY(run_id, name, since_ns));
 CREATE TABLE traces(run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time REAL, force_x REAL,
   force_z REAL, torque_y REAL, force_z_std REAL, crank_angle REAL);
 """

@@ -57,6 +57,34 @@ class Work(ReportTest):
         energy = self.ask("SELECT sum(energy) FROM blows")[0][0]
         self.assertAlmostEqual(number(figures["energy of all blows"]), energy / 1e3, delta=1e-3 * energy / 1e3)
 
+    def page_after(self, name, *sql):
+        """Of a file of its own: what was read is not written again."""
+        self.file = self.directory / name
+        sample.make(self.file, seconds=20.0)
+        self.ask("SELECT 1", *sql)
+        return self.page_of(self.file, options=["--force"])
+
+    def test_limits_that_were_exceeded(self):
+        limit = "INSERT INTO parameters VALUES(1, 'limit_peak_force_warn_N', '9000.0', NULL)"
+        self.assertIn("No limits were given", self.page_after("none.sqlite").text)
+        kept = self.page_after("kept.sqlite", limit)
+        self.assertIn("No limit was exceeded", kept.text)
+        self.assertNotIn("limit exceeded", kept.text)
+        start = 1700000060 * sample.SECOND
+        alarm = "INSERT INTO alarms VALUES(1, '%s', %d, 'N', %s, %s, %s, %d, %d, %d)"
+        page = self.page_after(
+            "exceeded.sqlite", limit,
+            alarm % ("peak_force", 1, 9120.0, 87.0, 9000.0, start, start + sample.SECOND, 6),
+            alarm % ("peak_force", 1, 9456.0, 91.0, 9000.0, start + 9 * sample.SECOND, start + 9 * sample.SECOND, 1),
+            alarm % ("hold_down_force", 2, 3100.0, "NULL", 3000.0, start, start + sample.SECOND, 1234))
+        lines = [words for tag, words in page.pieces if tag == "li" and words.startswith("limit exceeded")]
+        self.assertEqual(lines, ["limit exceeded (ERROR): hold_down_force 3100 N, limit 3000 N, in 1\u202f234 revolutions",
+                                 "limit exceeded (WARN): peak_force 9\u202f456 \u00b1 91 N, limit 9000 N, in 7 revolutions"])
+        row = page.table("Limits exceeded")["peak_force"]
+        self.assertEqual((row["Level"], row["Farthest beyond it"], row["Revolutions"], row["Times"]),
+                         ("WARN", "9\u202f456 \u00b1 91 N", "7", "2"))
+        self.assertIn("2023-11-14 22:14:20", row["First"])
+
     def test_median_and_spread(self):
         energies = sorted(e for e, in self.ask("SELECT energy FROM blows"))
         median, spread = self.figures(self.page_of(self.file))["blow energy, median \u00b1 spread"].split("\u00b1")

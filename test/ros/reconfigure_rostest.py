@@ -17,7 +17,8 @@ from node_session import (NodeSession, START, TURN, active_bags, closed_bags, cr
                           messages, recorded, topics_in)
 from process_rostest import eventually
 
-PER_TURN = {'/hammer_loads/' + name for name in ('run_info', 'blow', 'pulse', 'turn_loads', 'load_cycles')}
+PER_TURN = {'/hammer_loads/' + name for name in ('run_info', 'blow', 'pulse', 'turn_loads', 'load_cycles',
+                                         'alarms')}
 AT_START = {'log_enabled': True, 'output_rate_Hz': 0.0, 'tolerance': 0.5, 'withhold_above': 0.1}
 
 

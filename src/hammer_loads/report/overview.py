@@ -1,6 +1,7 @@
 """Runs, totals and parameters of a machine, and its warnings."""
 import os
 
+from report import limits
 from report.formats import NOTHING, Table, duration, measured, moment, number
 from report.names import recording_of
 from report.quantities import QUANTITIES
@@ -22,6 +23,7 @@ def warnings_of(subject):
     if impossible:
         found[f"blows whose energy and restitution cannot be: {impossible} of {subject.total('blows')}; they are in no "
               "picture and no figure"] = []
+    found.update(dict.fromkeys(limits.lines(subject), []))
     return found
 
 

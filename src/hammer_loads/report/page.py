@@ -13,6 +13,7 @@ from report.cycle_figures import cycle_figures
 from report.database import LEDGER, RECORDING
 from report.formats import shown, utc
 from report.ledger_section import ledger_section
+from report.limits import limits
 from report.misuse import misuse
 from report.names import stem
 from report.over_time import MOST_POINTS, over_time
@@ -42,7 +43,7 @@ def machine(subject, series, most_points):
             "check": check_section(subject) if subject.database.kind == RECORDING and subject.runs else None,
             "first": utc(subject.first_ns), "last": utc(subject.last_ns), "overview": overview(subject, series), "compared": runs_compared(subject, series),
             "work": over_time(series, most_points), "loads": boom_loads(subject),
-            "health": boom_health(subject), "misuse": misuse(subject),
+            "health": boom_health(subject), "misuse": misuse(subject), "limits": limits(subject),
             "cycles": cycle_figures(channels) if channels else None, "costs": costs(subject, channels),
             "budget": budget(subject), "sensor": sensor_health(subject)}
 

@@ -138,4 +138,22 @@ void fillPulse(const TurnEnd& end, Pulse& message) {
   message.turn_impulse_z_systematic_std = errors.turn_impulse_z.common();
 }
 
+void fillAlarms(const TurnEnd& end, const LimitWatch& watch, Alarms& message) {
+  message.header.stamp = timeOf(end.stamp);
+  message.turn = end.turn;
+  message.alarm.clear();
+  for (std::size_t i = 0; i < watch.limits().size(); ++i) {
+    const LimitState& state = watch.states()[i];
+    if (state.level == AlarmLevel::kOk) continue;
+    Alarm& alarm = message.alarm.emplace_back();
+    alarm.name = watch.limits()[i].name;
+    alarm.level = static_cast<std::uint8_t>(state.level);
+    alarm.unit = watch.limits()[i].unit;
+    alarm.value = state.value;
+    alarm.value_std = state.std;
+    alarm.limit = state.limit;
+    alarm.since = timeOf(state.since);
+  }
+}
+
 }  // namespace hammer_loads

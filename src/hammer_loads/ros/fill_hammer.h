@@ -2,6 +2,7 @@
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
+#include <hammer_loads/Alarms.h>
 #include <hammer_loads/Blow.h>
 #include <hammer_loads/HullLoads.h>
 #include <hammer_loads/PinForces.h>
@@ -10,6 +11,7 @@
 
 #include <string>
 
+#include "hammer_loads/pipeline/limit_watch.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
@@ -25,5 +27,7 @@ void fillPinForces(const SampleResult& result, PinForces& message);
 void fillBlow(const TurnEnd& end, Blow& message);
 /// end.pulse is required.
 void fillPulse(const TurnEnd& end, Pulse& message);
+/// end: the turn that was just judged.
+void fillAlarms(const TurnEnd& end, const LimitWatch& watch, Alarms& message);
 
 }  // namespace hammer_loads

@@ -39,7 +39,7 @@ void HammerBridge::prepareOutputs() {
   for (std_msgs::Header* header :
        {&outputs_.hull_wrench.message.header, &outputs_.hull_loads.message.header, &outputs_.mechanism.message.header,
         &outputs_.pin_forces.message.header, &outputs_.blow.message.header, &outputs_.pulse.message.header,
-        &outputs_.turn_loads.message.header, &outputs_.load_cycles.message.header})
+        &outputs_.turn_loads.message.header, &outputs_.alarms.message.header, &outputs_.load_cycles.message.header})
     header->frame_id = frame;
   outputs_.run_info.message.version = packageVersion();
   outputs_.run_info.message.revision = packageRevision();
@@ -66,6 +66,9 @@ void HammerBridge::begin(const Settings& settings) {
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
   pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
   beginCount();
+  limits_.reset();
+  if (!settings_.limits.empty())
+    limits_.emplace(settings_.limits, life_->machine().channels, pipeline_->counts().misuse);
   if (frame_wrenches_) frame_wrenches_->reset();
   RunInfo& run_info = outputs_.run_info.message;
   run_info.parameters_yaml = settings_.yaml;
@@ -179,6 +182,8 @@ void HammerBridge::sendBoom(const ros::Time& record_time) {
 void HammerBridge::send(const TurnEnd& end, const ros::Time& record_time) {
   outputs_.blow.send(record_time, [&](Blow& m) { fillBlow(end, m); });
   life_->sendTurn(end, record_time);
+  if (limits_ && limits_->judge(end, pipeline_->counts().misuse, life_->follower().total()))
+    outputs_.alarms.send(record_time, [&](Alarms& m) { fillAlarms(end, *limits_, m); });
   if (end.pulse) outputs_.pulse.send(record_time, [&](Pulse& m) { fillPulse(end, m); });
 }
 

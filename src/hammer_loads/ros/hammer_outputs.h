@@ -2,6 +2,7 @@
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
+#include <hammer_loads/Alarms.h>
 #include <hammer_loads/Blow.h>
 #include <hammer_loads/BoomVibration.h>
 #include <hammer_loads/HullLoads.h>
@@ -36,6 +37,7 @@ struct HammerOutputs {
   Output<Blow> blow{"blow", LoggedOutputs::kPerTurn};
   Output<Pulse> pulse{"pulse", LoggedOutputs::kPerTurn};
   Output<TurnLoads> turn_loads{"turn_loads", LoggedOutputs::kPerTurn};
+  Output<Alarms> alarms{"alarms", LoggedOutputs::kPerTurn, Delivery::kLast};
   Output<LoadCycles> load_cycles{"load_cycles", LoggedOutputs::kPerTurn, Delivery::kLast};
 
   template <typename Visit>
@@ -44,7 +46,7 @@ struct HammerOutputs {
     for (auto& wrench : boom_wrench) visit(wrench);
     visit(joint_loads), visit(section_loads), visit(joint_reactions), visit(boom_vibration), visit(mechanism),
         visit(pin_forces), visit(blow), visit(pulse);
-    visit(turn_loads), visit(load_cycles);
+    visit(turn_loads), visit(alarms), visit(load_cycles);
   }
 };
 

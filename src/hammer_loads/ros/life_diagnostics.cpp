@@ -1,5 +1,8 @@
 #include "hammer_loads/ros/life_diagnostics.h"
 
+#include <cmath>
+
+#include "hammer_loads/util/format.h"
 #include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
@@ -32,6 +35,25 @@ void describeLife(const LifeFlow& life, const life::LiveLedger* ledger,
   }
   status.add("ledger", ledger == nullptr ? "none" : ledger->path());
   if (ledger != nullptr) status.add("pieces not in the ledger yet", ledger->state().waiting);
+}
+
+void describeLimits(const LimitWatch& watch, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.summary(DiagnosticStatus::OK, "no limit is exceeded");
+  for (std::size_t i = 0; i < watch.limits().size(); ++i) {
+    const Limit& limit = watch.limits()[i];
+    const LimitState& state = watch.states()[i];
+    const std::string unit = " [" + limit.unit + "]";
+    if (state.level != AlarmLevel::kOk)
+      status.mergeSummary(
+          static_cast<std::uint8_t>(state.level),
+          format("%s: %.4g %s is %s the limit %.4g %s", limit.name.c_str(), state.value, limit.unit.c_str(),
+                 limit.is_least ? "below" : "above", state.limit, limit.unit.c_str()));
+    status.add(limit.name + unit, state.value);
+    if (!std::isnan(state.std)) status.add(limit.name + " std" + unit, state.std);
+    if (!std::isnan(limit.warn)) status.add(limit.name + " warn" + unit, limit.warn);
+    if (!std::isnan(limit.error)) status.add(limit.name + " error" + unit, limit.error);
+    if (state.level != AlarmLevel::kOk) status.add(limit.name + " since [s]", seconds(state.since));
+  }
 }
 
 }  // namespace hammer_loads

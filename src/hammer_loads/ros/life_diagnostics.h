@@ -1,4 +1,4 @@
-/// A node's report of its load cycles.
+/// A node's report of its load cycles and limits.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "hammer_loads/life/live_ledger.h"
+#include "hammer_loads/pipeline/limit_watch.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/ros/life_flow.h"
 
@@ -14,6 +15,9 @@ namespace hammer_loads {
 /// Since when, how often, saturation, state of the ledger (null: none is kept).
 void describeLife(const LifeFlow& life, const life::LiveLedger* ledger,
                   diagnostic_updater::DiagnosticStatusWrapper& status);
+
+/// Each limit with value, standard deviation and bounds; WARN or ERROR where one is exceeded.
+void describeLimits(const LimitWatch& watch, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 /// What the ledger cannot take at present, if it is so.
 std::optional<Warning> ledgerWarning(const life::LiveLedger* ledger);

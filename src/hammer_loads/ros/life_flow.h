@@ -32,7 +32,8 @@ class LifeFlow {
 
   bool begun() const { return begun_; }
   const LifeFollower& follower() const { return follower_; }
-  std::int64_t period() const { return period_; }  ///< of ~load_cycles and pieces [ns]
+  const life::LedgerMachine& machine() const { return machine_; }  ///< of the counts
+  std::int64_t period() const { return period_; }                  ///< of ~load_cycles and pieces [ns]
   /// Samples of each channel since the count began.
   std::vector<life::SampleTally> tallies() const;
   /// Loads beyond their full scale, with the keys that set it. Not for the hot path.

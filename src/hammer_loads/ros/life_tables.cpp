@@ -1,7 +1,9 @@
 #include "hammer_loads/ros/life_tables.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {
@@ -46,9 +48,11 @@ ChannelCount countOf(const ChannelCycles& message, const life::LifeSettings& set
 void LifeTables::begin(HammerBridge& bridge, std::int64_t run) {
   run_ = run;
   cycles_ = {};
+  alarms_.clear();
   budget_.emplace(bridge.pipeline());
   bridge.watch([this] { budget_->follow(); });
   bridge.outputs().turn_loads.attach([this](const TurnLoads& message, const ros::Time&) { takeTurn(message); });
+  bridge.outputs().alarms.attach([this](const Alarms& message, const ros::Time&) { takeAlarms(message); });
   bridge.outputs().load_cycles.attach([this](const LoadCycles& message, const ros::Time&) { cycles_ = message; });
 }
 
@@ -59,6 +63,21 @@ void LifeTables::takeTurn(const TurnLoads& message) {
     writer_->turnLoad(run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i],
                              message.mean[i], message.minimum_std[i], message.maximum_std[i],
                              message.minimum_systematic_std[i], message.maximum_systematic_std[i]});
+}
+
+void LifeTables::takeAlarms(const Alarms& message) {
+  for (const Alarm& alarm : message.alarm) {
+    const std::int64_t since = stampOf(alarm.since);
+    auto row = std::find_if(alarms_.rbegin(), alarms_.rend(), [&](const AlarmRow& r) { return r.name == alarm.name; });
+    if (row == alarms_.rend() || row->since != since) {
+      alarms_.push_back({alarm.name, alarm.unit, alarm.level, alarm.value, alarm.value_std, alarm.limit, since, 0, 0});
+      row = alarms_.rbegin();
+    }
+    if (std::abs(alarm.value - alarm.limit) > std::abs(row->value - row->limit))
+      row->value = alarm.value, row->std = alarm.value_std;
+    row->until = stampOf(message.header.stamp);
+    ++row->turns;
+  }
 }
 
 void LifeTables::write(const BudgetFigure& figure) {
@@ -93,6 +112,7 @@ void LifeTables::writeBudget() {
 
 void LifeTables::end(const HammerBridge& bridge) {
   writeBudget();
+  for (const AlarmRow& row : alarms_) writer_->alarm(run_, row);
   std::vector<ChannelRecord> records;
   for (const std::string& name : bridge.outputs().turn_loads.message.channel) records.push_back({name, {}});
   for (const ChannelCycles& counted : cycles_.channel) {

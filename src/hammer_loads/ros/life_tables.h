@@ -1,6 +1,7 @@
-/// Turn loads and load cycles of a recording as tables.
+/// Turn loads, load cycles and alarms of a recording as tables.
 #pragma once
 
+#include <hammer_loads/Alarms.h>
 #include <hammer_loads/LoadCycles.h>
 #include <hammer_loads/TurnLoads.h>
 
@@ -24,12 +25,14 @@ class LifeTables {
 
  private:
   void takeTurn(const TurnLoads& message);
+  void takeAlarms(const Alarms& message);
   void writeBudget();
   void write(const BudgetFigure& figure);
 
   TableWriter* writer_;
   std::int64_t run_{};
   std::optional<BudgetRecorder> budget_;
+  std::vector<AlarmRow> alarms_;
   LoadCycles cycles_;  ///< the last message: all of the run so far
 };
 

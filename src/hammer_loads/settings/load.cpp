@@ -129,6 +129,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   if (!conflict.empty()) reader.addProblem(conflict);
   takePitchChain(reader, pipeline, boom, description, result.notes);
   life::LifeSettings life = readLife(reader, boom);
+  std::vector<Limit> limits = readLimits(reader, life);
   reader.reportUnknownKeys();
   result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());
   if (!mechanism || !result.problems.empty()) return result;
@@ -144,6 +145,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
                           pipeline,
                           log,
                           std::move(life),
+                          std::move(limits),
                           std::move(boom),
                           hammer_given,
                           robot_description,
@@ -156,13 +158,13 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
 
 }  // namespace
 
-Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
-                       const std::string& robot_description) {
+Checked<Settings> load(const std::string& config_directory, ParameterMap given, const std::string& robot_description) {
+  std::vector<std::string> problems;
+  addLimitsFile(given, problems);
   std::vector<std::string> shipped{config_directory + "/pipeline.yaml", config_directory + "/log.yaml",
                                    config_directory + "/life.yaml"};
   if (!hasHammerKey(given)) shipped.push_back(config_directory + "/hammer_mo100.yaml");
 
-  std::vector<std::string> problems;
   ParameterMap parameters;
   const bool all_read = addFiles(shipped, parameters, problems);
   leaveOutUnwantedChannels(given, parameters);

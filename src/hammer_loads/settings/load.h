@@ -11,6 +11,7 @@
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/log/log_settings.h"
 #include "hammer_loads/settings/input_topics.h"
+#include "hammer_loads/settings/limits.h"
 #include "hammer_loads/settings/parameter_map.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 #include "hammer_loads/util/checked.h"
@@ -21,7 +22,8 @@ struct Settings {
   Mechanism mechanism;
   PipelineSettings pipeline;
   LogSettings log;
-  life::LifeSettings life;         ///< every channel that it names is one of this machine
+  life::LifeSettings life;  ///< every channel that it names is one of this machine
+  std::vector<Limit> limits;
   std::optional<Boom> boom;        ///< nothing: `boom: none`, no robot description, or a foreign one
   bool hammer_given{};             ///< else the shipped MO-100 is used
   std::string robot_description;   ///< the URDF's text, as given
@@ -35,14 +37,14 @@ struct Settings {
 
 /// Settings from what was given over what is shipped in `config_directory`, or every problem at once, one line each.
 ///
-/// Pipeline, log and life: each key given replaces the shipped one; of the shipped life_channels those that are not
-/// wanted any more are left out. Hammer: physical parameters have no defaults, so a single
-/// hammer key given means that all must be; with none given hammer_mo100.yaml is used.
+/// The file that limits_file names is read first. Pipeline, log and life: each key given replaces the shipped one; of
+/// the shipped life_channels those that are not wanted any more are left out. Hammer: physical parameters have no
+/// defaults, so a single hammer key given means that all must be; with none given hammer_mo100.yaml is used.
 ///
 /// Boom: from the text of a robot description (URDF; empty: none) and the boom file's keys, of which a single one given
 /// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`; where the description lacks one
 /// of the two and `boom` is auto, there is no boom and a note says so.
-Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
+Checked<Settings> load(const std::string& config_directory, ParameterMap given,
                        const std::string& robot_description = {});
 
 /// The same from files; a later file's key replaces an earlier one's.

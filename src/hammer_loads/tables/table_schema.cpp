@@ -142,6 +142,18 @@ CREATE TABLE budget(
   source TEXT,     -- [-] key of a parameter, readings, or what a level neglects
   share REAL,      -- [-] share of the source in the variance
   PRIMARY KEY(run_id, quantity, source)) WITHOUT ROWID;
+CREATE TABLE alarms(
+  run_id INTEGER,    -- [-] number of the run
+  name TEXT,         -- [-] name of the limit, as in Alarm
+  level INTEGER,     -- [-] 1: WARN, 2: ERROR
+  unit TEXT,         -- [-] unit of the limit
+  value REAL,        -- [limit] value farthest beyond the limit
+  value_std REAL,    -- [limit] standard deviation of the value; NULL: not known
+  "limit" REAL,      -- [limit] limit that was exceeded
+  since_ns INTEGER,  -- [ns] stamp of the blow that ended the first revolution of this level
+  until_ns INTEGER,  -- [ns] stamp of the blow that ended the last revolution of this level
+  turns INTEGER,     -- [-] number of judged revolutions from the first to the last
+  PRIMARY KEY(run_id, name, since_ns)) WITHOUT ROWID;
 CREATE TABLE traces(
   run_id INTEGER,    -- [-] number of the run
   kind TEXT,         -- [-] typical or worst

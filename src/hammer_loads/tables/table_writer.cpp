@@ -93,6 +93,12 @@ void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRec
   for (const std::uint32_t turning_point : c.residue) residue.run(run, channel, place++, turning_point);
 }
 
+void TableWriter::alarm(std::int64_t run, const AlarmRow& row) {
+  Statement(database_, insertSql("alarms", 10).c_str())
+      .run(run, row.name, row.level, row.unit, finite(row.value), finite(row.std), finite(row.limit), row.since,
+           row.until, row.turns);
+}
+
 void TableWriter::budget(std::int64_t run, const BudgetRow& row) {
   Statement(database_, insertSql("budget", 7).c_str())
       .run(run, row.quantity, life::unitOf(row.quantity), finite(row.value), finite(row.deviation), row.source,

@@ -36,6 +36,15 @@ struct BoomModeRow {
   double damping{}, damping_std{};      ///< [-]
 };
 
+/// An alarm from the turn that raised it to the last one of the same level.
+struct AlarmRow {
+  std::string name, unit;
+  std::int64_t level{};
+  double value{}, std{}, limit{};  ///< value: farthest beyond the limit
+  std::int64_t since{}, until{};   ///< stamps of those turns [ns]
+  std::uint64_t turns{};
+};
+
 /// Nothing throws: problem() says what went wrong first, and all after it does nothing.
 class TableWriter {
  public:
@@ -50,6 +59,7 @@ class TableWriter {
   void channel(std::int64_t run, std::int64_t number, const ChannelRecord& record);
   void boomCylinder(std::int64_t run, const BoomCylinderRow& row);
   void boomMode(std::int64_t run, const BoomModeRow& row);
+  void alarm(std::int64_t run, const AlarmRow& row);
   void budget(std::int64_t run, const BudgetRow& row);
   void traces(std::int64_t run, const TurnTraces& traces);
   void run(std::int64_t run, const RunRecord& record);

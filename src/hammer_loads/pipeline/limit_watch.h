@@ -1,0 +1,76 @@
+/// Judges the limits of a machine once a turn.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hammer_loads/life/ledger_machine.h"
+#include "hammer_loads/life/life_recorder.h"
+#include "hammer_loads/pipeline/misuse.h"
+#include "hammer_loads/pipeline/sample_result.h"
+#include "hammer_loads/settings/limits.h"
+
+namespace hammer_loads {
+
+/// Values as in diagnostic_msgs/DiagnosticStatus.
+enum class AlarmLevel : std::uint8_t { kOk, kWarn, kError };
+
+/// One limit at the last turn at which its value was known. It is exceeded only where the value itself is beyond it,
+/// whatever its standard deviation.
+struct LimitState {
+  AlarmLevel level{};
+  double value{kNaN}, std{kNaN};  ///< in the limit's unit; NaN: not known yet; of a count the std is never known
+  double limit{kNaN};             ///< that is exceeded
+  StampNs since{};                ///< of the first turn of the present level [ns]
+};
+
+/// A sum over the last hour of work, in whole minutes; before that over all of the work. Nothing is extrapolated.
+class LastHour {
+ public:
+  /// time: at work, not less than before [s].
+  void add(double time, double amount) noexcept;
+  double sum() const noexcept;
+
+ private:
+  std::array<double, 60> minutes_{};
+  std::uint64_t minute_{};
+};
+
+class LimitWatch {
+ public:
+  /// channels: of the counts that judge() gets. misuse: counted before the first turn.
+  LimitWatch(std::vector<Limit> limits, std::vector<life::LedgerChannel> channels, const MisuseCounts& misuse);
+
+  /// A turn has ended. counted: the load cycles so far, as of the last period. Whether the alarms are to be published:
+  /// at the first turn and at each where an alarm begins, lasts or ends.
+  bool judge(const TurnEnd& end, const MisuseCounts& misuse, const std::optional<life::LifePiece>& counted);
+
+  const std::vector<Limit>& limits() const { return limits_; }
+  const std::vector<LimitState>& states() const { return states_; }  ///< in the order of the limits
+
+ private:
+  struct Value {
+    double value{kNaN}, std{kNaN};
+  };
+  struct Damage {
+    LastHour hour;
+    life::Figure total;
+  };
+
+  void followDamage(const life::LifePiece& counted);
+  Value valueOf(std::size_t limit, const TurnEnd& end) const;
+
+  std::vector<Limit> limits_;
+  std::vector<LimitState> states_;
+  std::vector<std::size_t> channel_;  ///< of each limit of damage, in channels_
+  std::vector<Damage> damage_;        ///< of each limit
+  std::vector<life::LedgerChannel> channels_;
+  MisuseCounts before_, misuse_;
+  LastHour blank_;
+  std::uint64_t counted_until_{};  ///< duration of the count that damage_ is of [ns]
+  bool begun_{};
+};
+
+}  // namespace hammer_loads
