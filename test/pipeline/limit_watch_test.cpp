@@ -123,7 +123,9 @@ TEST(Limits, SumTheDamageOfTheLastHour) {
     cycles += minute / 60 == 1 ? 2000 : 1000;
     piece.counts[1].closed = {{100, 400, cycles}};
     piece.duration = minute * 60'000'000'000 + 30'000'000'000;
-    watch.judge(turnOf(0.0, static_cast<StampNs>(piece.duration)), {}, piece);
+    MisuseCounts work;
+    work.work_time = 1e-9 * static_cast<double>(piece.duration);
+    watch.judge(turnOf(0.0, static_cast<StampNs>(piece.duration)), work, piece);
     if (minute % 60 == 59) hours.push_back(watch.states()[0].value);
   }
   // Palmgren-Miner by hand: n (100/50)^3 / 1e6.
@@ -132,6 +134,13 @@ TEST(Limits, SumTheDamageOfTheLastHour) {
   EXPECT_NEAR(hours[1], 60.0 * 2000.0 * 8e-6, 1e-12);
   EXPECT_NEAR(hours[2], 60.0 * 1000.0 * 8e-6, 1e-12);
   EXPECT_EQ(watch.states()[0].level, AlarmLevel::kWarn);
+  // The log is stopped: the count begins anew, the work goes on.
+  MisuseCounts work;
+  work.work_time = 180.0 * 60.0 + 30.0;
+  piece.counts[1].closed = {{100, 400, 500}};
+  piece.duration = 30'000'000'000;
+  watch.judge(turnOf(0.0, 1), work, piece);
+  EXPECT_NEAR(watch.states()[0].value, (59.0 * 1000.0 + 500.0) * 8e-6, 1e-12);
 }
 
 TEST(LastHour, EqualsTheSumOverItsMinutes) {

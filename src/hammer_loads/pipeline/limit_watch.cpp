@@ -29,16 +29,19 @@ LimitWatch::LimitWatch(std::vector<Limit> limits, std::vector<life::LedgerChanne
       ++channel_[i];
 }
 
-/// Damage of the cycles that a new count has more than the one before.
+/// Damage of the cycles that a new count has more than the one before. A shorter count began anew.
 void LimitWatch::followDamage(const life::LifePiece& counted) {
-  if (counted.duration == std::exchange(counted_until_, counted.duration)) return;
+  const std::uint64_t before = std::exchange(counted_until_, counted.duration);
+  if (counted.duration == before) return;
+  if (counted.duration < before)
+    for (Damage& damage : damage_) damage.total = {};
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (limits_[i].quantity != LimitedQuantity::kDamage) continue;
     const life::LedgerChannel& channel = channels_[channel_[i]];
     const life::CycleCount& count = counted.counts[channel_[i]];
     const life::Figure total =
         life::damage(life::rangesAndMeans(count), *channel.curve, channel.mean_stress, life::rangeDeviation(count));
-    damage_[i].hour.add(1e-9 * static_cast<double>(counted.duration), total.value - damage_[i].total.value);
+    damage_[i].hour.add(misuse_.work_time - before_.work_time, total.value - damage_[i].total.value);
     damage_[i].total = total;
   }
 }
