@@ -137,7 +137,7 @@ TEST_F(BoomFile, OptionalKeysOfACylinder) {
   expectOne("damping_ratio:", "arm_cylinder_friction: 0.6\ndamping_ratio:",
             "arm_cylinder_friction: 0.6, must be from 0 to 0.5");
   expectOne("damping_ratio:", "arm_cylinder_joint_zero_rad: 0.9\ndamping_ratio:", "arm_cylinder_joint_zero_rad: 0.9");
-  expectOne("damping_ratio:", "arm_cylinder_stiffness_std: 2\ndamping_ratio:", "arm_cylinder_stiffness_dev");
+  expectOne("damping_ratio:", "arm_cylinder_stiffness_std: 2\ndamping_ratio:", "arm_cylinder_stiffness_std");
   expectOne("damping_ratio:", "link_mass_std: 2\ndamping_ratio:", "link_mass_std: 2");
   ASSERT_TRUE(problems("damping_ratio:",
                        "arm_cylinder_friction: 0.02\narm_cylinder_pressure_offset_Pa: -2.0e+4\ndamping_ratio:")

@@ -56,7 +56,7 @@ TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
   life::Database::Statement rows(
       database,
       "SELECT blank_firings, judged_blows, blows_without_hold_down, still_time, blows_without_hold_down IS "
-      "NULL, hull_pitch_rad FROM runs ORDER BY run_id");
+      "NULL, hull_pitch FROM runs ORDER BY run_id");
   ASSERT_TRUE(rows.step());
   EXPECT_EQ(rows.integer(0), 3);
   EXPECT_EQ(rows.integer(1), 0);

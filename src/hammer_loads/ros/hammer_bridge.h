@@ -1,0 +1,94 @@
+/// From input messages to output messages: the same for the live node, the nodelet and process_bag.
+#pragma once
+
+#include <sensor_msgs/FluidPressure.h>
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hammer_loads/pipeline/limit_watch.h"
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/ros/fill_boom.h"
+#include "hammer_loads/ros/frame_wrench.h"
+#include "hammer_loads/ros/hammer_outputs.h"
+#include "hammer_loads/ros/life_flow.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+
+/// Owns the pipeline and the outputs. Its outputs depend on its inputs and settings alone. record_time: of an
+/// input, passed on to the outputs that it causes.
+class HammerBridge {
+ public:
+  explicit HammerBridge(const Settings& settings);
+
+  void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  void hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time);
+  /// Gauge pressure in a chamber of one of cylinders().
+  void cylinderPressure(std::size_t cylinder, Chamber chamber, const sensor_msgs::FluidPressure& message,
+                        const ros::Time& record_time);
+  /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
+  void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
+  /// No more inputs come: sends the blow that is still being measured, at the record time of the last crank message.
+  void end();
+  /// A new run begins with the next input, in the state of a bridge just made; counts go on. For a time that jumped and
+  /// for a log that is to be reproduced from its own inputs. Static transforms stay.
+  void reset() { begin(Settings(settings_)); }
+  /// The same with other settings.
+  void begin(const Settings& settings);
+
+  /// What each run counts goes there as well, piece by piece; to be called before the first input. It must outlive
+  /// this.
+  void keepPieces(life::PieceSink& pieces);
+  /// Called after each crank message and at the end of a run, before its turns are sent; replaced with each call.
+  void watch(std::function<void()> sample) { watch_ = std::move(sample); }
+  /// Ends the count of the run at work: its last ~load_cycles and piece. What follows begins a new one.
+  void finishCount();
+  /// end() and finishCount(): what a run and its log end with.
+  void finishRun();
+
+  HammerOutputs& outputs() { return outputs_; }
+  const HammerOutputs& outputs() const { return outputs_; }
+  const Settings& settings() const { return settings_; }
+  const Pipeline& pipeline() const { return *pipeline_; }
+  const LifeFlow& life() const { return *life_; }
+  const std::optional<LimitWatch>& limits() const { return limits_; }  ///< nothing where none are given
+  const std::optional<FrameWrenches>& frameWrenches() const { return frame_wrenches_; }
+
+ private:
+  /// A boom_wrench link that belongs to the boom's chain.
+  struct ChainLink {
+    int link;            ///< in the chain
+    std::size_t output;  ///< in outputs_.boom_wrench
+  };
+
+  void prepareOutputs();
+  void beginCount();
+  void beginRun(const ros::Time& record_time);
+  void send(const WrenchOutput& output, const ros::Time& record_time);
+  void sendBoom(const ros::Time& record_time);
+  void send(const TurnEnd& end, const ros::Time& record_time);
+
+  Settings settings_;
+  std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
+  HammerOutputs outputs_;
+  std::optional<CylinderJoints> cylinder_joints_;  ///< of the boom's cylinders, in the mechanism's message
+  std::optional<LifeFlow> life_;                   ///< of the pipeline, replaced with each count
+  life::PieceSink* pieces_{};                      ///< null: none
+  std::optional<LimitWatch> limits_;               ///< of the run
+  std::vector<ChainLink> chain_links_;
+  std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
+  std::optional<FrameWrenches> frame_wrenches_;
+  std::function<void()> watch_;
+  bool run_begun_{};
+  ros::Time last_record_time_;  ///< of a crank message
+};
+
+}  // namespace hammer_loads

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "hammer_loads/life/channel_unit.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
@@ -21,10 +22,6 @@ constexpr NumberRule kFullScale = NumberRule::within(-1e15, 1e15);  // [N], [N m
 struct NamedChannel {
   std::string name, channel;
 };
-
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 /// Nothing after a problem.
 std::optional<LoadGrid> readGrid(ParameterReader& reader, const std::string& name, const std::string& unit,
@@ -47,10 +44,10 @@ double readInfluence(ParameterReader& reader, const std::string& key, const std:
   if (reader.given(area)) factor = 1.0 / (kPaPerMPa * reader.number(area, "m2", NumberRule::positive()));
   if (reader.given(direct) || given == 0) factor = reader.number(direct, "MPa per unit", NumberRule::any());
   if (given > 1) reader.addProblem(direct + ": must be the only one beside " + modulus + " and " + area);
-  if (reader.given(modulus) && !endsWith(channel, "_Nm"))
-    reader.addProblem(modulus + ": given for " + channel + ", must be for a moment (..._Nm)");
-  if (reader.given(area) && !endsWith(channel, "_N"))
-    reader.addProblem(area + ": given for " + channel + ", must be for a force (..._N)");
+  if (reader.given(modulus) && life::unitOf(channel) != "N m")
+    reader.addProblem(modulus + ": given for " + channel + ", must be for a moment");
+  if (reader.given(area) && life::unitOf(channel) != "N")
+    reader.addProblem(area + ": given for " + channel + ", must be for a force");
   if (reader.given(modulus) && std::isinf(factor)) reader.addProblem(modulus + ": 0 m3, must not be 0");
   return factor;
 }
