@@ -18,6 +18,7 @@ VERDICT = {OK: "usable", LOOK: "usable, with reservations", WRONG: "do not use b
 
 # Name, words by which a warning belongs to it, words of those that make results wrong.
 CHECKS = [
+    ("hammer file", r"hammer file was given|no hammer file", r""),
     ("unit", r"degrees|in turns|in counts|in rad/s|in radians|of another unit|revolutions", r""),
     ("direction", r"turns backward|crank_direction|sign", r""),
     ("zero", r"crank_zero_rad|slipped", r"withheld|contradict|slipped"),
@@ -70,7 +71,7 @@ def of_blows(subject):
         return WRONG, "no blow was found"
     expected = 3600.0 * hours / rows.period.median()
     blank = subject.total("blank_firings")
-    text = f"{number(blows)} blows, {number(round(expected))} revolutions in the time of work"
+    text = f"{number(blows)} blows, {number(round(expected))} revolutions fit into the time of work"
     return (OK if blows > 0.8 * expected and blank < 0.1 * blows else LOOK), text + (f", {blank} blank firings" if blank else "")
 
 
@@ -82,6 +83,7 @@ def figures(subject):
     zero, share = parameter(subject, "crank_zero_rad"), subject.total("published") / samples if samples else None
     tables = subject.database.tables()
     return {
+        "hammer file": (OK, "given"),
         "unit": (OK, "rad and rad/s"),
         "direction": (OK if subject.total("backward_passes") <= 3 else WRONG, f"{subject.total('backward_passes')} backward passes"),
         "zero": (OK, f"crank_zero_rad {zero}" if zero is not None else "as shipped"),
