@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""doc/accuracy.md, doc/blow.png and the README's excerpts from `accuracy`, the costs and the recorded sessions' test."""
+"""doc/accuracy.md, doc/blow.png and the README's excerpt from `accuracy`, the costs and the recorded sessions' test."""
 import argparse
 import json
 import pathlib
@@ -10,8 +10,6 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
 
-EXCERPT = ("printed/P0 with inverse trigonometry", "scalar/linkage", "batch/linkage", "crank/linkage", "pipeline/linkage",
-           "pipeline/elastic")
 SIDE_BY_SIDE = [("clean", "clean"), ("typical", "typical"), ("typical, after calibrate", "typical, after `calibrate`")]
 SESSION_HEAD = "rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow instant | energy |"
 
@@ -46,12 +44,12 @@ def draw_blow(blow, path):
     figure.savefig(path)
 
 
-def cost_table(benchmarks, names=None):
-    """Medians of google-benchmark's repetitions; names: of the rows, else all."""
+def cost_table(benchmarks):
+    """Medians of google-benchmark's repetitions."""
     medians = {row["run_name"]: row for row in benchmarks if row.get("aggregate_name") == "median"}
     spreads = {row["run_name"]: row["cpu_time"] for row in benchmarks if row.get("aggregate_name") == "cv"}
     lines = ["| | | ns | spread | per second and core |", "|---|---|---|---|---|"]
-    for name in names or medians:
+    for name in medians:
         per_second = medians[name]["items_per_second"]
         lines.append(f"| {' | '.join(name.split('/', 1))} | {1e9 / per_second:.3g} | {100 * spreads[name]:.0f} % | "
                      f"{1e-6 * per_second:.3g} million |")
@@ -77,28 +75,17 @@ def machines_excerpt(machines):
     rate = 1000
     lines += [line(f"error of Fz, rms of the peak, {rate} Hz", rate, lambda row: f"{100 * row['rms_z']:.2f} %"),
               line("worst sample", rate, lambda row: f"{100 * row['worst_z']:.1f} %"),
-              line("errors within two stated deviations", rate, lambda row: f"{100 * row['covered_z']:.0f} %"),
+              line("errors within two standard deviations", rate, lambda row: f"{100 * row['covered_z']:.0f} %"),
               line("instant of the blow, worst", rate, lambda row: f"{1e3 * row['blow_time_s']:.2f} ms"),
               line("blows missed, false", rate, lambda row: f"{row['missed_blows']}, {row['false_blows']}")]
     return "\n".join(lines) + "\n"
 
 
-def drawings_excerpt(drawings):
-    """What a machine's drawing leaves open."""
-    lines = ["", "Of 50 machines drawn from the deviations that a hammer file has where it gives none (2 % of mass and inertia, a",
-             "millimetre of the centre, 0.3 mm of lengths, half of what crank and rod weigh), with a clean sensor",
-             "and a rod that is known to be rigid:", "",
-             "| | error, rms | said | within two deviations |", "|---|---|---|---|"]
-    lines += [f"| {row['quantity']} | {100 * row['rms']:.1f} % | {100 * row['said']:.1f} % | {100 * row['covered']:.0f} % |"
-              for row in drawings]
-    return "\n".join(lines) + "\n"
-
-
-LIFE = [("oil as in the file", "none", "as the boom file has it, no sensor on the boom"),
-        ("bulk modulus 30 % lower", "none", "oil 30 % softer than the file, no sensor on the boom"),
-        ("bulk modulus 30 % lower", "IMU", "the same with an IMU on the hull"),
-        ("bulk modulus 30 % lower", "both", "the same with an IMU and cylinder pressures"),
-        ("pressed on rock, crank typical", "both", "hull pressed on rock, typical crank sensor, both")]
+LIFE = [("oil as in the file", "none", "oil as in the boom file, no sensor on the boom"),
+        ("bulk modulus 30 % lower", "none", "oil 30 % softer, no sensor on the boom"),
+        ("bulk modulus 30 % lower", "IMU", "oil 30 % softer, IMU"),
+        ("bulk modulus 30 % lower", "both", "oil 30 % softer, IMU and cylinder pressures"),
+        ("pressed on rock, crank typical", "both", "pressed on rock, typical crank sensor, IMU and cylinder pressures")]
 
 
 def life_excerpt(boom):
@@ -108,19 +95,18 @@ def life_excerpt(boom):
     lines += ["| " + text + " | " + " | ".join(f"{100 * rows[machine, sensors][key]['error']:+.1f} %"
                                                for key in ("life_force", "life_torque", "life_section")) + " |"
               for machine, sensors, text in LIFE]
-    lines += ["| towers, simulated; measured; corrected in the field | | | 5 to 10 %; 10 to 15 %; below 5 % |"]
     return "\n".join(lines) + "\n"
 
 
 BUDGETED = [("blow/energy", "energy of a blow", 1.0, "J"),
             ("pulse/turn_impulse_z", "impulse of a turn, z", 1.0, "N s"),
-            ("equivalent_range_3/hull_wrench/force_z", "damage-equivalent range of Fz, slope 3", 1e-3, "kN")]
+            ("equivalent_range_3/hull_wrench/force_z", "damage-equivalent load of Fz, slope 3", 1e-3, "kN")]
 
 
 def budget_excerpt(machine):
     """Where the uncertainty of a recording's figures comes from."""
     figures = {figure["quantity"]: figure for figure in machine["figures"]}
-    lines = ["| | value | standard deviation | with the largest source halved | most of the variance |", "|---|---|---|---|---|"]
+    lines = ["| result | value | standard deviation | standard deviation with the largest source halved | largest parts of the variance |", "|---|---|---|---|---|"]
     for quantity, text, factor, unit in BUDGETED:
         figure = figures[quantity]
         of_unit = [f"{factor * figure[key]:.{digits}g} {unit}"
@@ -145,17 +131,15 @@ def main():
     work, root = arguments.work, arguments.root
     figures = json.loads((work / "sessions.json").read_text())
     replace(root / "doc" / "accuracy.md", "sessions", (work / "sessions").read_text())
-    replace(root / "README.md", "machines", machines_excerpt(figures["machines"]) + drawings_excerpt(figures["drawings"]))
-    replace(root / "README.md", "life", life_excerpt(figures["boom"]))
+    replace(root / "README.md", "machines", machines_excerpt(figures["machines"]))
+    replace(root / "doc" / "accuracy.md", "life", life_excerpt(figures["boom"]))
     draw_blow(figures["blow"], root / "doc" / "blow.png")
     machine, = json.loads((work / "budget.json").read_text())["machines"]
-    replace(root / "README.md", "budget", budget_excerpt(machine))
+    replace(root / "doc" / "accuracy.md", "budget", budget_excerpt(machine))
     if not (work / "costs.json").exists():
         return
     costs = json.loads((work / "costs.json").read_text())["benchmarks"]
-    tables = f"Measured on: {processor()}, one thread.\n\n" + cost_table(costs)
-    replace(root / "doc" / "accuracy.md", "tables", tables)
-    replace(root / "README.md", "accuracy", cost_table(costs, EXCERPT))
+    replace(root / "doc" / "accuracy.md", "tables", f"Measured on: {processor()}, one thread.\n\n" + cost_table(costs))
     replace(root / "doc" / "accuracy.md", "recorded", recorded_table((work / "recorded").read_text()))
 
 

@@ -1,4 +1,4 @@
-// README.md and doc/parameters.md against what they speak of: parameter files, topics, messages, commands.
+// README.md, doc/api.md and doc/parameters.md against what they speak of: parameter files, topics, messages, commands.
 #include <algorithm>
 
 #include "doc/pages.h"
@@ -51,10 +51,10 @@ TEST(Parameters, TablesHoldEachOneWithItsShippedValue) {
     std::string heading;
     while (std::getline(headings, heading) && (heading[0] != '#' || heading.find(file) == std::string::npos)) {
     }
-    Names in_readme;
+    Names on_page;
     for (const Cells& row : tableRows(section(readme, heading))) {
       const std::string key = withoutBackquotes(row[0]);
-      in_readme.insert(key);
+      on_page.insert(key);
       const auto found = parameters.find(key);
       if (found == parameters.end()) {
         ADD_FAILURE() << key << " is in doc/parameters.md, but not in " << file;
@@ -63,7 +63,7 @@ TEST(Parameters, TablesHoldEachOneWithItsShippedValue) {
       }
     }
     for (const auto& [key, parameter] : parameters)
-      EXPECT_EQ(in_readme.count(key), 1U) << key << " of " << file << " is not in doc/parameters.md";
+      EXPECT_EQ(on_page.count(key), 1U) << key << " of " << file << " is not in doc/parameters.md";
   }
 }
 
@@ -76,39 +76,36 @@ Names topicsOf(Outputs outputs, Names inputs) {
 }
 
 /// First cells of a section's tables; JAW in one stands for left and right.
-Names topicsInReadme(const std::string& heading) {
+Names topicsInTables(const std::string& heading) {
   Names topics;
-  for (const Cells& row : tableRows(section(textOf("README.md"), heading))) {
+  for (const Cells& row : tableRows(section(textOf("doc/api.md"), heading))) {
     const std::string topic = withoutBackquotes(row[0]);
     for (const char* jaw : {"left", "right"}) topics.insert(std::regex_replace(topic, std::regex("JAW"), jaw));
   }
   return topics;
 }
 
-TEST(Readme, TablesHoldEveryTopicOfTheNodes) {
+TEST(Api, TablesHoldEveryTopicOfTheNodes) {
   HammerOutputs outputs;
   outputs.boom_wrench.emplace_back("boom_wrench/LINK");
   Names inputs;
   for (const InputName& input : kInputs) inputs.insert(input.name);
-  EXPECT_EQ(topicsInReadme("## Topics"), topicsOf(outputs, inputs));
+  EXPECT_EQ(topicsInTables("## Topics"), topicsOf(outputs, inputs));
   const Names grapple = topicsOf(GrappleOutputs{}, {"joint_states"});
-  EXPECT_EQ(topicsInReadme("### Grapple\n"), grapple);
+  EXPECT_EQ(topicsInTables("### Grapple\n"), grapple);
 }
 
-TEST(Readme, TableHoldsEveryMessage) {
+TEST(Api, TableHoldsEveryMessage) {
   Names messages;
-  for (const auto& entry : fs::directory_iterator(kRoot / "msg")) {
-    const std::string name = entry.path().stem().string();  // parts of other messages have no header
-    if (textOf("msg/" + name + ".msg").find("std_msgs/Header") != std::string::npos) messages.insert(name);
-  }
-  Names in_readme;
-  for (const Cells& row : tableRows(section(textOf("README.md"), "## Messages")))
-    in_readme.insert(withoutBackquotes(row[0]));
-  EXPECT_EQ(in_readme, messages);
+  for (const auto& entry : fs::directory_iterator(kRoot / "msg")) messages.insert(entry.path().stem().string());
+  Names on_page;
+  for (const Cells& row : tableRows(section(textOf("doc/api.md"), "## Messages")))
+    on_page.insert(withoutBackquotes(row[0]));
+  EXPECT_EQ(on_page, messages);
 }
 
-TEST(Readme, HoldsEveryCommandAndNode) {
-  const std::string commands = section(textOf("README.md"), "## Commands");
+TEST(Api, HoldsEveryCommandAndNode) {
+  const std::string commands = section(textOf("doc/api.md"), "## Commands");
   for (const auto& entry : fs::directory_iterator(kRoot / "src/hammer_loads/commands")) {
     const std::string name = entry.path().stem().string();
     const std::size_t end = name.rfind("_main");
@@ -125,20 +122,21 @@ TEST(Readme, HoldsEveryCommandAndNode) {
   }
 }
 
-TEST(Readme, EveryOptionOfItsCommandsExists) {
+TEST(Api, EveryOptionOfItsCommandsExists) {
   const std::string sources = textBelow("src/hammer_loads", ".cpp") + textBelow("src/hammer_loads", ".py");
-  for (const Cells& row : tableRows(section(textOf("README.md"), "## Commands"))) {
+  for (const Cells& row : tableRows(section(textOf("doc/api.md"), "## Commands"))) {
     for (const std::string& option : matches(row[0] + row[1], "(--[a-z-]+)"))
       EXPECT_NE(sources.find("\"" + option + "\""), std::string::npos) << option;
   }
 }
 
 TEST(Readme, EveryFileItNamesExists) {
-  const std::string readme = textOf("README.md");
-  for (const std::string& path : matches(readme, "\\]\\(([\\w./]+)\\)")) {
+  const std::string page = textOf("README.md");
+  for (const std::string& path : matches(page, "\\]\\(([\\w./]+)\\)")) {
     if (path == "doc/demo.png") continue;  // made by scripts/demo
     EXPECT_TRUE(fs::exists(kRoot / path)) << path;
   }
+  const std::string readme = page + textOf("doc/api.md");
   for (const std::string& path : matches(readme, "((?:config|launch|scripts)/\\w[\\w.]*)"))
     EXPECT_TRUE(fs::exists(kRoot / path)) << path;
   for (const std::string& path : matches(readme, "(hammer_loads/\\w+/\\w+\\.h)"))

@@ -185,8 +185,8 @@ TEST(WornMachine, DISABLED_TableOfTheModel) {
       })};
   rows[10].is_limit = true;
   std::string text =
-      "| machine | within two deviations, least of Fx, Fz, moment: 0 to 30 | 30 to 90 | 90 to 180 | 180 to "
-      "270 | 270 to 330 | 330 to 360 deg | Fz, 0 to 30 deg: rms error, stated | blow energies within |\n"
+      "| machine | 0 to 30 deg | 30 to 90 deg | 90 to 180 deg | 180 to 270 deg | 270 to 330 deg | 330 to 360 deg | Fz, "
+      "0 to 30 deg: rms error, stated | blow energies within |\n"
       "|---|---|---|---|---|---|---|---|---|\n";
   for (const Row& row : rows) {
     const Covered covered = coveredOf(row.machine, test::shippedDrawing().mechanism);

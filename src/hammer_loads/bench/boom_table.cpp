@@ -138,8 +138,9 @@ std::string markdown(const std::vector<BoomRow>& rows) {
   std::string text =
       "| machine | sensors | joint torques | bending | hull moment | Fx | Fz | worst sample of Fz | force | worst "
       "sample of "
-      "the force | energy | rock's force | torques within two deviations | least of Fx, Fz, moment within two "
-      "deviations "
+      "the force | energy | rock's force | torques within two standard deviations | smallest of Fx, Fz, moment within "
+      "two "
+      "standard deviations "
       "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const BoomRow& r : rows) {
     text += format("| %s | %s |", r.machine.c_str(), r.sensors.c_str());

@@ -127,7 +127,7 @@ std::vector<DrawingSummary> summary(const std::vector<DrawingRow>& rows) {
 
 std::string markdown(const std::vector<DrawingSummary>& rows) {
   std::string text =
-      "| | error, rms | said, rms | within two deviations | least of a drawing |\n"
+      "| | error, rms | stated, rms | within two standard deviations | smallest of a machine |\n"
       "|---|---|---|---|---|\n";
   for (const DrawingSummary& row : rows)
     text += format("| %s | %.2f %% | %.2f %% | %.0f %% | %.0f %% |\n", row.quantity, 100.0 * row.all.rms,

@@ -192,8 +192,10 @@ std::string jsonOf(const char* name, const PartErrors& e) {
 
 std::string markdown(const std::vector<ElasticRow>& rows) {
   std::string text =
-      "| machine | level | withheld | whole turn: rms Fx, Fz, moment | within two deviations | 180 to 360 deg: rms | "
-      "within two deviations | 6 to 40 ms after the blow: rms over the truth's | within two deviations | true Fz there "
+      "| machine | level | withheld | whole revolution: rms Fx, Fz, moment | within two standard deviations | 180 to "
+      "360 deg: rms | "
+      "within two standard deviations | 6 to 40 ms after the blow: rms over the truth's | within two standard "
+      "deviations | true Fz there "
       "|\n"
       "|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ElasticRow& row : rows) {

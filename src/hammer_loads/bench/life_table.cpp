@@ -12,7 +12,8 @@ std::string cells(const LifeFigure& f) { return format(" %+.1f %% | ", 100.0 * f
 
 std::string lifeMarkdown(const std::vector<BoomRow>& boom, const std::vector<ElasticRow>& elastic) {
   std::string text =
-      "| machine | sensors | hull force z | said: of turns, of constants | joint torque | said | bending | said |\n"
+      "| machine | sensors | hull force z | stated: of revolutions, of constants | joint torque | stated | bending | "
+      "stated |\n"
       "|---|---|---|---|---|---|---|---|\n";
   for (const BoomRow& r : boom)
     text += "| " + r.machine + " | " + r.sensors + " |" + cells(r.life_force) + cells(r.life_torque) +

@@ -184,7 +184,8 @@ std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoi
 
 std::string markdown(const std::vector<MachineRow>& rows) {
   std::string text =
-      "| machine | rate, Hz | speed | rms force, Fx, Fz, moment | worst sample of each | within two deviations: Fx, "
+      "| machine | rate, Hz | speed | rms force, Fx, Fz, moment | worst sample of each | within two standard "
+      "deviations: Fx, "
       "Fz, "
       "moment | blow instant | energy | blows | missed | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const MachineRow& row : rows) {

@@ -80,16 +80,16 @@ std::string printTables(const Settings& settings, const std::string& only) {
   }
   const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
   const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
-  std::cout << "### Machines as they are\n\n" << accuracy::markdown(machines);
+  std::cout << "### Simulated machines with sensor flaws\n\n" << accuracy::markdown(machines);
   const auto drawings = accuracy::summary(accuracy::drawingTable(settings, kDrawings));
-  std::cout << "\n### Machines of a drawing\n\n" << accuracy::markdown(drawings);
+  std::cout << "\n### Tolerances of the hammer file\n\n" << accuracy::markdown(drawings);
   const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
-  std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
+  std::cout << "\n### Elastic connecting rod\n\n" << accuracy::markdown(elastic);
   const std::vector<accuracy::SceneRow> scene = accuracy::sceneTable(settings, elastic);
-  std::cout << "\n### What a scene needs\n\n" << accuracy::markdown(scene);
+  std::cout << "\n### Choice of the level\n\n" << accuracy::markdown(scene);
   const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
-  std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
-  std::cout << "\n### Beside KDL's momentum observer\n\n" << accuracy::markdown(accuracy::observerTable());
+  std::cout << "\n### Boom loads\n\n" << accuracy::markdown(boom);
+  std::cout << "\n### Comparison with KDL's momentum observer\n\n" << accuracy::markdown(accuracy::observerTable());
   std::cout << "\n### Damage-equivalent ranges\n\n" << accuracy::lifeMarkdown(boom, elastic);
   std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
   return kSessions + accuracy::json(sessions) + ",\n" + kMachines + accuracy::json(machines) + ",\n" + kDrawn +
