@@ -161,7 +161,8 @@ TEST_F(DownstreamTest, LaunchFilesListAsRequiredOnlyWhatIs) {
   const Answer replay = inInstallSpace("roslaunch hammer_loads replay.launch --ros-args");
   EXPECT_EQ(replay.text.rfind("Required Arguments:\n  bag: ", 0), 0u) << replay.text;
   EXPECT_NE(replay.text.find("\nOptional Arguments:"), std::string::npos) << replay.text;
-  for (const char* argument : {"urdf_file", "boom_file", "boom_model", "boom_wrench_links", "hull_imu", "tf", "crank_joint"})
+  for (const char* argument :
+       {"urdf_file", "boom_file", "boom_model", "boom_wrench_links", "hull_imu", "tf", "crank_joint"})
     EXPECT_NE(replay.text.find(std::string("\n  ") + argument + " (default"), std::string::npos) << argument;
 }
 

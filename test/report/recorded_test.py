@@ -23,7 +23,7 @@ class Recorded(ReportTest):
         self.assertAlmostEqual(shown, statistics.median(energies), delta=0.02 * max(energies))
         for kind in ("Typical turn, number", "Worst turn, number"):
             self.assertIn(kind, page.text)
-        self.assertIn("hull_wrench/force_z", page.table("Damage-equivalent loads"))
+        self.assertIn("force along the tool, Fz", page.table("Damage-equivalent loads"))
 
 
 if __name__ == "__main__":

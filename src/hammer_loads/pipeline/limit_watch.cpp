@@ -54,8 +54,8 @@ LimitWatch::Value LimitWatch::valueOf(std::size_t limit, const TurnEnd& end) con
     case LimitedQuantity::kBlowEnergy:
       return {end.blow.energy, end.blow.energy_std};
     case LimitedQuantity::kHoldDownForce:
-      return {end.mean_hold_down_force,
-              std::abs(end.mean_hold_down_force / end.blow.tool_impulse_z) * end.blow_errors.tool_impulse_z.deviation()};
+      return {end.mean_hold_down_force, std::abs(end.mean_hold_down_force / end.blow.tool_impulse_z) *
+                                            end.blow_errors.tool_impulse_z.deviation()};
     case LimitedQuantity::kBlankFiring:
       return {blank_.sum(), kNaN};
     case LimitedQuantity::kDamage:

@@ -27,8 +27,7 @@ class NodeDiagnostics {
   /// inputs: each of a sensor should have one publisher; the age of the crank's decides whether the node is stale.
   /// ledger: null where none is kept.
   NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                  const HammerInputs& inputs, BagLog& log, const RecordClock& clock,
-                  const life::LiveLedger* ledger);
+                  const HammerInputs& inputs, BagLog& log, const RecordClock& clock, const life::LiveLedger* ledger);
 
  private:
   using Clock = std::chrono::steady_clock;

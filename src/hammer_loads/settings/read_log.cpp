@@ -28,7 +28,8 @@ LogSettings readLogSettings(ParameterReader& reader) {
   s.outputs = reader.choice("log_outputs", kOutputs);
   s.inputs = reader.boolean("log_inputs");
   if (s.outputs == LoggedOutputs::kNone && !s.inputs)
-    reader.addProblem("log_inputs: false, must be true with log_outputs: none; log_enabled: false switches the log off");
+    reader.addProblem(
+        "log_inputs: false, must be true with log_outputs: none; log_enabled: false switches the log off");
   s.compression = reader.choice("log_compression", kCompressions);
   s.directory = reader.text("log_directory");
   s.prefix = reader.text("log_prefix");
