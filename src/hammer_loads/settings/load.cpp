@@ -218,7 +218,8 @@ std::string configDirectory() {
       candidates.push_back(fs::path(library.dli_fname).parent_path() / share);
   }
   for (const fs::path& candidate : candidates) {
-    if (fs::exists(candidate / "pipeline.yaml", error)) return candidate.lexically_normal().string();
+    // Debian's /lib is a link to /usr/lib: its parent is not that of the name.
+    if (fs::exists(candidate / "pipeline.yaml", error)) return fs::canonical(candidate).string();
   }
   return HAMMER_LOADS_CONFIG_DIR;
 }
