@@ -41,39 +41,22 @@ std::string laterOrEarlier(double delay) {
   return format("%.2g ms %s", 1e3 * std::abs(delay), delay > 0.0 ? "later" : "earlier");
 }
 
-std::string dampingText(const Boom& boom, int mode) {
-  const Mode found = boom.vibration().mode(mode);
-  return format("vibration of %.2g Hz has a damping of %.2g, damping_ratio is %.2g", found.omega / kTwoPi, found.zeta,
-                boom.parameters().vibration.damping_ratio);
-}
-
-/// What rubs beside the oil damps the boom and is not in its pressures, which then seem late.
 void warnOfDamping(const Boom& boom, int mode, std::vector<Warning>& warnings) {
-  const ModeIdentifier& identifier = *boom.vibration().identifier();
-  std::string text = "boom: its " + dampingText(boom, mode);
-  if (isOff(identifier, Clock::kPressures) && !isOff(identifier, Clock::kPressures, lagOfDamping(boom, mode)))
-    text += "; what damps it beside the oil makes cylinder_pressures seem " +
-            laterOrEarlier(identifier.delay(Clock::kPressures)) + " than the crank, the loads allow for that";
-  warnings.push_back({"boom damping", std::move(text), true});
+  const Mode found = boom.vibration().mode(mode);
+  warnings.push_back(
+      {"boom damping",
+       format("boom: vibration of %.2g Hz has a damping ratio of %.2g, the boom file %.2g. Check friction "
+              "of its joints and damping_ratio.",
+              found.omega / kTwoPi, found.zeta, boom.parameters().vibration.damping_ratio),
+       true});
 }
 
 void warnOfImuClock(const ModeIdentifier& identifier, std::vector<Warning>& warnings) {
   if (!isOff(identifier, Clock::kImu)) return;
   warnings.push_back({"imu stamps",
-                      "hull_imu: its stamps are about " + laterOrEarlier(identifier.delay(Clock::kImu)) +
-                          " than the crank's; the boom's vibration allows for that, up to 4 ms, the hull's motion in "
-                          "the wrench does not",
+                      "hull_imu: stamps are about " + laterOrEarlier(identifier.delay(Clock::kImu)) +
+                          " than the crank's. The wrench does not correct that; stamp at the instant of measurement.",
                       true});
-}
-
-/// What is known of the pressures' stamps where they do not fit the motion.
-std::string delayText(const ModeIdentifier& identifier) {
-  if (!identifier.knowsLag())
-    return "without hull_imu it does not show how late their stamps are, 5 ms are a third of the vibration's torque";
-  return format(
-      "their stamps are %.1f +- %.1f ms late, which is allowed for: it is the boom that moves as neither boom "
-      "file nor description has it",
-      1e3 * identifier.delay(Clock::kPressures), 1e3 * identifier.delayDeviation(Clock::kPressures));
 }
 
 /// explained: by what damps the boom they seem late by this [s].
@@ -81,15 +64,16 @@ void warnOfPressures(const ModeIdentifier& identifier, double explained, std::ve
   const double surprise = identifier.oilSurprise();
   if (isOff(identifier, Clock::kPressures, explained)) {
     warnings.push_back({"pressure stamps",
-                        "cylinder_pressures: their stamps are about " +
-                            laterOrEarlier(identifier.delay(Clock::kPressures)) +
-                            " than the crank's; the boom's loads allow for that, up to 2 ms",
+                        "cylinder_pressures: stamps are about " + laterOrEarlier(identifier.delay(Clock::kPressures)) +
+                            " than the crank's. The boom's loads correct up to 2 ms; correct the stamps.",
                         true});
   } else if (surprise > MeasuredTorques::kSurprised) {
     warnings.push_back({"pressure fit",
-                        format("cylinder_pressures: they do not fit the boom's motion, errors are %.2g times the "
-                               "expected variance; %s; deviations are widened",
-                               surprise, delayText(identifier).c_str()),
+                        format("cylinder_pressures: errors are %.2g times the expected variance, deviations are "
+                               "inflated. %s.",
+                               surprise,
+                               identifier.knowsLag() ? "Check boom file and robot description"
+                                                     : "Their delay is not known: add hull_imu"),
                         true});
   }
 }
@@ -111,15 +95,11 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
   const char* name = unlike->name.c_str();
   const double times = std::exp(std::abs(found.stiffer));
   const bool soft = found.stiffer < 0.0;
-  std::string text = format("%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, ", name, times,
-                            times * found.deviation, soft ? "softer" : "stiffer");
-  text += odd >= 0 ? "but its " + dampingText(boom, odd) + ": no oil makes both, the stiffness is doubtful"
-                   : format(
-                         "%s_stiffness_std allows for %.0f %%: %s; the boom's loads are those of the stiffness "
-                         "found",
-                         name, 100.0 * unlike->stiffness_std,
-                         soft ? "air in its oil, hoses, worn pins or a link that gives"
-                              : "its bore or hose volumes in the boom file, or air in the oil of the others");
+  const char* check = odd >= 0 ? "The damping is not that of oil: check friction of its joint"
+                      : soft   ? "Check air in its oil, hoses and pins"
+                               : "Check its bore and hose volumes";
+  std::string text = format("%s: oil is %.2g +- %.1g times %s than in the other cylinders; the loads use that. %s.",
+                            name, times, times * found.deviation, soft ? "softer" : "stiffer", check);
   warnings.push_back({"cylinder stiffness", std::move(text), true});
 }
 
@@ -128,20 +108,20 @@ void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warnin
   constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of what air has
   if (trust.isLate()) {
     warnings.push_back({"pressure stamps",
-                        "cylinder_pressures: not used, their stamps are about " + laterOrEarlier(trust.lateBy()) +
-                            " than the crank's, more than can be allowed for",
+                        "cylinder_pressures: not used, stamps are about " + laterOrEarlier(trust.lateBy()) +
+                            " than the crank's. Correct the stamps.",
                         true});
   } else if (trust.isLost() && greatest < kOfNoCylinder) {
     warnings.push_back(
         {"pressures",
-         format("cylinder_pressures: not used, the greatest of all is %.3g, which holds no boom; must be "
-                "in Pa",
-                greatest),
+         format(
+             "cylinder_pressures: not used, the greatest is %.3g, which holds no boom. Publish gauge pressure in Pa.",
+             greatest),
          true});
   } else if (trust.isLost()) {
     warnings.push_back({"pressures",
-                        format("cylinder_pressures: not used, beside the weight they show a mean load of %.0f N across "
-                               "the tool, where neither rock nor blow makes one, and %.0f N along it",
+                        format("cylinder_pressures: not used, beside the weight they show %.0f N across and %.0f N "
+                               "along the tool. Check units and chambers.",
                                trust.across(), trust.along()),
                         true});
   }
@@ -151,10 +131,11 @@ void warnOfVibration(const BoomFollower& follower, const BoomState* boom, bool i
                      std::vector<Warning>& warnings) {
   const Vibration& vibration = follower.boom().vibration();
   if (vibration.identifies() && vibration.identifier()->channels() == 0 && !imu_lost)
-    warnings.push_back({"boom stiffness",
-                        "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
-                        "cylinder_pressures came: as the boom file gives it",
-                        true});
+    warnings.push_back(
+        {"boom stiffness",
+         "boom_stiffness: identified, but no hull_imu, fast joint_states or cylinder_pressures came. The "
+         "boom file is used; connect one.",
+         true});
   const int odd = modeOfOddDamping(follower.boom());
   warnOfOil(follower.boom(), odd, warnings);
   if (!vibration.identifier()) return;
@@ -172,20 +153,18 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
   if (boom != nullptr && boom->contact_unknown)
     warnings.push_back(
         {"rock",
-         format("hull_imu shows a force on the hull that hammer and oil do not explain, %.2g N root mean square, as "
-                "of rock that bears on it; loose pins and stamps that are off by more than 5 ms look alike. "
-                "Without cylinder_pressures it is in no joint torque and in no section, their deviations are "
-                "widened by it, and the boom's modes are those of the boom file",
-                follower.unexplainedForce()),
+         format(
+             "hull_imu: unexplained force of %.2g N on the hull, probably rock contact. Deviations are inflated; add "
+             "cylinder_pressures.",
+             follower.unexplainedForce()),
          true});
   const bool fault = boom != nullptr && boom->fault,
              runs_away = fault && boom->fault->kind == JointFault::Kind::kRunAway;
   if (follower.runaways() > 0)
-    warnings.push_back(
-        {"boom vibration",
-         "boom: its vibration grew beyond all that the hammer, operator and rock can do and began anew, " +
-             std::to_string(follower.runaways()) + " times; its loads are withheld after that",
-         runs_away});
+    warnings.push_back({"boom vibration",
+                        "boom: the vibration estimate diverged " + std::to_string(follower.runaways()) +
+                            " times; its loads are withheld after that. Check boom file and hull_imu.",
+                        runs_away});
   if (!fault || runs_away) return;
   warnings.push_back(
       {"boom joints",

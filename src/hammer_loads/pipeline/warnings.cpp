@@ -53,16 +53,18 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
   if (counts.refusedFor(Refusal::kMissingJoint) == samples && samples > 0)
     warnings.push_back({"crank joint",
                         "crank joint " + pipeline.settings().crank_joint + ": in none of " + count(samples) +
-                            " messages, must be the joint's name (crank_joint)",
+                            " messages. Set crank_joint to the joint's name.",
                         true, true});
   if (pipeline.crank().angleIsFrozen())
-    warnings.push_back({"frozen", "crank: the angle stands still while the speed goes on", true});
+    warnings.push_back(
+        {"frozen", "crank: the angle stands still while the speed goes on; nothing is published. Check the encoder.",
+         true});
   const std::uint64_t backward = counts.refusedFor(Refusal::kBackward);
   if (isOtherUnit(pipeline, counts)) return;
   if (pipeline.crankTrust().turnsBackward() || backward > counts.accepted)
     warnings.push_back(
         {"backward",
-         "crank: turns backward, " + count(backward) + " samples withheld; crank_direction must have the other sign",
+         "crank: turns backward, " + count(backward) + " samples withheld. Give crank_direction the other sign.",
          true});
 }
 
@@ -73,14 +75,15 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
   constexpr double kJitter = 1e-4;  // [s]: from there on the wrench is some 0.2 % worse
   if (crank.stamps().isSteady())
     warnings.push_back({"stamps",
-                        format("crank stamps repeat or change places and jitter by %.2g ms: samples are taken at equal "
-                               "intervals (crank_stamps); a constant delay is crank_latency_s",
+                        format("crank stamps repeat or change places (jitter %.2g ms): equal intervals are assumed "
+                               "(crank_stamps). State a delay as crank_latency_s.",
                                1e-6 * crank.stamps().fit().scatter()),
                         true});
   const double count = filter.encoder().resolution() / std::sqrt(12.0);
   if (filter.timingNoise() > std::max(kJitter, 0.5 * count / speed_at_work))
     warnings.push_back({"jitter",
-                        format("crank stamps jitter by %.2g ms; stamps of the measurement's instant would be better",
+                        format("crank stamps jitter by %.2g ms, which widens the deviations. Stamp at the instant of "
+                               "measurement.",
                                1e3 * filter.timingNoise()),
                         true});
 }
@@ -153,34 +156,31 @@ std::string rodOf(const Pipeline& pipeline, const CrankFilter& filter) {
       filter.rodEvidence().pickedUp());
 }
 
-/// As it is now; where it comes and goes, that it did.
-std::string howMuchTheyDiffer(const CrankFilter& filter, bool is_lost) {
-  const double all = filter.consistency(), strike = filter.strikeConsistency();
-  if (is_lost || !std::isfinite(all)) return "crank: the estimate is lost before the blow, turn after turn: ";
-  const char* how = std::max(all, strike) > mismatch::kSeen
-                        ? "crank: readings differ from the model by %.2g times the expected variance, before the blow "
-                          "by %.2g: "
-                        : "crank: again and again readings differed from the model by more than the expected variance "
-                          "explains (now by %.2g times, before the blow by %.2g): ";
-  return format(how, all, strike);
-}
-
 /// What contradicts the model, by where in the turn it does. strike: before the blow as well.
 std::string contradictionOf(const Pipeline& pipeline, bool strike) {
   const CrankFilter& filter = pipeline.crank().tracker();
-  const std::string how_much = howMuchTheyDiffer(filter, pipeline.crankTrust().isLost());
+  const double all = filter.consistency(), before = filter.strikeConsistency();
+  if (pipeline.crankTrust().isLost() || !std::isfinite(all))
+    return "crank: the estimate is lost before each blow. Check crank_zero_rad, the hammer file and the coupling of "
+           "the "
+           "encoder.";
   if (!strike)
-    return how_much +
-           "before the blow they agree, what follows it is not in the model, as where a coupling between crank and "
-           "encoder twists (check or stiffen it) or the hull's retainer is struck; the deviations there are too small";
-  const std::string rod =
-      filter.rodEvidence().gives()
-          ? format("just after it they differ by %.2g times, as where rod, pins and bearings give: ",
-                   filter.rodEvidence().pickedUp())
-          : "";
-  return how_much + rod +
-         "check crank_zero_rad, masses and lengths of the hammer file, or check and stiffen the coupling between crank "
-         "and encoder";
+    return format(
+        "crank: readings differ from the model after the blow (%.2g times the variance); deviations are too small. "
+        "Check "
+        "the coupling.",
+        all);
+  if (std::max(all, before) > mismatch::kSeen)
+    return format(
+        "crank: readings differ from the model (%.2g times the variance, before the blow %.2g). Check crank_zero_rad, "
+        "hammer "
+        "file, coupling.",
+        all, before);
+  return format(
+      "crank: readings differed from the model again and again (now %.2g times the variance). Check crank_zero_rad, "
+      "hammer "
+      "file.",
+      all);
 }
 
 /// For readings that contradict the model before the blow.
@@ -189,9 +189,10 @@ bool mostIsWithheld(const SampleCounts& counts) { return counts.refusedFor(Refus
 /// It was withheld, and is no longer.
 std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
   return format(
-      "crank: %s samples withheld while readings contradicted the model before the blow; now they differ from it by "
-      "%.2g times the expected variance, before the blow by %.2g",
-      count(withheld).c_str(), filter.consistency(), filter.strikeConsistency());
+      "crank: %s samples withheld while readings contradicted the model; now they agree (%.2g times the variance). "
+      "Check "
+      "the start.",
+      count(withheld).c_str(), filter.consistency());
 }
 
 /// Of readings and model. gives: the rod does, and that explains them.
@@ -225,12 +226,12 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   if (filter.isLost())
     warnings.push_back({"lost",
                         std::string("crank: the estimate restarts again and again; readings and ") +
-                            (gives ? "a rigid rod" : "hammer file") + " contradict each other",
+                            (gives ? "a rigid rod" : "hammer file") + " contradict each other. Check both.",
                         true});
   if (filter.encoder().contradictsGiven())
     warnings.push_back(
         {"count",
-         format("crank_angle_resolution_rad: %.9g rad is given, the readings have %.9g rad; 0 reads it off",
+         format("crank_angle_resolution_rad: %.9g rad is given, the readings have %.9g rad. Set 0 to read it off.",
                 pipeline.settings().crank_angle_resolution, filter.encoder().resolution()),
          true});
   warnOfStamps(pipeline.crank(), filter, kTwoPi * pipeline.settings().turn_rate, warnings);
