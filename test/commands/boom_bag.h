@@ -110,7 +110,7 @@ class BoomBag : public BagFiles {
     const TemporaryFile given(parameters);
     const Settings settings = *loadFiles(configDirectory(), {kBoomFile, given.path()}, textOf(kUrdf)).value;
     const InputTopics topics{"/hammer/crank", "/joint_states", imu_topic.empty() ? "/hammer/hull_imu" : imu_topic,
-                             "/hammer/cylinder_pressures"};
+                             "/hammer/cylinder_pressures", "/hammer/reference"};
     return recordedLive(path("in.bag"), withInputTopics(settings, topics), imu_topic);
   }
 };

@@ -50,6 +50,8 @@ CREATE TABLE boom_modes(run_id INTEGER, turn INTEGER, mode INTEGER, frequency RE
   damping_ratio REAL, damping_ratio_std REAL, PRIMARY KEY(run_id, turn, mode));
 CREATE TABLE alarms(run_id INTEGER, name TEXT, level INTEGER, unit TEXT, value REAL, value_std REAL, "limit" REAL,
   since_ns INTEGER, until_ns INTEGER, turns INTEGER, PRIMARY KEY(run_id, name, since_ns));
+CREATE TABLE reference(run_id INTEGER, component TEXT, unit TEXT, samples INTEGER, rms REAL, rms_error REAL, bias REAL,
+  scale REAL, correlation REAL, within_two_std REAL, PRIMARY KEY(run_id, component));
 CREATE TABLE traces(run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time REAL, force_x REAL,
   force_z REAL, torque_y REAL, force_z_std REAL, crank_angle REAL);
 """

@@ -85,6 +85,15 @@ class Work(ReportTest):
                          ("WARN", "9\u202f456 \u00b1 91 N", "7", "2"))
         self.assertIn("2023-11-14 22:14:20", row["First"])
 
+    def test_a_measured_load_beside_the_computed_one(self):
+        self.assertNotIn("Measured reference", self.page_after("alone.sqlite").text)
+        page = self.page_after("measured.sqlite", "INSERT INTO reference VALUES(1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, "
+                               "0.985, 0.99871, 0.968)")
+        row = page.table("Computed and measured load")["force_z"]
+        self.assertEqual((row["Samples"], row["Measured, rms"], row["Error, rms"], row["Error, relative"], row["Bias"]),
+                         ("20\u202f000", "4.2 kN", "0.084 kN", "2 %", "\u22120.03 kN"))
+        self.assertEqual((row["Scale"], row["Correlation"], row["Within two"]), ("0.985", "0.99871", "96.8 %"))
+
     def test_median_and_spread(self):
         energies = sorted(e for e, in self.ask("SELECT energy FROM blows"))
         median, spread = self.figures(self.page_of(self.file))["blow energy, median \u00b1 spread"].split("\u00b1")

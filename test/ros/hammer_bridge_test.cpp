@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
 
+#include <cmath>
 #include <map>
 
 #include "hammer_loads/settings/channel_names.h"
@@ -50,14 +51,19 @@ struct SentMessages {
   }
 };
 
-/// A session without speeds and with a drop-out, at this rate; after(time) is called after each sample.
-template <typename After>
-void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
+/// With drop-outs, at this rate.
+simulation::Session sessionAt(double rate) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = 8.0;
   machine.crank.rate = rate;
   machine.crank.drop_outs = {{4.0, 4.4}, {6.0, 6.1}};
-  const simulation::Session session = simulation::recordSession(machine);
+  return simulation::recordSession(machine);
+}
+
+/// A session at this rate; after(time) is called after each sample.
+template <typename After>
+void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
+  const simulation::Session session = sessionAt(rate);
   SentMessages m;
   std::size_t joint = 0;
   for (const auto& r : session.crank) {
@@ -73,7 +79,7 @@ void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
     m.crank.position[0] = r.angle;
     if (speeds) m.crank.velocity = {*r.speed};
     bridge.crank(m.crank, m.crank.header.stamp);
-    after(1e-9 * static_cast<double>(r.stamp - machine.start_stamp));
+    after(1e-9 * static_cast<double>(r.stamp - simulation::workingMo100().start_stamp));
   }
 }
 
@@ -249,6 +255,35 @@ TEST(LoadCycles, BeyondTheFullScaleNameTheirKey) {
   EXPECT_NE(warnings[0].text.find("hull_wrench/force_z ("), std::string::npos) << warnings[0].text;
   EXPECT_NE(warnings[0].text.find("hull_z_full_scale_greatest"), std::string::npos) << warnings[0].text;
   EXPECT_EQ(warnings[0].text.find("least"), std::string::npos) << warnings[0].text;
+}
+
+TEST(Reference, OfASimulatedLoadCellShowsItsGainAndOffset) {
+  constexpr double kGain = 1.05, kOffset = 150.0;
+  const simulation::Session session = sessionAt(1000.0);
+  HammerBridge bridge(test::settingsWith("boom: rigid\n"));
+  geometry_msgs::WrenchStamped cell;
+  std::size_t next = 0;
+  double mean = 0.0;
+  play(bridge, 1000.0, true, [&](double time) {
+    for (; next < session.truth.size() && session.truth[next].time <= time; ++next) {
+      const simulation::CrankTruth& truth = session.truth[next];
+      mean += truth.load.force_z;
+      cell.header.stamp = timeOfNs(simulation::workingMo100().start_stamp + std::llround(1e9 * truth.time));
+      cell.wrench.force.x = kNaN;
+      cell.wrench.force.z = kGain * truth.load.force_z + kOffset;
+      cell.wrench.torque.y = truth.load.torque_y + truth.drive_reaction_y;
+      bridge.reference(cell, cell.header.stamp);
+    }
+  });
+  mean /= static_cast<double>(next);
+  const ReferenceFigures force = bridge.comparison().figures(1), torque = bridge.comparison().figures(2);
+  EXPECT_EQ(bridge.comparison().figures(0).samples, 0U);
+  EXPECT_GT(force.samples, 7000U);
+  EXPECT_NEAR(force.scale, 1.0 / kGain, 5e-3);
+  EXPECT_GT(force.correlation, 0.999);
+  EXPECT_NEAR(force.bias, -(kGain - 1.0) * mean - kOffset, 10.0);
+  EXPECT_NEAR(torque.scale, 1.0, 1e-2);
+  EXPECT_LT(torque.rms_error, 0.03 * torque.rms);
 }
 
 TEST(TurnLoadsMessage, ComesWithEachBlowAndNamesEveryChannel) {

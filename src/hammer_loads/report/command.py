@@ -14,7 +14,7 @@ from report.problem import Problem, one_line
 from report.subjects import notes
 
 TOPICS = {"crank-topic": "the crank's samples", "joint-states-topic": "the boom's joints", "imu-topic": "the hull's IMU",
-          "pressures-topic": "the cylinders' pressures, a prefix"}
+          "pressures-topic": "the cylinders' pressures, a prefix", "reference-topic": "a measured load on the hull"}
 WRONG_USAGE, FAILURE, INTERRUPTED = 2, 1, 130
 HERE = pathlib.Path(__file__).resolve().parent
 

@@ -20,6 +20,7 @@ from report.over_time import MOST_POINTS, over_time
 from report.overview import overview, warnings_list
 from report.pictures import with_own_ids
 from report.quantities import QUANTITIES
+from report.reference import reference
 from report.sensor_health import sensor_health
 from report.series import series_of
 from report.subjects import mixed_machines, subjects_of
@@ -43,7 +44,7 @@ def machine(subject, series, most_points):
             "check": check_section(subject) if subject.database.kind == RECORDING and subject.runs else None,
             "first": utc(subject.first_ns), "last": utc(subject.last_ns), "overview": overview(subject, series), "compared": runs_compared(subject, series),
             "work": over_time(series, most_points), "loads": boom_loads(subject),
-            "health": boom_health(subject), "misuse": misuse(subject), "limits": limits(subject),
+            "health": boom_health(subject), "misuse": misuse(subject), "limits": limits(subject), "reference": reference(subject),
             "cycles": cycle_figures(channels) if channels else None, "costs": costs(subject, channels),
             "budget": budget(subject), "sensor": sensor_health(subject)}
 

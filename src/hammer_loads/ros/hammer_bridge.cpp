@@ -1,6 +1,7 @@
 #include "hammer_loads/ros/hammer_bridge.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "hammer_loads/ros/fill_boom.h"
 #include "hammer_loads/ros/fill_hammer.h"
@@ -66,6 +67,8 @@ void HammerBridge::begin(const Settings& settings) {
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
   pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
   beginCount();
+  reference_ = {};
+  goes_on_ = false;
   limits_.reset();
   if (!settings_.limits.empty())
     limits_.emplace(settings_.limits, life_->machine().channels, pipeline_->counts().misuse);
@@ -115,6 +118,12 @@ void HammerBridge::cylinderPressure(std::size_t cylinder, Chamber chamber, const
   pipeline_->cylinderPressure(stampOf(message.header.stamp), cylinder, chamber, message.fluid_pressure);
 }
 
+void HammerBridge::reference(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) {
+  beginRun(record_time);
+  const geometry_msgs::Wrench& w = message.wrench;
+  reference_.measured(stampOf(message.header.stamp), {w.force.x, w.force.z, w.torque.y});
+}
+
 void HammerBridge::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
   if (!frame_wrenches_) return;
   if (!is_static) beginRun(record_time);
@@ -133,6 +142,9 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   life_->follow(message, record_time);
   if (watch_) watch_();
   last_record_time_ = record_time;
+  const bool continues = std::exchange(goes_on_, result.isPublished()) && pipeline_->crank().step().known() &&
+                         !pipeline_->crank().step().strikes();
+  if (result.isPublished()) reference_.computed(result.stamp, result.wrench, result.deviation.wrench, continues);
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;
   for (const WrenchOutput& output : result.outputs) send(output, record_time);

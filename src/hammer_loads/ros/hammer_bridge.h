@@ -14,6 +14,7 @@
 
 #include "hammer_loads/pipeline/limit_watch.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/pipeline/reference.h"
 #include "hammer_loads/ros/fill_boom.h"
 #include "hammer_loads/ros/frame_wrench.h"
 #include "hammer_loads/ros/hammer_outputs.h"
@@ -34,6 +35,8 @@ class HammerBridge {
   /// Gauge pressure in a chamber of one of cylinders().
   void cylinderPressure(std::size_t cylinder, Chamber chamber, const sensor_msgs::FluidPressure& message,
                         const ros::Time& record_time);
+  /// A measured load on the hull, which outputs are compared with; it changes none of them.
+  void reference(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time);
   /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
   /// No more inputs come: sends the blow that is still being measured, at the record time of the last crank message.
@@ -59,6 +62,7 @@ class HammerBridge {
   const Settings& settings() const { return settings_; }
   const Pipeline& pipeline() const { return *pipeline_; }
   const LifeFlow& life() const { return *life_; }
+  const ReferenceComparison& comparison() const { return reference_; }
   const std::optional<LimitWatch>& limits() const { return limits_; }  ///< nothing where none are given
   const std::optional<FrameWrenches>& frameWrenches() const { return frame_wrenches_; }
 
@@ -83,6 +87,8 @@ class HammerBridge {
   std::optional<LifeFlow> life_;                   ///< of the pipeline, replaced with each count
   life::PieceSink* pieces_{};                      ///< null: none
   std::optional<LimitWatch> limits_;               ///< of the run
+  ReferenceComparison reference_;                  ///< of the run
+  bool goes_on_{};                                 ///< the last crank sample was published
   std::vector<ChainLink> chain_links_;
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
   std::optional<FrameWrenches> frame_wrenches_;

@@ -37,6 +37,7 @@ std::vector<PressureTopic> pressureTopics(const Settings& settings) {
 HammerInputs::HammerInputs(const Settings& settings)
     : joint_states{settings.input_topics.joint_states, std::mem_fn(&HammerBridge::jointStates)},
       hull_imu{settings.input_topics.hull_imu, std::mem_fn(&HammerBridge::hullImu), needsImu(settings.pipeline)},
+      reference{settings.input_topics.reference, std::mem_fn(&HammerBridge::reference)},
       tf_static(transforms(settings, "/tf_static", true)),
       tf(transforms(settings, "/tf", false)),
       crank{settings.input_topics.crank, std::mem_fn(&HammerBridge::crank)} {

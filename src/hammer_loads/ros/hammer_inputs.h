@@ -44,6 +44,7 @@ struct HammerInputs {
   Input<sensor_msgs::JointState> joint_states;
   Input<sensor_msgs::Imu> hull_imu;
   std::deque<Input<sensor_msgs::FluidPressure>> pressures;  ///< one per chamber of the boom's cylinders
+  Input<geometry_msgs::WrenchStamped> reference;
   Input<tf2_msgs::TFMessage> tf_static, tf;
   Input<sensor_msgs::JointState> crank;
 
@@ -68,7 +69,7 @@ struct HammerInputs {
   static void visitSensors(Inputs& inputs, const Visit& visit) {
     visit(inputs.joint_states), visit(inputs.hull_imu);
     for (auto& pressure : inputs.pressures) visit(pressure);
-    visit(inputs.crank);
+    visit(inputs.reference), visit(inputs.crank);
   }
 };
 

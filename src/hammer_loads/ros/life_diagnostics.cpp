@@ -56,4 +56,20 @@ void describeLimits(const LimitWatch& watch, diagnostic_updater::DiagnosticStatu
   }
 }
 
+void describeReference(const ReferenceComparison& reference, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.summary(DiagnosticStatus::OK, reference.received() > 0 ? "compared" : "no measured load");
+  status.add("measured loads", reference.received());
+  status.add("left out", reference.leftOut());
+  for (std::size_t i = 0; i < ReferenceComparison::kComponents; ++i) {
+    const ReferenceFigures figures = reference.figures(i);
+    if (figures.samples == 0) continue;
+    const std::string name = ReferenceComparison::kNames[i],
+                      unit = std::string(" [") + ReferenceComparison::kUnits[i] + "]";
+    status.add(name + ": rms error" + unit, figures.rms_error);
+    status.add(name + ": bias" + unit, figures.bias);
+    status.add(name + ": scale", figures.scale);
+    status.add(name + ": correlation", figures.correlation);
+  }
+}
+
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// A node's report of its load cycles and limits.
+/// A node's report of its load cycles, limits and reference.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -7,6 +7,7 @@
 
 #include "hammer_loads/life/live_ledger.h"
 #include "hammer_loads/pipeline/limit_watch.h"
+#include "hammer_loads/pipeline/reference.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/ros/life_flow.h"
 
@@ -18,6 +19,9 @@ void describeLife(const LifeFlow& life, const life::LiveLedger* ledger,
 
 /// Each limit with value, standard deviation and bounds; WARN or ERROR where one is exceeded.
 void describeLimits(const LimitWatch& watch, diagnostic_updater::DiagnosticStatusWrapper& status);
+
+/// Agreement of the computed loads with the measured ones.
+void describeReference(const ReferenceComparison& reference, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 /// What the ledger cannot take at present, if it is so.
 std::optional<Warning> ledgerWarning(const life::LiveLedger* ledger);

@@ -113,6 +113,12 @@ void LifeTables::writeBudget() {
 void LifeTables::end(const HammerBridge& bridge) {
   writeBudget();
   for (const AlarmRow& row : alarms_) writer_->alarm(run_, row);
+  for (std::size_t i = 0; i < ReferenceComparison::kComponents; ++i) {
+    const ReferenceFigures f = bridge.comparison().figures(i);
+    if (f.samples > 0)
+      writer_->reference(run_, {ReferenceComparison::kNames[i], ReferenceComparison::kUnits[i], f.samples, f.rms,
+                                f.rms_error, f.bias, f.scale, f.correlation, f.within_two_std});
+  }
   std::vector<ChannelRecord> records;
   for (const std::string& name : bridge.outputs().turn_loads.message.channel) records.push_back({name, {}});
   for (const ChannelCycles& counted : cycles_.channel) {

@@ -28,6 +28,7 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   publisher_.add("misuse", this, &NodeDiagnostics::describeMisuse);
   publisher_.add("life", [this](Status& status) { describeLife(bridge_.life(), ledger_, status); });
   if (bridge.limits()) publisher_.add("limits", [this](Status& status) { describeLimits(*bridge_.limits(), status); });
+  publisher_.add("reference", [this](Status& status) { describeReference(bridge_.comparison(), status); });
   publisher_.add("log", [&log](Status& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ =

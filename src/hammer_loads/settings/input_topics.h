@@ -14,6 +14,7 @@ namespace hammer_loads {
 struct InputTopics {
   std::string crank, joint_states, hull_imu;
   std::string cylinder_pressures{};  ///< prefix: its topics are /NAME/bore and /NAME/rod below it, per cylinder
+  std::string reference{};
 };
 
 /// The names of an input.
@@ -26,7 +27,7 @@ struct InputName {
   const char* holds;     ///< type of its messages, and what is in them; lines of a usage text
 };
 
-inline constexpr std::array<InputName, 4> kInputs{{
+inline constexpr std::array<InputName, 5> kInputs{{
     {&InputTopics::crank, "crank", "input_topic_crank", "/hammer/crank", "--crank-topic",
      "sensor_msgs/JointState  angle [rad] and speed [rad/s] of the joint `crank_joint`"},
     {&InputTopics::joint_states, "joint_states", "input_topic_joint_states", "/joint_states", "--joint-states-topic",
@@ -37,6 +38,9 @@ inline constexpr std::array<InputName, 4> kInputs{{
     {&InputTopics::cylinder_pressures, "cylinder_pressures", "input_topic_cylinder_pressures",
      "/hammer/cylinder_pressures", "--pressures-topic",
      "prefix of NAME/bore and NAME/rod, sensor_msgs/FluidPressure per cylinder: gauge [Pa]"},
+    {&InputTopics::reference, "reference", "input_topic_reference", "/hammer/reference", "--reference-topic",
+     "geometry_msgs/WrenchStamped  a measured load on the hull, as in ~hull_wrench, to compare with; NaN: not "
+     "measured"},
 }};
 
 /// Names by `nameOf` of each row of kInputs.

@@ -142,6 +142,18 @@ CREATE TABLE budget(
   source TEXT,     -- [-] key of a parameter, readings, or what a level neglects
   share REAL,      -- [-] share of the source in the variance
   PRIMARY KEY(run_id, quantity, source)) WITHOUT ROWID;
+CREATE TABLE reference(
+  run_id INTEGER,       -- [-] number of the run
+  component TEXT,       -- [-] force_x, force_z or torque_y, as in hull_wrench
+  unit TEXT,            -- [-] unit of the component
+  samples INTEGER,      -- [-] number of measured loads that were compared
+  rms REAL,             -- [component] root mean square of the measured load
+  rms_error REAL,       -- [component] root mean square of the error, computed less measured
+  bias REAL,            -- [component] mean of the error
+  scale REAL,           -- [-] slope of the computed load over the measured one, by least squares
+  correlation REAL,     -- [-] Pearson correlation of both
+  within_two_std REAL,  -- [-] fraction of the errors within two stated standard deviations
+  PRIMARY KEY(run_id, component)) WITHOUT ROWID;
 CREATE TABLE alarms(
   run_id INTEGER,    -- [-] number of the run
   name TEXT,         -- [-] name of the limit, as in Alarm

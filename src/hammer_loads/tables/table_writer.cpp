@@ -99,6 +99,12 @@ void TableWriter::alarm(std::int64_t run, const AlarmRow& row) {
            row.until, row.turns);
 }
 
+void TableWriter::reference(std::int64_t run, const ReferenceRow& row) {
+  Statement(database_, insertSql("reference", 10).c_str())
+      .run(run, row.component, row.unit, row.samples, finite(row.rms), finite(row.rms_error), finite(row.bias),
+           finite(row.scale), finite(row.correlation), finite(row.within_two_std));
+}
+
 void TableWriter::budget(std::int64_t run, const BudgetRow& row) {
   Statement(database_, insertSql("budget", 7).c_str())
       .run(run, row.quantity, life::unitOf(row.quantity), finite(row.value), finite(row.deviation), row.source,

@@ -45,6 +45,13 @@ struct AlarmRow {
   std::uint64_t turns{};
 };
 
+/// One component of the computed load beside a measured one (ReferenceFigures).
+struct ReferenceRow {
+  std::string component, unit;
+  std::uint64_t samples{};
+  double rms{}, rms_error{}, bias{}, scale{}, correlation{}, within_two_std{};
+};
+
 /// Nothing throws: problem() says what went wrong first, and all after it does nothing.
 class TableWriter {
  public:
@@ -60,6 +67,7 @@ class TableWriter {
   void boomCylinder(std::int64_t run, const BoomCylinderRow& row);
   void boomMode(std::int64_t run, const BoomModeRow& row);
   void alarm(std::int64_t run, const AlarmRow& row);
+  void reference(std::int64_t run, const ReferenceRow& row);
   void budget(std::int64_t run, const BudgetRow& row);
   void traces(std::int64_t run, const TurnTraces& traces);
   void run(std::int64_t run, const RunRecord& record);

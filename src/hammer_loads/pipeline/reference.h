@@ -1,0 +1,71 @@
+/// A measured load of the hull beside the computed one.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/stamp.h"
+
+namespace hammer_loads {
+
+/// How one component of the computed load agrees with the measured one.
+struct ReferenceFigures {
+  std::uint64_t samples{};
+  double rms{kNaN};             ///< root mean square of the measured load [N, N m]
+  double rms_error{kNaN};       ///< of computed less measured [N, N m]
+  double bias{kNaN};            ///< mean of computed less measured [N, N m]
+  double scale{kNaN};           ///< slope of the computed load over the measured one, by least squares [-]
+  double correlation{kNaN};     ///< Pearson's [-]
+  double within_two_std{kNaN};  ///< fraction of errors within two of the stated standard deviations [-]
+};
+
+/// Compares at the stamps of the measured load. The computed one is interpolated between two samples; what lies between
+/// samples with a blow or a gap between them, or more than kKept samples back, is left out. Changes no output.
+class ReferenceComparison {
+ public:
+  static constexpr std::size_t kComponents = 3;  ///< force x, force z, torque y
+  static constexpr std::array<const char*, kComponents> kNames{"force_x", "force_z", "torque_y"};
+  static constexpr std::array<const char*, kComponents> kUnits{"N", "N", "Nm"};
+  using Values = std::array<double, kComponents>;
+
+  /// NaN: that component is not measured. The load on the hull as in ~hull_wrench.
+  void measured(StampNs stamp, const Values& values);
+  /// Stamps grow. continues: neither a gap nor a blow since the sample before.
+  void computed(StampNs stamp, const HullWrench& wrench, const HullWrench& deviation, bool continues);
+
+  std::uint64_t received() const { return received_; }  ///< measured loads
+  std::uint64_t leftOut() const { return left_out_; }   ///< of them, those that met no computed load
+  ReferenceFigures figures(std::size_t component) const;
+
+ private:
+  static constexpr std::size_t kKept = 1024;
+  struct Computed {
+    StampNs stamp{};
+    Values load{}, deviation{};
+    bool continues{};
+  };
+  struct Measured {
+    StampNs stamp{};
+    Values load{};
+  };
+  /// Means and sums of products about them, by Welford's recursion.
+  struct Sums {
+    std::uint64_t count{}, within{};
+    double mean_computed{}, mean_measured{}, computed_square{}, measured_square{}, product{};
+    void add(double computed, double measured, double deviation) noexcept;
+  };
+
+  void match();
+  void compare(const Computed& before, const Computed& after, const Measured& measured) noexcept;
+
+  std::deque<Computed> computed_;
+  std::deque<Measured> waiting_;
+  std::array<Sums, kComponents> sums_;
+  std::uint64_t received_{}, left_out_{};
+};
+
+}  // namespace hammer_loads
