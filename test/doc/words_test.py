@@ -1,4 +1,5 @@
 """Words of README.md, CONTRIBUTING.md, doc/ and msg/: vocabulary, beginnings and lengths, captions, links, options."""
+import functools
 import os
 import pathlib
 import re
@@ -182,6 +183,7 @@ def commands_on(path):
             yield cell.split()[0], cell.partition(" ")[2]
 
 
+@functools.lru_cache(maxsize=None)
 def help_of(program):
     done = subprocess.run([str(pathlib.Path(PROGRAMS) / program), "--help"], stdout=subprocess.PIPE, universal_newlines=True,
                           check=True)
