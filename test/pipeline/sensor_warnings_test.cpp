@@ -120,8 +120,7 @@ TEST(SensorWarnings, ACouplingThatTwistsIsWithheldAndNamed) {
   const auto text = std::find_if(heard.warnings.begin(), heard.warnings.end(),
                                  [](const Warning& w) { return std::string(w.key) == "inconsistent"; });
   ASSERT_NE(text, heard.warnings.end());
-  EXPECT_NE(text->text.find("coupling between crank and encoder"), std::string::npos) << text->text;
-  EXPECT_NE(text->text.find("stiffen"), std::string::npos) << text->text;
+  EXPECT_NE(text->text.find("coupling"), std::string::npos) << text->text;
 }
 
 /// The samples end within the time that a blow takes to be measured.

@@ -170,6 +170,12 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
         "Check "
         "the coupling.",
         all);
+  if (filter.rodEvidence().gives())
+    return format(
+        "crank: readings differ from the model (%.2g times the variance): rod or pins may be elastic. Check hammer "
+        "file, "
+        "coupling.",
+        all);
   if (std::max(all, before) > mismatch::kSeen)
     return format(
         "crank: readings differ from the model (%.2g times the variance, before the blow %.2g). Check crank_zero_rad, "
