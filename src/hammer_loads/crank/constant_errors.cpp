@@ -20,17 +20,17 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
 
-constexpr double kNotSeen = 0.6;    // of the zero's prior
-constexpr int kTurnsToSee = 2;      // between the ends of the first and the second turn there is a blow
-constexpr double kSaturates = 6.0;  // a zero that is 8 deg off looks like 1.3 deg in the first turns
-constexpr double kGiven = 0.01;     // standard deviation of a zero as it is given [rad], at constant speed
+constexpr double kNotSeen = 0.6;   // of the zero's prior
+constexpr double kGiven = 0.01;    // standard deviation of a zero as it is given [rad]
+constexpr int kTurnsToSee = 2;     // between the ends of the first and the second turn there is a blow
+constexpr double kUnseen = 0.026;  // standard deviation of a zero before any blow: couplings slip by up to 10 deg [rad]
 
 }  // namespace
 
 bool ConstantErrors::knows() const noexcept { return turns_ >= kTurnsToKnow; }
 
 double ConstantErrors::zeroDeviation() const noexcept {
-  return std::hypot(std::sqrt(moment_(kZero, kZero)), kUnknowns[kZero].unmodelled);
+  return std::hypot(std::sqrt(moment_(kZero, kZero)), knows() ? kUnknowns[kZero].unmodelled : kGiven);
 }
 
 void ConstantErrors::takeSupply(double change) noexcept {
@@ -54,7 +54,13 @@ void ConstantErrors::stepZero(double variance) noexcept {
 ConstantErrors::ConstantErrors(const Vector& prior) noexcept : prior_(prior) {
   fit_.begin(prior_);
   considerPriors();
-  moment_(kZero, kZero) = square(prior_[kZero]);
+  moment_(kZero, kZero) = square(kUnseen);
+  root_ = covarianceRoot(moment_);
+}
+
+/// Standard deviation of the zero before the estimate is known: nothing in the readings shows the zero before a blow.
+void ConstantErrors::considerZeroOfFirstTurns() noexcept {
+  moment_(kZero, kZero) = stepped_ + square(turns_ < kTurnsToSee ? kUnseen : zeroSeen());
   root_ = covarianceRoot(moment_);
 }
 
@@ -84,12 +90,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
     fit_.begin(prior_);
     beside_.setZero();
   }
-  if (turns_ < kTurnsToKnow) {
-    if (turns_ >= kTurnsToSee)
-      moment_(kZero, kZero) = stepped_ + square(std::min(prior_[kZero], kSaturates * std::abs(zero_looks_)));
-    root_ = covarianceRoot(moment_);
-    return;
-  }
+  if (turns_ < kTurnsToKnow) return considerZeroOfFirstTurns();
   for (int i = 0; i < kTable; ++i)
     if (kUnknowns[static_cast<std::size_t>(i)].use == Unknown::Use::kTakenUp)
       covariance(i, i) = 1.0 / fit_.information()(i, i);

@@ -72,8 +72,7 @@ class ConstantErrors {
   double zeroSeen() const noexcept { return zero_is_seen_ ? zero_looks_ : 0.0; }
   /// zeroSeen() whether or not a clean machine may show as much: an elastic rod shows it.
   double zeroLooks() const noexcept { return zero_looks_; }
-  /// Enough turns have been seen for estimate() and deviation(). Before, moment() has the prior: nothing in the
-  /// readings shows the zero before a blow.
+  /// Enough turns have been seen for estimate() and deviation().
   bool knows() const noexcept;
   /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
   /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().
@@ -103,6 +102,7 @@ class ConstantErrors {
     return all;
   }
   void considerPriors() noexcept;
+  void considerZeroOfFirstTurns() noexcept;
 
   Vector prior_;
   ConstantFit<kTable> fit_;

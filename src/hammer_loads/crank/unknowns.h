@@ -74,7 +74,7 @@ inline std::string ofEccentricity(double amount, double deviation) {
 /// 0.5 deg on the wrench is some 0.9 % worse. Of speeds, what a drive is off that filters: with a quarter of it the
 /// first second of a lag of 10 ms costs twice what it may.
 inline constexpr std::array<Unknown, 7> kUnknowns{{
-    {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.08, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
+    {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
      unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero, true},
     {"eccentricity", "crank_eccentricity_1_rad", Unknown::Use::kSeen, 0.05, 2e-3,
      [](const ReadingPlace& at) { return roughSine(at.offset); },
