@@ -227,21 +227,21 @@ using Chambers = std::array<double, 3>;
 
 INSTANTIATE_TEST_SUITE_P(
     Sensors, Mistaken,
-    testing::Values(Mistake{"bar", "pressures", "must be in Pa", ofPressures([](Chambers& bore, Chambers& rod) {
+    testing::Values(Mistake{"bar", "pressures", "gauge pressure in Pa", ofPressures([](Chambers& bore, Chambers& rod) {
                               for (Chambers* p : {&bore, &rod})
                                 for (double& one : *p) one *= 1e-5;
                             })},
-                    Mistake{"chambers of all exchanged", "pressures", "across the tool",
+                    Mistake{"chambers of all exchanged", "pressures", "N across and",
                             ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore, rod); })},
-                    Mistake{"chambers of the boom's exchanged", "pressures", "across the tool",
+                    Mistake{"chambers of the boom's exchanged", "pressures", "N across and",
                             ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore[0], rod[0]); })},
-                    Mistake{"chambers of the hammer's exchanged", "pressures", "across the tool",
+                    Mistake{"chambers of the hammer's exchanged", "pressures", "N across and",
                             ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore[2], rod[2]); })},
-                    Mistake{"boom and arm exchanged", "pressures", "across the tool",
+                    Mistake{"boom and arm exchanged", "pressures", "N across and",
                             ofPressures([](Chambers& bore, Chambers& rod) {
                               std::swap(bore[0], bore[1]), std::swap(rod[0], rod[1]);
                             })},
-                    Mistake{"in g", "imu", "in g, must be", ofImu([](Chambers& force, Chambers&) {
+                    Mistake{"in g", "imu", "is in g; publish", ofImu([](Chambers& force, Chambers&) {
                               for (double& one : force) one /= 9.80665;
                             })},
                     Mistake{"upside down", "imu", "turned by 1",
