@@ -48,7 +48,7 @@ CREATE TABLE boom_cylinders(run_id INTEGER, turn INTEGER, cylinder TEXT, joint_a
   stiffness_ratio_std REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder));
 CREATE TABLE boom_modes(run_id INTEGER, turn INTEGER, mode INTEGER, frequency REAL, frequency_std REAL,
   damping_ratio REAL, damping_ratio_std REAL, PRIMARY KEY(run_id, turn, mode));
-CREATE TABLE alarms(run_id INTEGER, name TEXT, level INTEGER, unit TEXT, value REAL, value_std REAL, "limit" REAL,
+CREATE TABLE alarms(run_id INTEGER, name TEXT, level INTEGER, unit TEXT, value REAL, value_std REAL, limit_value REAL,
   since_ns INTEGER, until_ns INTEGER, turns INTEGER, PRIMARY KEY(run_id, name, since_ns));
 CREATE TABLE reference(run_id INTEGER, component TEXT, unit TEXT, samples INTEGER, rms REAL, rms_error REAL, bias REAL,
   scale REAL, correlation REAL, within_two_std REAL, PRIMARY KEY(run_id, component));

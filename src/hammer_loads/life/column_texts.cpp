@@ -15,7 +15,7 @@ CREATE TABLE columns(
 )";
 
 std::vector<ColumnText> columnTexts(const std::string& schema) {
-  static const std::regex begins(R"(CREATE TABLE (\w+)\()"), column(R"re(\s+"?(\w+)"? .*-- \[([^\]]+)\] (.+))re");
+  static const std::regex begins(R"(CREATE TABLE (\w+)\()"), column(R"re(\s+(\w+) .*-- \[([^\]]+)\] (.+))re");
   std::vector<ColumnText> texts;
   std::istringstream lines(schema);
   std::string table;

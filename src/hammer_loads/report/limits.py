@@ -9,7 +9,7 @@ def alarms(subject):
     """{(name, level): rows of the table alarms}, most severe first."""
     if "alarms" not in subject.database.tables() or not subject.runs:
         return {}
-    rows = subject.frame('name, level, unit, value, value_std, "limit", since_ns, turns FROM alarms WHERE {runs}',
+    rows = subject.frame('name, level, unit, value, value_std, limit_value AS "limit", since_ns, turns FROM alarms WHERE {runs}',
                          text=["name", "unit"])
     return {key: group for key, group in rows.groupby(["name", "level"])}
 

@@ -161,7 +161,7 @@ CREATE TABLE alarms(
   unit TEXT,         -- [-] unit of the limit
   value REAL,        -- [limit] value farthest beyond the limit
   value_std REAL,    -- [limit] standard deviation of the value; NULL: not known
-  "limit" REAL,      -- [limit] limit that was exceeded
+  limit_value REAL,  -- [limit] limit that was exceeded
   since_ns INTEGER,  -- [ns] stamp of the blow that ended the first revolution of this level
   until_ns INTEGER,  -- [ns] stamp of the blow that ended the last revolution of this level
   turns INTEGER,     -- [-] number of judged revolutions from the first to the last
