@@ -22,7 +22,6 @@ constexpr double kClip = gate::kVeryRare;   // root mean squares: a stamp furthe
 constexpr double kExact = 0.01;             // of the interval: stamps without scatter have this much
 constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for certain
 constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
-constexpr double kOneStamp = 0.3;           // of it that one stamp shows: drivers are late now and then, by 80 ms
 constexpr double kNoLoss = 3.0;             // likewise that none was: 20 to 1
 constexpr double kLeastScatter = 0.15;      // of the interval: a run's beginning is not known better
 constexpr double kGrown = 2.0;              // scatter about the line over that of white jitter with such steps
@@ -96,12 +95,10 @@ void SteadyClockFit::watchLost(double residual) noexcept {
   if (runs_ >= kWarm && interval_ > 0.0) {
     const double scatter = std::max(std::sqrt(start_variance_), kLeastScatter * interval_);
     const double per_interval = interval_ / square(scatter);
-    const double most = inBursts() ? kEvidence + 1.0 : kOneStamp * kEvidence;  // the last one of a burst waited least
-    const auto by = [&](double late) { return std::min(per_interval * (late - 0.5 * interval_), most); };
-    lost_evidence_ = std::max(0.0, lost_evidence_ + by(off));
-    gained_evidence_ = std::max(0.0, gained_evidence_ + by(-off));
+    lost_evidence_ = std::max(0.0, lost_evidence_ + per_interval * (off - 0.5 * interval_));
+    gained_evidence_ = std::max(0.0, gained_evidence_ + per_interval * (-off - 0.5 * interval_));
     double shift = 0.0;
-    if (inBursts() && off > kGap * scatter + 2.0 * interval_)
+    if (off > kGap * scatter + 2.0 * interval_)
       shift = std::nearbyint(off / interval_);
     else if (lost_evidence_ > kEvidence)
       shift = std::max(1.0, std::nearbyint(off / interval_));
