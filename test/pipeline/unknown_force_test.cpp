@@ -33,10 +33,10 @@ TEST(UnknownForce, IsZeroForAnExactRod) {
   HammerParameters p = test::mo100Parameters();
   p.rod_std = {};
   const Mechanism exact = test::mechanismOf(p);
-  EXPECT_TRUE(struck(exact, 2000.0).squares(linksAtOffset(exact, 0.3)).isZero(0.0));
+  EXPECT_TRUE(struck(exact, 2000.0).errors(linksAtOffset(exact, 0.3)).squares.isZero(0.0));
   p.rod_std = usualDeviation(p.rod);
   const Mechanism usual = test::mechanismOf(p);
-  EXPECT_GT(struck(usual, 2000.0).squares(linksAtOffset(usual, 0.3)).minCoeff(), 0.0);
+  EXPECT_GT(struck(usual, 2000.0).errors(linksAtOffset(usual, 0.3)).squares.minCoeff(), 0.0);
 }
 
 /// F = F0 + (dF/dpsi'') d/I, by a difference of the wrench of level rocker at two accelerations of the crank.
@@ -51,7 +51,7 @@ TEST(UnknownForce, LoadsTheHullAsTheRockersAcceleration) {
     const HullWrench slow = hullWrench(model, CrankMotion{angle, 10.0, 0.0}, HullMotion{}),
                      fast = hullWrench(model, CrankMotion{angle, 10.0, 100.0}, HullMotion{});
     const Eigen::Vector3d by_acceleration = (vectorOf(fast) - vectorOf(slow)) / (100.0 * links.rocker.u);
-    const UnknownForce::Squares squares = struck(mechanism, 2000.0).squares(links);
+    const UnknownForce::Squares squares = struck(mechanism, 2000.0).errors(links).squares;
     for (const auto source : {UnknownForce::kFriction, UnknownForce::kDamping}) {
       const double acceleration = std::sqrt(squares(2, source)) / std::abs(by_acceleration[2]);
       EXPECT_GT(acceleration, 1.0);
@@ -72,13 +72,13 @@ TEST(UnknownForce, FollowsWhatTheFileLeavesOpen) {
   const Mechanism measured = test::mechanismOf(p);
   const LinkMotion links = linksAtOffset(usual, 0.3);
   const auto clearanceOf = [&](const Mechanism& mechanism) {
-    return struck(mechanism, 2000.0).squares(links).col(UnknownForce::kClearance).eval();
+    return struck(mechanism, 2000.0).errors(links).squares.col(UnknownForce::kClearance).eval();
   };
   EXPECT_LT(clearanceOf(measured)[1], 0.2 * clearanceOf(usual)[1]);
   UnknownForce force = struck(usual, 2000.0);
-  const double after_blow = force.squares(links).rowwise().sum()[1];
+  const double after_blow = force.errors(links).squares.rowwise().sum()[1];
   for (int i = 0; i < 200; ++i) force.follow(1e-3, false);
-  EXPECT_LT(force.squares(links).rowwise().sum()[1], 1e-3 * after_blow);
+  EXPECT_LT(force.errors(links).squares.rowwise().sum()[1], 1e-3 * after_blow);
 }
 
 /// Shares of the samples within two deviations, by class of crank angle, and root mean squares of Fz [N].

@@ -16,10 +16,10 @@ class TestReport(ReportTest):
     ROWS = [("blow/energy", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy", 900.0, 20.0, "readings", 0.36)]
 
     def command(self, *arguments):
-        certificate = self.directory / "test_report"
-        if not certificate.exists():
-            certificate.symlink_to(REPORT)
-        return subprocess.run([str(certificate), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        link = self.directory / "test_report"
+        if not link.exists():
+            link.symlink_to(REPORT)
+        return subprocess.run([str(link), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               encoding="utf-8")
 
     def test_an_uncertainty_has_two_digits_and_the_value_as_many_places(self):

@@ -257,7 +257,7 @@ TEST(LoadCycles, BeyondTheFullScaleNameTheirKey) {
   EXPECT_EQ(warnings[0].text.find("least"), std::string::npos) << warnings[0].text;
 }
 
-TEST(Reference, OfASimulatedLoadCellShowsItsGainAndOffset) {
+TEST(Reference, ShowsGainAndOffsetOfASimulatedLoadCell) {
   constexpr double kGain = 1.05, kOffset = 150.0;
   const simulation::Session session = sessionAt(1000.0);
   HammerBridge bridge(test::settingsWith("boom: rigid\n"));

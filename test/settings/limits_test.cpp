@@ -34,7 +34,7 @@ TEST(Limits, AreNoneWithoutAFile) {
   EXPECT_TRUE(limitsFrom("limits_file: none").value->limits.empty());
 }
 
-TEST(Limits, OfTheShippedExampleAreThoseOfItsComments) {
+TEST(Limits, ShippedExampleHasTheLimitsOfItsComments) {
   const Checked<Settings> settings = limitsFrom("limits_file: " + configDirectory() + "/limits.yaml");
   ASSERT_TRUE(settings.value) << settings.problems.front();
   ASSERT_EQ(settings.value->limits.size(), 5U);

@@ -29,7 +29,7 @@ LimitWatch::LimitWatch(std::vector<Limit> limits, std::vector<life::LedgerChanne
       ++channel_[i];
 }
 
-/// Damage of the cycles that a new count has more than the one before. A shorter count began anew.
+/// Damage of the cycles that a new count has more than the one before. A shorter count is a new one.
 void LimitWatch::followDamage(const life::LifePiece& counted) {
   const std::uint64_t before = std::exchange(counted_until_, counted.duration);
   if (counted.duration == before) return;

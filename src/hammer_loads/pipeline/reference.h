@@ -29,7 +29,6 @@ class ReferenceComparison {
  public:
   static constexpr std::size_t kComponents = 3;  ///< force x, force z, torque y
   static constexpr std::array<const char*, kComponents> kNames{"force_x", "force_z", "torque_y"};
-  static constexpr std::array<const char*, kComponents> kUnits{"N", "N", "Nm"};
   using Values = std::array<double, kComponents>;
 
   /// NaN: that component is not measured. The load on the hull as in ~hull_wrench.

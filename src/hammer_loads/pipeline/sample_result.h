@@ -75,7 +75,7 @@ struct SampleResult {
   /// products of [N], [N], [N m].
   Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
   HullWrench rod_ring;  ///< part of the deviation that the rod makes, whose spring the level leaves out
-  UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< likewise, that no level has: squares, by source
+  UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< of forces that no level has: squares, by source
   bool rod_followed{};      ///< else rod_ring is a root mean square over a phase that is not known
   HullDeviation deviation;  ///< at the sample, with what the hull's motion adds
   double consistency{};     ///< CrankFilter::consistency()

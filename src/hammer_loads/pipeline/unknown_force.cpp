@@ -49,30 +49,22 @@ double UnknownForce::contacts() const noexcept {
   return kContacts * std::sqrt(2.0 * stiffness_ * clearance_ * greatest().force);
 }
 
-UnknownForce::Now UnknownForce::now(const LinkMotion& links) const noexcept {
+UnknownForce::Errors UnknownForce::errors(const LinkMotion& links) const noexcept {
   const HammerParameters& p = mechanism_->parameters();
   const double lasts = std::exp(-square(since_ / kLasts)), contacts = lasts * this->contacts();
-  return {contacts,
-          {kContactsLever * p.lengths.rocker * contacts, friction_radius_ * held_,
-           kOfDamping * damping_ * lasts * greatest().moment},
-          vectorOf(rockerWrench(*mechanism_, links, 1.0 / p.rocker_inertia_about_pivot))};
-}
-
-UnknownForce::Squares UnknownForce::squares(const LinkMotion& links) const noexcept {
-  const Now now = this->now(links);
-  Squares squares = now.by_moment.cwiseAbs2().replicate<1, kSources>();
-  for (std::size_t i = 0; i < kSources; ++i) squares.col(static_cast<Eigen::Index>(i)) *= square(now.on_rocker[i]);
-  squares.col(kClearance).head<2>().array() += square(now.contacts);
-  return squares;
-}
-
-Eigen::Matrix3d UnknownForce::covariance(const LinkMotion& links) const noexcept {
-  const Now now = this->now(links);
+  const double on_rocker[] = {kContactsLever * p.lengths.rocker * contacts, friction_radius_ * held_,
+                              kOfDamping * damping_ * lasts * greatest().moment};
+  const Eigen::Vector3d by_moment = vectorOf(rockerWrench(*mechanism_, links, 1.0 / p.rocker_inertia_about_pivot));
+  Errors errors{by_moment.cwiseAbs2().replicate<1, kSources>(), {}};
   double moment = 0.0;
-  for (const double one : now.on_rocker) moment += square(one);
-  Eigen::Matrix3d covariance = moment * now.by_moment * now.by_moment.transpose();
-  covariance.diagonal().head<2>().array() += square(now.contacts);
-  return covariance;
+  for (Eigen::Index i = 0; i < kSources; ++i) {
+    errors.squares.col(i) *= square(on_rocker[i]);
+    moment += square(on_rocker[i]);
+  }
+  errors.squares.col(kClearance).head<2>().array() += square(contacts);
+  errors.covariance = moment * by_moment * by_moment.transpose();
+  errors.covariance.diagonal().head<2>().array() += square(contacts);
+  return errors;
 }
 
 /// Friction by the rod's greatest force.

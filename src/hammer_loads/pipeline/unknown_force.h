@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 
 #include "hammer_loads/hammer/hammer_model.h"
 
@@ -36,9 +35,12 @@ class UnknownForce {
   void follow(double step, bool struck) noexcept;
   /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;
-  Squares squares(const LinkMotion& links) const noexcept;
-  /// Of all sources together; its diagonal is the sum of the squares.
-  Eigen::Matrix3d covariance(const LinkMotion& links) const noexcept;
+  /// Errors of the load: squares by source, and the covariance of all sources, whose diagonal is their sum.
+  struct Errors {
+    Squares squares;
+    Eigen::Matrix3d covariance;
+  };
+  Errors errors(const LinkMotion& links) const noexcept;
   /// Standard deviation of a force on the hull just after a blow [N], all sources together; name of the largest source
   /// and the key of the hammer file that describes it.
   struct Largest {
@@ -60,13 +62,6 @@ class UnknownForce {
   }
   /// Force of the contacts while D is 1 [N].
   double contacts() const noexcept;
-  /// Standard deviations now: of the force of the contacts [N], of moments on the rocker [N m].
-  struct Now {
-    double contacts{};
-    std::array<double, kSources> on_rocker{};
-    Eigen::Vector3d by_moment;  ///< wrench of a moment of 1 N m
-  };
-  Now now(const LinkMotion& links) const noexcept;
 
   const Mechanism* mechanism_;
   double clearance_{}, friction_radius_{}, damping_{};  ///< c [m], rho [m], zeta [-]

@@ -38,6 +38,11 @@ def recordings(bags, process_bag=None):
     return found if whole else [[bag] for bag in bags]
 
 
+def process(splits, options, database, **streams):
+    """The process_bag that has made the database, or that could not."""
+    return subprocess.run([program(), "--no-bag", *splits, "--db", database, *options], stdout=subprocess.DEVNULL, **streams)
+
+
 def database_of(splits, options, folder):
     """Path of a new database in the folder, named as the recording's first bag; what process_bag says goes to stderr.
     options: of process_bag, for parameters and topics."""
@@ -47,7 +52,7 @@ def database_of(splits, options, folder):
     place = pathlib.Path(folder) / str(len(os.listdir(folder)))
     place.mkdir()
     database = str(place / (pathlib.Path(splits[0]).stem + ".sqlite"))
-    done = subprocess.run([program(), "--no-bag", *splits, "--db", database, *options], stdout=subprocess.DEVNULL)
+    done = process(splits, options, database)
     if done.returncode != 0:
         raise Problem(f"{splits[0]}: {PROGRAM} ended with code {done.returncode}, nothing is written")
     return database

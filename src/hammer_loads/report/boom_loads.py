@@ -34,7 +34,7 @@ def picture_of(group, unit, channels):
     for name, colour in zip(channels, CURVES):
         points = Series(channels[name].dropna(subset=["x", "middle"])).thinned(MOST_POINTS)
         picture.curve((points[BAND] * factor).assign(x=points.x / seconds), colour, len(channels))
-        keys.append((f"line {colour}", in_words(name.rpartition("/")[2])))
+        keys.append((f"line {colour}", name.rpartition("/")[2]))
     return picture.figure(group, keys)
 
 

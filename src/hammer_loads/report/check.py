@@ -1,5 +1,6 @@
 """Whether a recording can be used: a line for each thing that must be right, with ok, look or wrong, and what to do."""
 import json
+import os
 import re
 import subprocess
 import tempfile
@@ -18,17 +19,17 @@ VERDICT = {OK: "usable", LOOK: "usable, with reservations", WRONG: "do not use b
 
 # Name, words by which a warning belongs to it, words of those that make results wrong.
 CHECKS = [
-    ("hammer file", r"hammer file was given|no hammer file", r""),
-    ("unit", r"degrees|in turns|in counts|in rad/s|in radians|of another unit|revolutions", r""),
-    ("direction", r"turns backward|crank_direction|sign", r""),
+    ("hammer file", r"hammer file was given|no hammer file", ""),
+    ("unit", r"degrees|in turns|in counts|in rad/s|in radians|of another unit|revolutions", ""),
+    ("direction", r"turns backward|crank_direction|sign", ""),
     ("zero", r"crank_zero_rad|slipped", r"withheld|contradict|slipped"),
     ("readings", r"stands still|angle_resolution|crank angles are|crank speeds|crank joint|crank_joint|no message on .*crank",
      r"stands still|crank_joint|no message"),
     ("stamps", r"stamp|lost .* messages|several publishers", r"do not advance"),
-    ("hull pitch", r"hull pitch|pitch_signs|pitch_offset", r""),
-    ("joints", r"pitch_joints|boom joints|joint_states|joint", r""),
-    ("hull IMU", r"hull_imu|imu-topic", r""),
-    ("pressures", r"pressure|cylinder", r""),
+    ("hull pitch", r"hull pitch|pitch_signs|pitch_offset", ""),
+    ("joints", r"pitch_joints|boom joints|joint_states|joint", ""),
+    ("hull IMU", r"hull_imu|imu-topic", ""),
+    ("pressures", r"pressure|cylinder", ""),
     ("consistency", r"differ from the model|differed from the model|contradict|restarts again|estimate is lost|elastic|unknown force|boom",
      r"withheld|contradict|restarts again|estimate is lost"),
 ]
@@ -59,8 +60,8 @@ def parameter(subject, key):
     return rows[0][0] if rows else None
 
 
-def judged(value, limit, worst=LOOK):
-    return UNKNOWN if is_nothing(value) else OK if value <= limit else worst
+def judged(value, limit):
+    return UNKNOWN if is_nothing(value) else OK if value <= limit else LOOK
 
 
 def of_blows(subject):
@@ -100,9 +101,10 @@ def figures(subject):
     }
 
 
-def check_rows(subject, texts):
-    """[name, status, finding, action] of a recording; texts: its warnings."""
-    warned, rows = sorted_warnings(texts), []
+def check_rows(subject):
+    """[name, status, finding, action] of a recording."""
+    warned = sorted_warnings(text for text, in subject.database.rows("SELECT text FROM warnings ORDER BY place"))
+    rows = []
     for name, (status, finding) in figures(subject).items():
         said, words = warned.get(name, (OK, []))
         status = max(status, said, key=ORDER.index)
@@ -111,8 +113,8 @@ def check_rows(subject, texts):
 
 
 def refused_rows(lines):
-    """Of a recording that process_bag gives no result of: what its lines on stderr are about."""
-    texts = [re.sub(r"^(error|warning): ", "", line) for line in lines]
+    """Rows of a recording that process_bag refused; lines: of its stderr."""
+    texts = [re.sub(r"^(error|warning): ", "", one_line(line)) for line in lines]
     rows = [[name, WRONG, words[0], REMEDY.get(name, "")] for name, (_, words) in sorted_warnings(texts).items()]
     return rows or [["recording", WRONG, "no result", "see process_bag IN.bag"]]
 
@@ -124,19 +126,14 @@ def verdict(rows):
 
 def check_section(subject):
     """For the top of a machine's page."""
-    rows = check_rows(subject, [text for text, in subject.database.rows("SELECT text FROM warnings ORDER BY place")])
+    rows = check_rows(subject)
     return {"verdict": verdict(rows), "table": Table("Check of the recording", ["Check", "Status", "Finding", "What to do"], rows, "words")}
 
 
 def rows_of(splits, options, folder):
-    place = f"{folder}/{abs(hash(splits[0]))}.sqlite"
-    done = subprocess.run([bags.program(), "--no-bag", *splits, "--db", place, *options], stdout=subprocess.DEVNULL,
-                          stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
-    lines = [one_line(line) for line in done.stderr.splitlines() if line.startswith(("error:", "warning:")) or done.returncode]
-    if done.returncode:
-        return refused_rows(lines)
-    subject = subjects_of(Database(place))[0]
-    return check_rows(subject, [text for text, in subject.database.rows("SELECT text FROM warnings ORDER BY place")])
+    database = os.path.join(folder, f"{len(os.listdir(folder))}.sqlite")
+    done = bags.process(splits, options, database, stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
+    return refused_rows(done.stderr.splitlines()) if done.returncode else check_rows(subjects_of(Database(database))[0])
 
 
 def as_text(name, rows):

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hammer_loads/life/channel_unit.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/stamp.h"
 
@@ -64,7 +65,7 @@ void describeReference(const ReferenceComparison& reference, diagnostic_updater:
     const ReferenceFigures figures = reference.figures(i);
     if (figures.samples == 0) continue;
     const std::string name = ReferenceComparison::kNames[i],
-                      unit = std::string(" [") + ReferenceComparison::kUnits[i] + "]";
+                      unit = " [" + life::unitOf(ReferenceComparison::kNames[i]) + "]";
     status.add(name + ": rms error" + unit, figures.rms_error);
     status.add(name + ": bias" + unit, figures.bias);
     status.add(name + ": scale", figures.scale);

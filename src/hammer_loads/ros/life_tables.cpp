@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/life/channel_unit.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/settings/channel_names.h"
 
@@ -116,8 +117,8 @@ void LifeTables::end(const HammerBridge& bridge) {
   for (std::size_t i = 0; i < ReferenceComparison::kComponents; ++i) {
     const ReferenceFigures f = bridge.comparison().figures(i);
     if (f.samples > 0)
-      writer_->reference(run_, {ReferenceComparison::kNames[i], ReferenceComparison::kUnits[i], f.samples, f.rms,
-                                f.rms_error, f.bias, f.scale, f.correlation, f.within_two_std});
+      writer_->reference(run_, {ReferenceComparison::kNames[i], life::unitOf(ReferenceComparison::kNames[i]), f.samples,
+                                f.rms, f.rms_error, f.bias, f.scale, f.correlation, f.within_two_std});
   }
   std::vector<ChannelRecord> records;
   for (const std::string& name : bridge.outputs().turn_loads.message.channel) records.push_back({name, {}});

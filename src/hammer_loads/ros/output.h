@@ -40,8 +40,8 @@ class Output {
   const std::string& name() const { return name_; }
   Delivery delivery() const { return delivery_; }
   LoggedOutputs loggedFrom() const { return logged_from_; }
-  /// What is attached takes every message from now on, in the order of attaching; with `wants`, those for which it
-  /// holds.
+  /// Attaches a receiver of every message from now on, or of those for which `wants` holds. Receivers are called in the
+  /// order of attaching.
   void attach(Deliver deliver, Wants wants = {}) { attached_.push_back({std::move(deliver), std::move(wants)}); }
   void detachAll() { attached_.clear(); }
   bool isWanted() const {
