@@ -80,7 +80,6 @@ std::vector<std::string> BagLog::start() {
   if (!problems.empty()) return problems;
   const Checked<std::string> directory = findLogDirectory(settings_.directory);
   if (!directory.value) return directory.problems;
-  if (std::string problem = LogFile::prepare(); !problem.empty()) return refuse(LogState::kFailed, std::move(problem));
 
   const std::uint64_t free = disk_.free_space(*directory.value);
   if (free < settings_.min_free_space) {

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "hammer_loads/log/bag_log.h"
-#include "hammer_loads/ros/bag_writer.h"
+#include "hammer_loads/log/bag_writer.h"
 #include "hammer_loads/ros/output.h"
 
 namespace hammer_loads {

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "hammer_loads/ros/bag_record.h"
+#include "hammer_loads/log/bag_record.h"
 
 namespace hammer_loads {
 namespace {

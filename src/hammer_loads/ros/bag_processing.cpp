@@ -8,7 +8,7 @@
 #include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/bag_warnings.h"
-#include "hammer_loads/ros/bag_writer.h"
+#include "hammer_loads/log/bag_writer.h"
 #include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/yaml_value.h"
 

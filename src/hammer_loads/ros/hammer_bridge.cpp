@@ -11,6 +11,9 @@
 namespace hammer_loads {
 namespace {
 
+constexpr std::int64_t kMechanismPeriod =
+    10'000'000;  // for display: robot_state_publisher sends 50 poses per second [ns]
+
 /// Tip of the boom's chain.
 std::string hullFrame(const Settings& settings) {
   return settings.boom ? settings.boom->parameters().chain.tip : settings.pipeline.hull_frame;
@@ -150,11 +153,17 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
   if (!result.isPublished()) return;
   if (result.boom != nullptr && !result.boom->fault) sendBoom(record_time);
+  sendMechanism(result, record_time);
+  outputs_.pin_forces.send(record_time, [&](PinForces& m) { fillPinForces(result, m); });
+}
+
+void HammerBridge::sendMechanism(const SampleResult& result, const ros::Time& record_time) {
+  const std::int64_t period = result.stamp / kMechanismPeriod;
+  if (std::exchange(mechanism_period_, period) == period) return;
   outputs_.mechanism.send(record_time, [&](sensor_msgs::JointState& m) {
     fillMechanism(result, m);
     if (cylinder_joints_ && result.boom != nullptr) cylinder_joints_->fill(pipeline_->boom()->boom(), m);
   });
-  outputs_.pin_forces.send(record_time, [&](PinForces& m) { fillPinForces(result, m); });
 }
 
 void HammerBridge::end() {

@@ -78,6 +78,8 @@ class HammerBridge {
   void beginRun(const ros::Time& record_time);
   void send(const WrenchOutput& output, const ros::Time& record_time);
   void sendBoom(const ros::Time& record_time);
+  /// The first sample of each hundredth of a second.
+  void sendMechanism(const SampleResult& result, const ros::Time& record_time);
   void send(const TurnEnd& end, const ros::Time& record_time);
 
   Settings settings_;
@@ -94,7 +96,8 @@ class HammerBridge {
   std::optional<FrameWrenches> frame_wrenches_;
   std::function<void()> watch_;
   bool run_begun_{};
-  ros::Time last_record_time_;  ///< of a crank message
+  ros::Time last_record_time_;         ///< of a crank message
+  std::int64_t mechanism_period_{-1};  ///< of the last ~mechanism message, counted from the epoch
 };
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-#include "hammer_loads/ros/bag_writer.h"
+#include "hammer_loads/log/bag_writer.h"
 
 #include <fcntl.h>
 #include <roslz4/lz4s.h>
@@ -8,14 +8,15 @@
 #include <cerrno>
 #include <system_error>
 
-#include "hammer_loads/ros/bag_record.h"
+#include "hammer_loads/log/bag_record.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr std::size_t kChunk = 768 * 1024;  // as rosbag's
 constexpr std::uint32_t kBagHeader = 4096;  // padded, so that it can be written again at the end
 constexpr int kBlock = 6;                   // of LZ4, as rosbag's: 1 MB
+constexpr std::uint64_t kRecord = 128;      // largest header of a record without texts
+constexpr std::uint64_t kIndexEntry = 12;   // time and offset of one message
 
 [[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
 
@@ -36,13 +37,18 @@ std::string headerOf(BagRecord::Kind kind) {
   return header;
 }
 
+/// Largest size of so many bytes after compression.
+std::size_t packedBound(std::size_t size) { return size + size / 64 + 4096; }
+
 /// A length and as many bytes.
 std::string pieceOf(const std::string& bytes) { return bytesOf(static_cast<std::uint32_t>(bytes.size())) + bytes; }
 
 }  // namespace
 
-BagWriter::BagWriter(const std::string& file)
-    : descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+BagWriter::BagWriter(const std::string& file, std::size_t chunk_size, LogCompression compression)
+    : chunk_size_(chunk_size),
+      compression_(compression),
+      descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) fail();
   writeBytes(std::string(kBagMagic));
   writeBagHeader(0);
@@ -76,7 +82,9 @@ std::uint32_t BagWriter::addConnection(Connection connection) {
   const auto number = static_cast<std::uint32_t>(connections_.size());
   numbers_[connection.topic] = number;
   connections_.push_back(std::move(connection));
-  chunk_ += recordOf(number);
+  const std::string record = recordOf(number);
+  chunk_ += record;
+  index_size_ += record.size();
   return number;
 }
 
@@ -89,6 +97,7 @@ std::string BagWriter::recordOf(std::uint32_t number) const {
   addField(data, "type", connection.type);
   addField(data, "md5sum", connection.md5sum);
   addField(data, "message_definition", connection.definition);
+  if (!connection.caller.empty()) addField(data, "callerid", connection.caller);
   if (connection.latched) addField(data, "latching", "1");
   return pieceOf(header) + pieceOf(data);
 }
@@ -120,22 +129,32 @@ std::uint8_t* BagWriter::beginMessage(std::uint32_t connection, const ros::Time&
 }
 
 void BagWriter::endMessage() {
-  if (chunk_.size() >= kChunk) writeChunk();
+  if (chunk_.size() >= chunk_size_) closeChunk();
 }
 
-void BagWriter::writeChunk() {
-  packed_.resize(chunk_.size() + chunk_.size() / 64 + 4096);
-  auto size = static_cast<unsigned>(packed_.size());
-  if (roslz4_buffToBuffCompress(chunk_.data(), static_cast<unsigned>(chunk_.size()), packed_.data(), &size, kBlock) !=
-      ROSLZ4_OK)
-    throw std::runtime_error("LZ4 cannot pack a chunk");
-  packed_.resize(size);
-  chunks_.back().position = position_;
+std::uint64_t BagWriter::sizeBound() const noexcept {
+  std::uint64_t entries = 0;
+  for (const auto& [connection, places] : index_) entries += kRecord + kIndexEntry * places.size();
+  return position_ + packedBound(chunk_.size()) + kRecord + entries + index_size_ + kRecord + 8 * connections_.size();
+}
+
+void BagWriter::closeChunk() {
+  if (chunk_.empty()) return;
   std::string header = headerOf(BagRecord::kChunk);
-  addField(header, "compression", "lz4");
+  if (compression_ == LogCompression::kLz4) {
+    packed_.resize(packedBound(chunk_.size()));
+    auto size = static_cast<unsigned>(packed_.size());
+    if (roslz4_buffToBuffCompress(chunk_.data(), static_cast<unsigned>(chunk_.size()), packed_.data(), &size, kBlock) !=
+        ROSLZ4_OK)
+      throw std::runtime_error("LZ4 cannot pack a chunk");
+    packed_.resize(size);
+  }
+  const std::string& data_of_chunk = compression_ == LogCompression::kLz4 ? packed_ : chunk_;
+  chunks_.back().position = position_;
+  addField(header, "compression", compression_ == LogCompression::kLz4 ? "lz4" : "none");
   addField(header, "size", bytesOf(static_cast<std::uint32_t>(chunk_.size())));
-  writeBytes(pieceOf(header) + bytesOf(size));
-  writeBytes(packed_);
+  writeBytes(pieceOf(header) + bytesOf(static_cast<std::uint32_t>(data_of_chunk.size())));
+  writeBytes(data_of_chunk);
   for (auto& [connection, places] : index_) {
     if (places.empty()) continue;
     std::string index = headerOf(BagRecord::kIndex), data;
@@ -148,11 +167,12 @@ void BagWriter::writeChunk() {
     places.clear();
   }
   chunk_.clear();
+  index_size_ += kRecord + 8 * chunks_.back().counts.size();
   chunks_.emplace_back();
 }
 
 void BagWriter::close() {
-  if (!chunk_.empty()) writeChunk();
+  closeChunk();
   chunks_.pop_back();
   const std::uint64_t index_position = position_;
   std::string index;

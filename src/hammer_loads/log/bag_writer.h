@@ -1,24 +1,38 @@
-/// Writing a bag of format 2.0 with LZ4: rosbag::Bag asks the system for the file's end with each message, which takes
-/// most of its time.
+/// Writing a bag of format 2.0: rosbag::Bag asks the system for the file's end with each message, which takes most of
+/// its time, and its destructor ends the process where the disk is full.
 #pragma once
 
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
 #include <ros/time.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "hammer_loads/log/log_settings.h"
+
 namespace hammer_loads {
 
-/// A bag that is being written; what was not closed is no bag. Every function throws std::system_error where the file
-/// cannot be written.
+/// A bag that is being written. `rosbag reindex` recovers the chunks of one that was not closed. Every function throws
+/// std::system_error where the file cannot be written.
 class BagWriter {
  public:
-  explicit BagWriter(const std::string& file);
+  static constexpr std::size_t kChunk = 768 * 1024;  ///< as rosbag's [byte]
+
+  struct Connection {
+    std::string topic, type, md5sum, definition;
+    bool latched{};
+    std::string caller;  ///< node that published it; empty: none is written
+  };
+
+  /// chunk_size: a chunk is closed when it has this many bytes before compression.
+  explicit BagWriter(const std::string& file, std::size_t chunk_size = kChunk,
+                     LogCompression compression = LogCompression::kLz4);
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
   ~BagWriter();
@@ -32,14 +46,23 @@ class BagWriter {
     ros::serialization::serialize(stream, message);
     endMessage();
   }
+  /// Number of a connection for the function below; one for each topic.
+  std::uint32_t addConnection(Connection connection);
+  /// A message that is serialised already.
+  void write(std::uint32_t connection, const ros::Time& time, const std::uint8_t* bytes, std::uint32_t size) {
+    std::memcpy(beginMessage(connection, time, size), bytes, size);
+    endMessage();
+  }
+  /// Writes the open chunk, if it holds anything.
+  void closeChunk();
   /// Writes the rest and the index.
   void close();
 
+  std::uint64_t size() const noexcept { return position_; }  ///< on disk, without the open chunk [byte]
+  /// Largest possible size after close(), if no more message is written [byte].
+  std::uint64_t sizeBound() const noexcept;
+
  private:
-  struct Connection {
-    std::string topic, type, md5sum, definition;
-    bool latched{};
-  };
   struct ChunkInfo {
     std::uint64_t position{};
     ros::Time first, last;
@@ -51,17 +74,21 @@ class BagWriter {
   std::uint32_t connectionOf(const std::string& topic, bool latched) {
     const auto known = numbers_.find(topic);
     if (known != numbers_.end()) return known->second;
-    return addConnection({topic, ros::message_traits::datatype<Message>(), ros::message_traits::md5sum<Message>(),
-                          ros::message_traits::definition<Message>(), latched});
+    return addConnection({topic,
+                          ros::message_traits::datatype<Message>(),
+                          ros::message_traits::md5sum<Message>(),
+                          ros::message_traits::definition<Message>(),
+                          latched,
+                          {}});
   }
-  std::uint32_t addConnection(Connection connection);
   std::string recordOf(std::uint32_t connection) const;
   std::uint8_t* beginMessage(std::uint32_t connection, const ros::Time& time, std::uint32_t size);
   void endMessage();
-  void writeChunk();
   void writeBagHeader(std::uint64_t index_position);
   void writeBytes(const std::string& bytes);
 
+  std::size_t chunk_size_;
+  LogCompression compression_;
   int descriptor_;
   std::uint64_t position_{};  ///< end of the file
   std::vector<Connection> connections_;
@@ -69,6 +96,7 @@ class BagWriter {
   std::vector<ChunkInfo> chunks_;                 ///< the last one is being filled
   std::string chunk_, packed_;                    ///< bytes of that one
   std::map<std::uint32_t, Places> index_;         ///< as above, by connection
+  std::uint64_t index_size_{};                    ///< largest possible size of the file's index [byte]
 };
 
 }  // namespace hammer_loads
