@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""doc/accuracy.md, doc/blow.png and the README's excerpt from `accuracy`, the costs and the recorded sessions' test."""
+"""doc/accuracy.md, doc/blow.png and the README's excerpt from `accuracy` and the recorded sessions' test."""
 import argparse
 import json
 import pathlib
@@ -42,18 +42,6 @@ def draw_blow(blow, path):
     axes.legend(frameon=False, fontsize=9, ncol=5, loc="upper center", bbox_to_anchor=(0.5, -0.12), columnspacing=1.2)
     figure.tight_layout()
     figure.savefig(path)
-
-
-def cost_table(benchmarks):
-    """Medians of google-benchmark's repetitions."""
-    medians = {row["run_name"]: row for row in benchmarks if row.get("aggregate_name") == "median"}
-    spreads = {row["run_name"]: row["cpu_time"] for row in benchmarks if row.get("aggregate_name") == "cv"}
-    lines = ["| | | ns | spread | per second and core |", "|---|---|---|---|---|"]
-    for name in medians:
-        per_second = medians[name]["items_per_second"]
-        lines.append(f"| {' | '.join(name.split('/', 1))} | {1e9 / per_second:.3g} | {100 * spreads[name]:.0f} % | "
-                     f"{1e-6 * per_second:.3g} million |")
-    return "\n".join(lines) + "\n"
 
 
 def recorded_table(recorded):
@@ -125,7 +113,7 @@ def replace(path, marker, text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json) and budget.json, perhaps costs.json and recorded")
+    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json) and budget.json, perhaps recorded")
     parser.add_argument("root", type=pathlib.Path, help="of the source")
     arguments = parser.parse_args()
     work, root = arguments.work, arguments.root
@@ -136,11 +124,8 @@ def main():
     draw_blow(figures["blow"], root / "doc" / "blow.png")
     machine, = json.loads((work / "budget.json").read_text())["machines"]
     replace(root / "doc" / "accuracy.md", "budget", budget_excerpt(machine))
-    if not (work / "costs.json").exists():
-        return
-    costs = json.loads((work / "costs.json").read_text())["benchmarks"]
-    replace(root / "doc" / "accuracy.md", "tables", f"Measured on: {processor()}, one thread.\n\n" + cost_table(costs))
-    replace(root / "doc" / "accuracy.md", "recorded", recorded_table((work / "recorded").read_text()))
+    if (work / "recorded").exists():
+        replace(root / "doc" / "accuracy.md", "recorded", recorded_table((work / "recorded").read_text()))
 
 
 if __name__ == "__main__":

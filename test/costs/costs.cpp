@@ -1,5 +1,5 @@
-// Costs of one state, one sample and one pose by google-benchmark; scripts/update_accuracy writes them to
-// doc/accuracy.md.
+// Costs of one state, one sample and one pose by google-benchmark; scripts/update_performance writes them to
+// doc/performance.md.
 #include <benchmark/benchmark.h>
 
 #include <array>
