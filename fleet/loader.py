@@ -174,7 +174,7 @@ def figures(source, own, run_id):
     """Of each quantity over all turns: count, least, mean, greatest, total."""
     for table in ("turns", "blows"):
         quantities = [q for q in QUANTITIES if q.table == table]
-        values = [value_of(q, source.columns(table)) for q in quantities]
+        values = [value_of(q) for q in quantities]
         listed = ", ".join(f"count({v}), min({v}), avg({v}), max({v}), sum({v})" for v in values)
         values = next(iter(source.rows(f"SELECT {listed} FROM {table} WHERE run_id = ?", own)))
         for at, quantity in enumerate(quantities):

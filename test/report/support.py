@@ -84,6 +84,12 @@ class Drawn:
                 for group in elements(self.tree, "g") if group.get("class") == kind
                 for path in elements(group, "path") for piece in self._points(path)]
 
+    def x_range(self):
+        """Least and greatest number of the axis."""
+        frame = [point for path in elements(self.tree, "rect") for point in
+                 (float(path.get("x")), float(path.get("x")) + float(path.get("width")))]
+        return self._scaled(self.x, min(frame)), self._scaled(self.x, max(frame))
+
     def y_range(self):
         """Least and greatest number of the axis: its lines across are as long as that."""
         frame = [point for path in elements(self.tree, "rect") for point in

@@ -9,6 +9,7 @@ from report.quantities import QUANTITIES
 MOST_POINTS = 400
 COUNTED = ("energy", "amplitude")  # in a histogram
 MOST_BARS = 24
+MOST_WIDTHS = 3.0  # from the median: three standard deviations to either side are 1.5
 STRETCHES = 12
 MOST_MARKS = 20
 TIME_UNITS = [(86400.0, "days"), (3600.0, "h"), (60.0, "min"), (1.0, "s")]
@@ -59,23 +60,36 @@ def time_picture(quantity, values, most):
     return picture.figure(f"{quantity.title}: {quantity.meaning}", keys)
 
 
+def usual(values):
+    """Those that do not stretch a picture: no farther from the median than some widths of the middle 68 %."""
+    low, median, high = numpy.quantile(values, [0.1587, 0.5, 0.8413])
+    return values[numpy.abs(values - median) <= MOST_WIDTHS * (high - low)]
+
+
 def bins(values):
-    """(edges, counts) at round numbers; a value on an edge is in the bin above it."""
+    """Edges at round numbers; a value on an edge is in the bin above it."""
     edges = MaxNLocator(MOST_BARS, steps=[1, 2, 2.5, 5, 10]).tick_values(values.min(), values.max())
     edges = numpy.append(edges, 2.0 * edges[-1] - edges[-2])
-    counts = numpy.histogram(values, edges)[0]
-    kept = numpy.flatnonzero(counts)
-    return edges[kept[0]:kept[-1] + 2], counts[kept[0]:kept[-1] + 1]
+    kept = numpy.flatnonzero(numpy.histogram(values, edges)[0])
+    return edges[kept[0]:kept[-1] + 2]
 
 
 def histogram(quantity, values):
-    """(picture, table)."""
-    edges, counts = bins(values)
+    """(picture, table). Blows of a starting or stopping machine have bins of the table, but no bars."""
+    values = numpy.asarray(values)
+    edges = bins(usual(values))
+    counts = numpy.histogram(values[values < edges[-1]], edges)[0]
     picture = Picture(titled(quantity.title.lower(), quantity.unit), "blows")
     picture.axes.bar(edges[:-1], counts, numpy.diff(edges), align="edge", color=COLOURS["first"], alpha=0.75)
+    low, high = numpy.floor(values[values < edges[0]].min(initial=edges[0])), edges[-1]
+    if values.max() >= high:
+        high = numpy.nextafter(numpy.ceil(values.max()), numpy.inf)
+    every = numpy.unique([low, *edges, high])
     rows = [[f"{number(low)} to {number(high)}", int(count), number(100.0 * count / len(values), 3)]
-            for low, high, count in zip(edges, edges[1:], counts) if count]
-    return (picture.figure(f"{quantity.title} of {number(len(values))} blows"),
+            for low, high, count in zip(every, every[1:], numpy.histogram(values, every)[0]) if count]
+    outside = len(values) - int(counts.sum())
+    return (picture.figure(f"{quantity.title} of {number(len(values))} blows" +
+                           (f"; {outside} of them, as at start and stop, lie beyond the picture" if outside else "")),
             Table(f"Blows by {quantity.title.lower()}", [titled(quantity.title, quantity.unit), "Blows", "Share [%]"], rows))
 
 

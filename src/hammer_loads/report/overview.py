@@ -19,9 +19,9 @@ def warnings_of(subject):
         found["no run at all: the recording holds no sample of a crank"] = []
     elif subject.total("turns") == 0:
         found["no whole turn: there is nothing about blows, pulses and turns"] = []
-    impossible = subject.impossible_blows()
-    if impossible:
-        found[f"blows whose energy and restitution cannot be: {impossible} of {subject.total('blows')}; they are in no "
+    withheld = subject.blows_without_energy()
+    if withheld:
+        found[f"blows whose energy and restitution are withheld: {withheld} of {subject.total('blows')}; they are in no "
               "picture and no figure"] = []
     found.update(dict.fromkeys(limits.lines(subject), []))
     return found

@@ -19,16 +19,8 @@ QUANTITIES = [
 ]
 
 
-def is_possible(columns):
-    """SQL: what a blow says of itself can be. As the pipeline holds it: R within [0, 1], energy not below zero, by two
-    deviations; databases of older versions have blows beyond that, newer ones NULL in both."""
-    r_spread = "2 * coalesce(restitution_std, 0)" if "restitution_std" in columns else "0"
-    e_spread = "2 * coalesce(energy_std, 0)" if "energy_std" in columns else "0"
-    return (f"(restitution >= -{r_spread} AND restitution <= 1 + {r_spread} AND energy >= -{e_spread})")
-
-
-def value_of(quantity, columns):
-    """SQL of a quantity in a table with these columns: NULL where the blow says nothing possible."""
+def value_of(quantity):
+    """SQL of a quantity; NULL for a blow whose energy is withheld."""
     if quantity.table != "blows":
         return quantity.expression
-    return f"CASE WHEN {is_possible(columns)} THEN {quantity.expression} END"
+    return f"CASE WHEN energy IS NOT NULL THEN {quantity.expression} END"

@@ -83,7 +83,7 @@ def series_of(subject, quantity):
     else:
         columns = subject.database.columns(quantity.table)
         deviation = quantity.deviation if quantity.deviation in columns else "NULL"
-        rows = subject.frame(f"stamp_ns, {value_of(quantity, columns)} AS middle, {deviation} AS deviation "
+        rows = subject.frame(f"stamp_ns, {value_of(quantity)} AS middle, {deviation} AS deviation "
                              f"FROM {quantity.table} WHERE {{runs}} ORDER BY turn")
         rows = rows.assign(least=rows.middle, greatest=rows.middle)
     rows = rows.dropna(subset=["stamp_ns", "middle"])

@@ -5,7 +5,6 @@ from report.channel import Channel
 from report.database import FLEET, LEDGER, RECORDING
 from report.names import stem
 from report.problem import Problem
-from report.quantities import is_possible
 
 MOST_TURNS_ONE_BY_ONE = 500000  # beyond: a run is a point, where the file has figures of runs
 
@@ -46,12 +45,11 @@ class Subject:
         return table in tables and self.total("turns") <= MOST_TURNS_ONE_BY_ONE and any(
             self.database.value(f"SELECT 1 FROM {table} WHERE run_id = ? LIMIT 1", run["run_id"]) for run in self.runs)
 
-    def impossible_blows(self):
-        """Blows that say nothing possible of their energy: not drawn, not in any figure."""
+    def blows_without_energy(self):
+        """Blows whose energy and restitution are withheld, since no value within their bounds fits: in no figure."""
         if not self.has_rows("blows"):
             return 0
-        possible = is_possible(self.database.columns("blows"))
-        return len(self.frame(f"turn FROM blows WHERE {{runs}} AND coalesce({possible}, 0) = 0"))
+        return len(self.frame("turn FROM blows WHERE {runs} AND energy IS NULL"))
 
     def failed_bags(self):
         """(bag, reason) of a merged file's bags that gave nothing."""
