@@ -27,9 +27,9 @@ struct ToolImpulse {
   double friction_work{};  ///< [J]
 };
 
-/// Both phases of Coulomb's friction. While the rocker approaches, the moment about D of an impulse I along z is
-/// (|x_K| + f |z_K|) I; in the rebound K slides back, and it is (|x_K| - f |z_K|) I. The velocity of K is w (-z, x),
-/// and an impulse works with the mean of the velocities before and after its phase.
+/// Impulses and work of a blow with Coulomb friction, in both phases. While the rocker approaches, the moment about D
+/// of an impulse I along z is (|x_K| + f |z_K|) I; in the rebound K slides back, and it is (|x_K| - f |z_K|) I. The
+/// velocity of K is w (-z, x), and an impulse works with the mean of the velocities before and after its phase.
 ToolImpulse toolImpulse(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
   const HullPoint k = rocker.striking_point;
   const double w = -speed_before, friction_arm = rocker.friction * std::abs(k.z);

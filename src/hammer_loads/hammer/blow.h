@@ -11,27 +11,28 @@ namespace hammer_loads {
 /// Angular speeds are psi' (positive about hull +y); axes of hammer_hull.
 struct RockerBlow {
   double crank_speed_before{};   ///< [rad/s]; 0 of blowInSupport
-  double crank_speed_after{};    ///< as above [rad/s]
+  double crank_speed_after{};    ///< crank speed just after the blow [rad/s]; 0 of blowInSupport
   double rocker_speed_before{};  ///< [rad/s], < 0 for a real blow
   double rocker_speed_after{};   ///< [rad/s]
   double restitution{};          ///< R = -after/before [-]
   double energy{};               ///< given to the tool along z: the links' loss less the work of friction [J]
-  double friction_work{};        ///< of the sliding at the striking face, before and after the reversal [J], >= 0
+  double friction_work{};        ///< work of friction at the striking face in both phases [J], >= 0
   double tool_impulse_x{};       ///< BY the tool ON the rocker [N s]
   double tool_impulse_z{};       ///< BY the tool ON the rocker [N s], > 0 for a real blow
   double support_impulse_x{};    ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
-  double support_impulse_z{};    ///< as above [N s]
-  double support_impulse_y{};    ///< as above, about D [N m s]; 0 of blowInSupport
+  double support_impulse_z{};    ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
+  double support_impulse_y{};    ///< BY the links ON the hull about D [N m s]; 0 of blowInSupport
   double drive_impulse_y{};      ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
   double restitution_std{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
-  double energy_std{std::numeric_limits<double>::quiet_NaN()};       ///< as above [J]
+  double energy_std{
+      std::numeric_limits<double>::quiet_NaN()};  ///< standard deviation of the energy [J], where R was measured
   /// restitution or energy are what no blow has, by more than two deviations: both are NaN
   bool impossible{};
 };
 
 /// A blow as the crank felt it.
 struct CrankBlow {
-  double speed{};          ///< of the crank just before, > 0 [rad/s]
+  double speed{};          ///< crank speed just before the blow [rad/s], > 0
   double speed_std{};      ///< standard [rad/s]
   double factor{1.0};      ///< k: crank speed after over before [-]
   double factor_std{};     ///< standard [-]
@@ -93,7 +94,7 @@ RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double bef
 /// deviations.
 void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) noexcept;
 
-/// The same at level rocker: massless rod.
+/// Blow at a crank speed [rad/s] at level rocker (massless rod).
 inline RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {
   return blowAtCrankSpeed(mechanism, Level::kRocker, crank_speed);
 }

@@ -14,8 +14,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kPoints = 2000;        // of the turn; the pulse is some 200 of them long
-constexpr double kRounding = 1e-12;  // of a load: no difference
+constexpr int kPoints = 2000;        // points of a revolution; the pulse takes some 200 of them
+constexpr double kRounding = 1e-12;  // smallest relative difference of a load that is not rounding
 
 /// From blow to blow under constant torque, at level linkage and without weight.
 struct WorkingTurn {
@@ -46,7 +46,8 @@ WorkingTurn workingTurn(const Mechanism& mechanism, double turn_rate) {
   return turn;
 }
 
-/// Of the hull: what a rod adds that gives, beside a rigid one at the same place and speed of the crank.
+/// Difference of the loads on the hull (force x, force z, moment) between the elastic and a rigid connecting rod at the
+/// same angle and speed of the crank.
 Eigen::Vector3d besideRigid(const Mechanism& mechanism, const TwoBodies& bodies, const RodSpring& rod,
                             const TwoBodyDrive& drive, const TwoBodyState& at) {
   const LinkMotion links = bodies.links(at.angle);
@@ -56,9 +57,9 @@ Eigen::Vector3d besideRigid(const Mechanism& mechanism, const TwoBodies& bodies,
          vectorOf(hullWrenchLinkage(mechanism, links, rigid, drive.gravity));
 }
 
-/// Its squares, sums over the points of the turn: of a blow that leaves the rocker at its tool, until the crank has
-/// turned by a quarter. Means over `interval` count. What comes in the first millisecond is of the blow itself: there a
-/// rod that hardly gives has all of it.
+/// Squares of besideRigid(), summed over the points of a revolution. The vibration starts with a blow that stops the
+/// rocker at the tool and is followed for a quarter of a revolution. Each square is that of a mean over `interval` [s].
+/// The first millisecond is left out: it belongs to the blow, and even an almost rigid rod shows all of it.
 Eigen::Vector3d ofRod(const Mechanism& mechanism, const RodSpring& rod, const WorkingTurn& turn, Gravity gravity,
                       double interval) {
   constexpr double kStep = 2e-5, kOfBlow = 1e-3;  // [s]

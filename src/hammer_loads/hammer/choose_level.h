@@ -16,7 +16,7 @@ struct LevelChoice {
   Level level{};  ///< the cheapest within tolerance
   double tolerance{};
   bool gives{};                        ///< the rod
-  std::array<double, 3> difference{};  ///< of pulse, rocker and linkage
+  std::array<double, 3> difference{};  ///< relative differences of levels pulse, rocker and linkage
 };
 
 /// Works one turn with the machine at level linkage: constant net drive torque that makes up for the blow, so that each

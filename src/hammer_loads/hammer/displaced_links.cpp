@@ -5,7 +5,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kPlaces = 720;  // of a turn
+constexpr int kPlaces = 720;  // crank angles of a revolution
 
 HullWrench meanOfTurn(const HullModel& model, const HullMotion& hull) {
   HullWrench mean;

@@ -20,11 +20,11 @@ constexpr std::array<const char*, kStates> kRules{"rad, must be a finite number 
 constexpr std::array<const char*, 7> kMotionAndWrenchColumns{
     "rocker_angle_rad", "rod_angle_rad",  "rocker_speed_rad_s", "rocker_accel_rad_s2",
     "hull_force_x_N",   "hull_force_z_N", "hull_torque_y_Nm"};
-constexpr std::size_t kPins = kMotionAndWrenchColumns.size();  ///< where the pins' results begin
+constexpr std::size_t kPins = kMotionAndWrenchColumns.size();  ///< index of the first result of the pins
 constexpr std::size_t kResults = kPins + kPinColumns.size();
 
 using Cells = std::vector<std::string>;
-using Places = std::array<std::size_t, kStates>;  ///< of kStateColumns in a row
+using Places = std::array<std::size_t, kStates>;  ///< position of each of kStateColumns in a row
 using Problems = std::vector<std::string>;
 
 /// Cells without the spaces around them; one empty cell for a blank line.

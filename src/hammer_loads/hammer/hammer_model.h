@@ -10,7 +10,7 @@
 
 namespace hammer_loads {
 
-/// Where the links stand and how they turn against the hull; angles as the robot description has them.
+/// Angles of the links against the hull, as the robot description defines them, and their rates.
 struct LinkState {
   double crank_angle{};         ///< in [0, 2 pi) [rad]
   double rod_angle{};           ///< beta [rad]
@@ -62,7 +62,7 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
   return wrench;
 }
 
-/// The same with the motion of the links at crank.angle, found before.
+/// Wrench on the hull from the motion of the links at crank.angle, which the caller has computed.
 inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
                              const CrankMotion& crank, const HullMotion& hull) noexcept {
   HullWrench wrench = hullWrench(model, links, crank, hull);
@@ -70,8 +70,8 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
   return wrench;
 }
 
-/// The same at one crank angle for any speed [rad/s] and acceleration [rad/s2]: the links' motion is found once. Refers
-/// to its arguments.
+/// Wrench on the hull at one crank angle for any speed [rad/s] and acceleration [rad/s2]. The links' motion is computed
+/// once. The object refers to its arguments.
 class WrenchAtAngle {
  public:
   WrenchAtAngle(const HullModel& model, const DriveReaction& drive, const HullMotion& hull,

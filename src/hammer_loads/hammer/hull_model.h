@@ -69,7 +69,7 @@ HAMMER_LOADS_INLINE HullWrench hullWrench(const HullModel& model, const CrankMot
   return hullWrenchPulse(model.mechanism(), model.nominalPulse(), crank, hull.gravity);
 }
 
-/// The same by the motion of the links at crank.angle, found before.
+/// Wrench on the hull from the motion of the links at crank.angle, which the caller has computed.
 inline HullWrench hullWrench(const HullModel& model, const LinkMotion& links, const CrankMotion& crank,
                              const HullMotion& hull) noexcept {
   if (model.level() == Level::kPulse)

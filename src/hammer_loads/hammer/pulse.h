@@ -19,7 +19,7 @@ constexpr double kLeastLobe = 0.1;
 struct HalfSinePulse {
   double period{};               ///< T [s]
   double amplitude{};            ///< H, peak of Fz [N]
-  double peak_time{};            ///< of H [s] after the turn's start
+  double peak_time{};            ///< time of the peak H after the start of the revolution [s]
   double frequency{};            ///< mu = 2 H/Q [rad/s]
   double start{};                ///< t1 = T - pi/mu [s]; negative when the lobe is longer than half a period of mu
   double impulse{};              ///< Q (P0: S), from Fz's last rise through zero to the blow [N s]
@@ -32,8 +32,8 @@ struct HalfSinePulse {
 struct TurnPoint {
   double time{};       ///< after the turn's start [s]
   double force_z{};    ///< [N]
-  double impulse_x{};  ///< of the wrench since the turn's start, by the momentum difference [N s]
-  double impulse_z{};  ///< as above [N s]
+  double impulse_x{};  ///< impulse of the wrench since the start of the revolution, by the difference of momentum [N s]
+  double impulse_z{};  ///< impulse along z, likewise [N s]
 };
 
 /// Pulse from the points of one whole turn, in order of strictly growing time, first at time 0 and last at the blow;

@@ -14,7 +14,7 @@ namespace hammer_loads {
 /// Refers to the model's mechanism, which must outlive it.
 struct TurnTable {
   HullModel model;
-  double speed{};   ///< of the crank [rad/s], > 0
+  double speed{};   ///< crank speed [rad/s], > 0
   Gravity gravity;  ///< [m/s2], hull axes
   double step{};    ///< between rows [deg], in [1e-6, 360]
   bool pins{};      ///< pin forces and drive torque as well; level pulse: the rocker's

@@ -3,7 +3,8 @@
 namespace hammer_loads {
 namespace {
 
-/// Of force x, force z, moment by the links' masses: hullWrenchOf() and addTurningLinkage(), which are linear in them.
+/// Derivatives of force x, force z and moment by the links' masses: hullWrenchOf() and addTurningLinkage() are linear
+/// in them.
 LinkMasses::Effect effectOnHull(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& crank,
                                 const HullMotion& hull) noexcept {
   using M = LinkMasses;
@@ -17,7 +18,7 @@ LinkMasses::Effect effectOnHull(const Mechanism& mechanism, const LinkMotion& l,
     const Planar a = direction * acceleration;
     by.col(i) << a.re, -a.im, direction.re * g.z + direction.im * g.x;
   };
-  // Of a first moment about A, with rate [-] of its direction by the crank angle.
+  // Adds the part of a first moment about A; rate [-]: derivative of its direction by the crank angle.
   const auto atA = [&](int i, Planar direction, Planar relative, Planar turning, double rate) {
     force(i, direction, relative + turning);
     const Planar place = from_d * direction;

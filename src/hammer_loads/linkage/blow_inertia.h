@@ -22,11 +22,11 @@ struct BlowInertia {
   double u_before{};  ///< psi'/phi' just before the blow [-], < 0
   double u_after{};   ///< just after [-], > 0
 
-  /// Of both on the branch before the blow [kg m2].
+  /// Reduced inertia of crank and rocker on the branch before the blow [kg m2].
   double before() const noexcept { return crank + u_before * (2.0 * coupling + u_before * rocker); }
-  /// Of both on the branch after the blow [kg m2].
+  /// Reduced inertia of crank and rocker on the branch after the blow [kg m2].
   double after() const noexcept { return crank + u_after * (2.0 * coupling + u_after * rocker); }
-  /// Of the rocker alone with the crank free to follow [kg m2].
+  /// Inertia of the rocker alone while the crank is free to follow [kg m2].
   double freeRocker() const noexcept { return rocker - coupling * coupling / crank; }
   /// Crank speed after over before for a restitution R of rocker on tool.
   double factor(double restitution) const noexcept { return withoutRebound() + restitution * perRestitution(); }
@@ -40,7 +40,7 @@ struct BlowInertia {
  private:
   double perRestitution() const noexcept { return -u_before * u_after * freeRocker() / after(); }
   double withoutRebound() const noexcept {
-    const double tool = coupling * u_before;  // what the crank gains when the rocker stops, over its speed
+    const double tool = coupling * u_before;  // momentum that the crank gains when the rocker stops, over its speed
     return (crank + tool + u_after * coupling * (1.0 + tool / crank)) / after();
   }
 };

@@ -1,4 +1,4 @@
-/// Where the crank stands, without losing the digits that matter at the blow.
+/// Crank angle that keeps full precision beside the blow.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace hammer_loads {
 
-/// Which side of the blow (crank angle 0 mod 2 pi) a position belongs to. The linkage has a change point there:
-/// its transfer functions jump, so the blow itself has two states.
+/// Side of the blow (crank angle 0 mod 2 pi) to which a position belongs. The linkage has a change point there: its
+/// transfer functions jump, so the blow itself has two states.
 enum class Side { kAfterBlow, kBeforeBlow };
 
 constexpr Side opposite(Side side) noexcept { return side == Side::kAfterBlow ? Side::kBeforeBlow : Side::kAfterBlow; }

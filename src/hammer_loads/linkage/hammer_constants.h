@@ -13,13 +13,13 @@
 namespace hammer_loads {
 
 struct HammerConstant {
-  const char* key;                           ///< of the hammer file
-  const char* unit;                          ///< as the key ends
+  const char* key;                           ///< key in the hammer file
+  const char* unit;                          ///< unit at the end of the key
   double& (*field)(HammerParameters&);       ///< in SI, an angle in rad
   double (*usual)(const HammerParameters&);  ///< standard deviation where the file says nothing, in the field's unit
   double away;                               ///< 1 or -1: where a deviation leads to a hammer that can exist
   enum class Enters {
-    kMotion,   ///< how the links move, and by that the loads
+    kMotion,   ///< motion of the links, and with it the loads
     kLoads,    ///< the loads of a given motion
     kBlow,     ///< the blow alone
     kLearned,  ///< nothing: the crank's filter knows it better
@@ -33,8 +33,8 @@ namespace usual {
 inline double exact(const HammerParameters&) { return 0.0; }
 inline double length(const HammerParameters&) { return 3e-4; }
 constexpr double kCentre = 1e-3;   // [m]
-constexpr double kWeighed = 0.02;  // of the rocker's mass and inertia
-constexpr double kGuessed = 0.5;   // of the crank's and the rod's: drawings of them are rare
+constexpr double kWeighed = 0.02;  // relative, for the rocker's mass and inertia
+constexpr double kGuessed = 0.5;   // relative, for masses of crank and connecting rod, which data sheets rarely give
 
 }  // namespace usual
 
@@ -111,7 +111,7 @@ inline std::string deviationKey(const HammerConstant& constant) {
   return key.substr(0, key.size() - end.size()) + "_std" + end;
 }
 
-/// Those that the contract names for a file that gives none.
+/// Default standard deviations of the constants, used where a hammer file gives none.
 inline HammerDeviations usualDeviations(const HammerParameters& parameters) {
   HammerDeviations deviations{};
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) deviations[i] = kHammerConstants[i].usual(parameters);

@@ -10,7 +10,7 @@ struct Gravity {
   double x{};
   double z{};
 
-  operator HullMotion() const noexcept;  ///< of a hull at rest
+  operator HullMotion() const noexcept;  ///< motion of a hull at rest
 };
 
 /// Motion of the frame hammer_hull at its origin D, in its plane. An acceleration of D is to everything in the hull
@@ -18,7 +18,7 @@ struct Gravity {
 struct HullMotion {
   Gravity gravity;        ///< effective: gravity less the acceleration of D, hull axes [m/s2]
   double rate{};          ///< Omega, turning rate about +y [rad/s]
-  double acceleration{};  ///< its derivative [rad/s2]
+  double acceleration{};  ///< angular acceleration about +y [rad/s2]
 
   bool turns() const noexcept { return rate != 0.0 || acceleration != 0.0; }
 };

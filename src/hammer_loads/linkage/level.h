@@ -1,4 +1,4 @@
-/// How much of the mechanism a computation takes into account.
+/// Levels of detail of the mechanism's model.
 #pragma once
 
 namespace hammer_loads {

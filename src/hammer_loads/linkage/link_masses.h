@@ -8,11 +8,11 @@
 
 namespace hammer_loads {
 
-/// Of LinkMoments, in this order; complex ones as two numbers.
+/// Masses, first moments and inertias of LinkMoments in this order; a complex one takes two numbers.
 struct LinkMasses {
   enum Index {
-    kMass,              ///< of all links [kg]
-    kAtA,               ///< of crank and rod, as if at A [kg]
+    kMass,              ///< total mass of the links [kg]
+    kAtA,               ///< mass of crank and connecting rod, concentrated at A [kg]
     kCrank,             ///< and the next: C1 [kg m]
     kRod = 4,           ///< and the next: C2 [kg m]
     kRocker = 6,        ///< C3 [kg m]
@@ -26,7 +26,7 @@ struct LinkMasses {
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Effect = Eigen::Matrix<double, 3, kSize>;  ///< derivatives of three loads
 
-  /// Those that a level gives its links.
+  /// Masses that a level gives its links.
   static Vector of(const Mechanism& mechanism, Level level) noexcept {
     const HammerParameters& p = mechanism.parameters();
     const LinkMoments& k = mechanism.moments();
@@ -43,7 +43,7 @@ struct LinkMasses {
   }
 };
 
-/// Whether two hammers differ by their masses alone.
+/// Returns true if two hammers differ by their masses alone.
 inline bool haveLikeMotion(const Mechanism& a, const Mechanism& b) noexcept {
   const auto place = [](const Mechanism& m) {
     const LinkLengths& l = m.parameters().lengths;

@@ -88,7 +88,7 @@ HAMMER_LOADS_INLINE Planar linkCoupling(const Mechanism& mechanism, const LinkMo
 /// be multiplied by directions as LinkAccelerations are; a link that turns at w gets i alpha - Omega (Omega + 2 w).
 struct TurningAccelerations {
   LinkAccelerations links;
-  Planar hull;  ///< of points fixed to the hull [1/s2]
+  Planar hull;  ///< acceleration of points fixed to the hull [1/s2]
 };
 
 inline TurningAccelerations turningAccelerations(const LinkMotion& l, double speed, const HullMotion& hull) noexcept {
@@ -98,13 +98,13 @@ inline TurningAccelerations turningAccelerations(const LinkMotion& l, double spe
   return {{of(speed), of(l.v * speed), of(l.rocker.u * speed)}, of(0.0)};
 }
 
-/// Of all moving links about D, as functions of the crank angle.
+/// Moments of all moving links about D as functions of the crank angle.
 struct MomentsAboutD {
   double inertia{};           ///< J_D [kg m2]
   double half_slope{};        ///< half of dJ_D/dphi [kg m2/rad]
-  double half_slope_slope{};  ///< its derivative
+  double half_slope_slope{};  ///< derivative of half_slope by the crank angle [kg m2/rad2]
   double momentum{};          ///< angular momentum relative to the hull over crank speed [kg m2]
-  double momentum_slope{};    ///< its derivative by the crank angle
+  double momentum_slope{};    ///< derivative of momentum by the crank angle [kg m2/rad]
 };
 
 /// Level rocker: J_D = I.
@@ -122,7 +122,8 @@ inline MomentsAboutD momentsAboutDLinkage(const Mechanism& mechanism, const Link
   const Planar by_angle = conj(k.pivot) * (crank + l.v * rod);
   const Planar by_angle_slope = conj(k.pivot) * (turned(crank + l.v * l.v * rod) + l.dv * rod);
   const double inertia_a = (p.crank_mass + p.rod_mass) * (k.pivot.re * k.pivot.re + k.pivot.im * k.pivot.im);
-  const double u = l.rocker.u, swing = l.v - 1.0;  // of the rod in the crank
+  const double u = l.rocker.u,
+               swing = l.v - 1.0;  // speed of the connecting rod relative to the crank, over the crank's
   return {
       inertia_a - 2.0 * from_d.re + k.crank_inertia + k.rod_inertia + 2.0 * coupling.re + p.rocker_inertia_about_pivot,
       by_angle.im - swing * coupling.im, by_angle_slope.im - l.dv * coupling.im - swing * swing * coupling.re,

@@ -22,7 +22,7 @@ ShaftLoad loadOf(const Mechanism& mechanism, Level level, const LinkMotion& link
                                   : shaftLoadRocker(mechanism, links.rocker, gravity);
 }
 
-/// Of inertia, half its slope, weight torque by the links' masses.
+/// Derivatives of the inertia, half its slope and the weight's torque by the links' masses.
 LinkMasses::Effect effectOnShaft(const LinkMotion& l, Gravity gravity) noexcept {
   using M = LinkMasses;
   const double u = l.rocker.u, v = l.v, bend = v * (v - 1.0);

@@ -25,12 +25,12 @@ struct MachineColumn {
   /// a derivative, and 1e-14 of rounding.
   static constexpr double kStep = 0.1;
 
-  Mechanism mechanism;  ///< of the other hammer
-  Level level;          ///< as above: of what a level leaves out, that which has it
+  Mechanism mechanism;  ///< hammer with the changed constant
+  Level level;          ///< level of that hammer; kLinkage for the column of what a simpler level neglects
   HammerConstant::Enters enters;
   double step;       ///< kStep, or 1 of what a level leaves out
   std::string name;  ///< key of the constant, or the level that leaves something out
-  bool of_masses;    ///< what it changes of a given motion's loads is linear in LinkMasses
+  bool of_masses;    ///< true if the change of the loads of a given motion is linear in LinkMasses
 
   /// links: of the hammer itself at the angle.
   LinkMotion linksAt(CrankAngle angle, const LinkMotion& links) const noexcept {
@@ -60,7 +60,7 @@ class MachineColumns {
   OnShaft onShaft(CrankAngle angle, Gravity gravity) const noexcept;
 
  private:
-  struct Part {  ///< of LinkMasses [its unit]
+  struct Part {  ///< change of one number of LinkMasses [its unit]
     Eigen::Index column, mass;
     double size;
   };
@@ -72,7 +72,7 @@ class MachineColumns {
   std::vector<Part> parts_;
 };
 
-/// Whether a hammer can exist whose constant, of kHammerConstants, is off by its deviation.
+/// Returns true if a hammer can exist whose constant (index in kHammerConstants) is off by one standard deviation.
 bool isPossible(const HammerParameters& parameters, std::size_t constant);
 
 /// Null: the hammer is exact, and its level has all of it.

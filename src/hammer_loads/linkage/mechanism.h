@@ -34,11 +34,12 @@ struct HammerParameters {
   double rod_inertia_about_com{};       ///< [kg m2], >= 0
   double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
   double drive_reaction_ratio{1.0};     ///< r of DriveReaction [-], finite
-  RodSpring rod;                        ///< what is 0 in it is not known: see priorOf()
-  RodSpring rod_std;                    ///< standard deviations of it, >= 0
-  double hull_mass{};                   ///< housing and what is fixed to it [kg]; 0: hullMass() assumes it
-  double hull_mass_std{};               ///< standard deviation [kg], >= 0; counts with hull_mass > 0
-  HammerDeviations deviations{};        ///< what is known of the above but the spring; all exact where nothing is said
+  RodSpring rod;           ///< spring and damping of the connecting rod; 0 stands for unknown, see priorOf()
+  RodSpring rod_std;       ///< standard deviations of it, >= 0
+  double hull_mass{};      ///< housing and what is fixed to it [kg]; 0: hullMass() assumes it
+  double hull_mass_std{};  ///< standard deviation [kg], >= 0; counts with hull_mass > 0
+  HammerDeviations
+      deviations{};  ///< standard deviations of the constants above except the spring; 0 (exact) by default
 };
 
 /// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism
@@ -66,7 +67,7 @@ class Mechanism {
   static Checked<Mechanism> make(const HammerParameters& parameters);
 
   const CrankRocker& linkage() const noexcept { return linkage_; }
-  /// As given, with the rod's length corrected to the change-point condition.
+  /// Parameters as given, with the rod's length corrected to the change-point condition.
   const HammerParameters& parameters() const noexcept { return parameters_; }
   /// m3 ls, the rocker's first moment about D [kg m].
   double rockerFirstMoment() const noexcept { return rocker_first_moment_; }

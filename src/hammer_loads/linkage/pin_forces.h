@@ -57,8 +57,9 @@ HAMMER_LOADS_INLINE double overSine(double divided, double s) noexcept {
 
 }  // namespace detail
 
-/// Where pin forces are flagged: transmission angle psi - beta below a limit [rad], in (0, pi/2). And where they have
-/// none: within the error of the crank angle [rad] from the blow.
+/// Region around the blow in which pin forces are flagged or undefined. They are flagged where the transmission angle
+/// psi - beta is below a limit [rad], in (0, pi/2). They are NaN where the crank is closer to the blow than the error
+/// of its angle [rad].
 class NearBlow {
  public:
   explicit NearBlow(double transmission_angle, double angle_error = 0.0)
@@ -171,8 +172,9 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   return pins;
 }
 
-/// The same dyads for links that move otherwise than a rigid rod has them: psi and accelerations are given. Beside the
-/// blow the rod's force is the difference of large moments, as good as these are; NaN within the error of the angle.
+/// Pin forces of the same dyads for links that move otherwise than with a rigid rod: psi and accelerations are given.
+/// Beside the blow the rod's force is the difference of large moments, as good as these are; NaN within the error of
+/// the angle.
 inline PinReactions pinForcesOf(const Mechanism& mechanism, const LinkMotion& l, const LinkAccelerations& q,
                                 Gravity gravity, const NearBlow& near_blow) noexcept {
   const LinkLengths& lengths = mechanism.linkage().lengths();
@@ -207,7 +209,7 @@ inline void addTurningRocker(const Mechanism& mechanism, const LinkMotion& l, do
   pins.drive_torque += l.rocker.u * moment;
 }
 
-/// The same for level linkage: the dyads of pinForcesLinkage with the added accelerations.
+/// Adds the part of a turning hull at level linkage: the dyads of pinForcesLinkage with the added accelerations.
 inline void addTurningLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed, const HullMotion& hull,
                               const NearBlow& near_blow, PinReactions& pins) noexcept {
   const HammerParameters& p = mechanism.parameters();
@@ -251,7 +253,7 @@ HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level lev
   return pins;
 }
 
-/// The same from the crank's motion. No allocation, no failure for finite input.
+/// Pin forces from the crank's motion. No allocation, no failure for finite input.
 HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level level, const CrankMotion& crank,
                                            const HullMotion& hull, const NearBlow& near_blow) noexcept {
   return pinForces(mechanism, level, linkMotion(mechanism.linkage(), crank.angle), crank, hull, near_blow);

@@ -11,7 +11,7 @@ namespace hammer_loads {
 /// is, which no level models.
 struct RodSpring {
   double stiffness{};        ///< k [N/m]; 0: not known
-  double damping_ratio{};    ///< of an oscillator of kReference on k [-]; 0: not known
+  double damping_ratio{};    ///< damping ratio of an oscillator of kReference on k [-]; 0: not known
   double play{};             ///< free way of both pins together [m], >= 0
   double friction_radius{};  ///< radius of a pin's friction circle, coefficient of friction times pin radius [m], >= 0
 
@@ -19,7 +19,8 @@ struct RodSpring {
   double damping() const noexcept { return 2.0 * damping_ratio * stiffness / kReference; }  ///< [N s/m]
 };
 
-/// What is known of a rod before any reading: no source gives one, so guesses stand in for what a file leaves out.
+/// Prior of a connecting rod before any measurement. No source gives values, so estimates replace what a file leaves
+/// out.
 struct RodPrior {
   RodSpring rod;
   double log_stiffness{}, log_damping{};  ///< standard deviations of their logarithms
@@ -49,7 +50,7 @@ inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexce
 
 /// y'' = -square y - 2 decay y', exactly over a time, with any damping.
 struct Oscillator {
-  double square{};  ///< of its free frequency [rad2/s2], > 0
+  double square{};  ///< square of the undamped angular frequency [rad2/s2], > 0
   double decay{};   ///< [1/s], >= 0
 
   void move(double time, double& y, double& speed) const noexcept {

@@ -15,7 +15,7 @@ struct ShaftLoad {
   double inertia{};              ///< reflected inertia of the links [kg m2]
   double half_inertia_slope{};   ///< half its derivative by the crank angle [kg m2/rad]
   double weight_torque{};        ///< torque of the links' weight and of the hull's motion on the crank [N m]
-  double weight_torque_slope{};  ///< its derivative by the crank angle [N m/rad]
+  double weight_torque_slope{};  ///< derivative of the weight's torque by the crank angle [N m/rad]
   double hull_acceleration{};    ///< alpha; of a ShaftModel r alpha: what the drive must follow as well [rad/s2]
 };
 

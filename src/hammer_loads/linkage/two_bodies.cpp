@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBallistic = 1e-4;  // [rad]: below, the spring does nothing within a step
 
-constexpr double kContact = 1.2e-4;  // [s] of a step within which pins with play may part or meet
+constexpr double kContact = 1.2e-4;  // [s]; part of a step within which pins with joint clearance may separate or meet
 // Numerical: kContact
 
 /// y'' = pull - square y - 2 decay y' over a time.
@@ -67,7 +67,7 @@ TwoBodies::Local TwoBodies::local(const TwoBodyDrive& drive, const TwoBodyState&
   const LinkLengths& l = mechanism_->linkage().lengths();
   const double u = links.rocker.u, w = at.speed, x = at.beside, v = u * w + at.beside_speed, ww = w * w;
   const Planar theta = links.psi * conj(links.phi), both = coupling_ * theta;
-  const double slope = -both.im;  // of M12 by theta
+  const double slope = -both.im;  // derivative of M12 by theta
   const auto weight = [&](Planar moment, Planar direction) {
     const Planar rate = moment * direction;
     return drive.gravity.z * rate.re + drive.gravity.x * rate.im;
@@ -106,7 +106,8 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   const double to_side = half > 0.0 ? rod.stiffness * std::copysign(half, -a.secant_lever * middle.beside) : 0.0;
   const double apart = free ? 0.0 : to_side - damping * a.by_crank * s.speed;
   const double back = a.coupling * a.per_reflected;
-  const double per = (a.lever + back * a.by_crank) * a.per_own;  // of the tension, which pulls at the crank as well
+  const double per =
+      (a.lever + back * a.by_crank) * a.per_own;  // acceleration per tension, which also pulls at the crank
   const double pull = (a.on_rocker - back * a.on_crank) * a.per_own - per * apart;
   oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.beside, s.beside_speed);
   const double moved = s.beside - from.beside, gained = s.beside_speed - from.beside_speed;

@@ -16,7 +16,7 @@ struct TwoBodyState {
   CrankAngle angle;
   double speed{};         ///< w [rad/s]
   double beside{};        ///< x = psi - psi of a rigid rod [rad]
-  double beside_speed{};  ///< its rate [rad/s]
+  double beside_speed{};  ///< rate of x [rad/s]
 };
 
 /// Rigid links with the rocker where it is: lively rock throws it back by a tenth of a radian.
@@ -56,18 +56,18 @@ class TwoBodies {
   /// At a state.
   TwoBodyAccelerations accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& state,
                                      const LinkMotion& links) const noexcept;
-  /// Of the crank, if the rod were rigid [rad/s2].
+  /// Acceleration of the crank with a rigid connecting rod [rad/s2].
   double rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyState& state,
                            const LinkMotion& links) const noexcept;
   /// rod: in LinkAccelerations also its change of length.
   LinkAccelerations linkAccelerations(const TwoBodyState& state, const TwoBodyAccelerations& a,
                                       const LinkMotion& links) const noexcept;
-  /// The same with i times the links' speeds in place of accelerations: hullWrenchOf() gives minus their momentum.
+  /// Links' speeds times i in the form of accelerations, so that hullWrenchOf() returns minus their momentum.
   LinkAccelerations linkSpeeds(const TwoBodyState& state, const LinkMotion& links) const noexcept;
   LinkMotion links(CrankAngle angle) const noexcept { return linkMotion(mechanism_->linkage(), angle); }
   /// A rod at rest on its spring: x as the motion of the crank asks for, its rate 0.
   void settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& state) const noexcept;
-  /// Where the tool is and what the rocker keeps of its speed there.
+  /// Position of the tool and restitution of the rocker on it.
   struct Tool {
     double place{};        ///< psi [rad]
     double restitution{};  ///< [-]
@@ -77,10 +77,11 @@ class TwoBodies {
     double time{};
     TwoBodyState before, after;
   };
-  /// As move(), with a blow where the rocker reaches the tool: that, its time after the beginning.
+  /// Moves the state by dt like move(), with a blow where the rocker reaches the tool. Returns that blow; its time
+  /// counts from the beginning of the step [s].
   std::optional<Blow> moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool, double dt,
                                  TwoBodyState& state) const noexcept;
-  /// Of a state before its blow: as if it had been struck already, by the way back on both sides (saltation).
+  /// Changes a state just before its blow into one that was struck already, by the path back on both sides (saltation).
   void strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBodyState& state) const noexcept;
 
  private:

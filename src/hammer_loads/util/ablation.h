@@ -7,7 +7,7 @@
 
 namespace hammer_loads {
 
-/// Whether the environment's HAMMER_LOADS_ABLATE, names separated by commas, contains this one.
+/// Returns true if HAMMER_LOADS_ABLATE of the environment, names separated by commas, contains this name.
 inline bool isAblated(const char* name) {
   const char* const names = std::getenv("HAMMER_LOADS_ABLATE");
   return names != nullptr && (',' + std::string(names) + ',').find(',' + std::string(name) + ',') != std::string::npos;

@@ -1,4 +1,4 @@
-/// How much of a long work is done.
+/// Progress of a long computation.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@ namespace hammer_loads {
 /// Takes the part done, in [0, 1]; empty: no progress is shown.
 using Progress = std::function<void(double)>;
 
-/// Of a piece of the work that takes it from one part to another.
+/// Progress of a part of the work that runs from one fraction to another.
 inline Progress piece(const Progress& whole, double from, double to) {
   if (!whole) return {};
   return [whole, from, to](double part) { whole(from + (to - from) * part); };

@@ -32,7 +32,7 @@ HAMMER_LOADS_INLINE SineCosine sineCosinePolynomial(double h) noexcept {
   return {h + h * x * s, (1.0 - 0.5 * x) + x2 * c};
 }
 
-/// The same for any h.
+/// Sine and cosine of any h.
 HAMMER_LOADS_INLINE SineCosine sineCosine(double h) noexcept {
   if (std::abs(h) <= kPolynomialAngle) return sineCosinePolynomial(h);
   return {std::sin(h), std::cos(h)};
