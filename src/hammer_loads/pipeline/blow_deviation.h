@@ -1,4 +1,4 @@
-/// How far a measured blow may be off, by readings and by constants of sensor and hammer.
+/// Uncertainty of a measured blow, by readings and by constants of sensor and hammer.
 #pragma once
 
 #include "hammer_loads/crank/crank_estimate.h"
@@ -18,7 +18,7 @@ BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const
 /// The part of these that readings make.
 BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow) noexcept;
 
-/// Of the impulses: what they are in another blow that cannot be ruled out, independent of all else.
+/// Adds to the impulses the difference to another blow that cannot be ruled out; it is independent of all else.
 void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept;
 
 }  // namespace hammer_loads

@@ -53,7 +53,7 @@ Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
   return {{w.force_x, 0.0, w.force_z}, {0.0, w.torque_y, 0.0}};
 }
 
-/// As Boom::hammerTorque() of onTip(), which lies in the boom's plane.
+/// Joint torques of a wrench w on the hull, as Boom::hammerTorque() of onTip(); w lies in the boom's plane.
 JointVector BoomFollower::hammerTorque(const HullWrench& w) const noexcept {
   JointVector torque = JointVector::Zero(boom_.chain().joints());
   addHammerTorque(w, torque);
@@ -182,8 +182,8 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
   displaced_links_ = displaced_links;
 }
 
-/// Whether the vibration is not to be believed at this sample. Where it is too much it begins anew, sensors' findings
-/// and all, from the next sample on.
+/// Returns true if the vibration is not plausible at this sample. An implausible one is reset with what the sensors had
+/// identified, from the next sample on.
 bool BoomFollower::runsAway(double step) noexcept {
   if (!bound_.holds(boom_.vibration())) {
     withheld_for_ = VibrationBound::decayTime(boom_.vibration());

@@ -28,8 +28,8 @@ namespace hammer_loads {
 /// One accepted crank sample.
 struct BoomSample {
   StampNs stamp{};
-  HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
-                             ///< weight, no hull motion
+  HullWrench motion_wrench;  ///< wrench at the end of the step's last piece, from the links' motion relative to the
+                             ///< hull: no weight, no hull motion
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   /// Errors of constants, the same in all samples, as constantErrors() and hammerErrors(); zero: exact.
   Eigen::Matrix3d constants = Eigen::Matrix3d::Zero(), of_hammer = Eigen::Matrix3d::Zero();
@@ -37,16 +37,17 @@ struct BoomSample {
   bool imu_lost{};                         ///< earlier readings cannot be trusted
   HullWrench displaced_links{};            ///< DisplacedLinks, at the sample; counts for a boom that vibrates
   double stamp_noise{};                    ///< standard deviation of the stamp, from sample to sample [s]
-  double unseen_peak{};  ///< of Fz of a hammer that is at work, should it not have been followed before [N]
+  double unseen_peak{};  ///< peak of Fz of a working hammer that may not have been followed before [N]
 };
 
-/// Why the boom is taken as rigid or compliant.
+/// Reasons for which the boom is taken as rigid or compliant.
 struct BoomChoice {
   bool compliant{};           ///< published loads include vibration
   bool judged{};              ///< some turn has ended; the figures below are of the last one that did
   double pulse_length{};      ///< pi/mu of its pulse [s]
-  double lowest_frequency{};  ///< of the boom at its end [Hz], 0 without modes
-  double rigid_error{};       ///< of joint torques for such a pulse, over the largest [-]; see rigidError()
+  double lowest_frequency{};  ///< lowest natural frequency of the boom at its end [Hz], 0 without modes
+  double rigid_error{};       ///< error of a rigid boom's joint torques for such a pulse, over the largest [-]; see
+                              ///< rigidError()
   double rigid_tolerance{};   ///< [-]
 };
 
@@ -56,16 +57,16 @@ struct BoomState {
   std::optional<JointFault> fault;
   BoomLoads loads;
   SteelLoads steel;           ///< sections and joints as Boom orders them
-  BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
+  BoomDeviations deviations;  ///< standard deviations of loads and steel; NaN where the crank has no covariance
   BoomDeviations common;      ///< the part of them that constants of crank sensor, hammer and boom make
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
   bool zero_moment_arm{};       ///< a cylinder does not hold its joint: no modes, taken as rigid
   JointVector frequency;        ///< natural frequencies, per mode [Hz]; none when vibration is not followed
   JointVector frequency_std;    ///< standard [Hz]
-  JointVector damping;          ///< of each mode [-]
+  JointVector damping;          ///< damping ratio of each mode [-]
   bool identified{};            ///< frequencies and damping follow the sensors
   JointVector contact_torque;   ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
-  Wrench contact;               ///< the same on the tip, axes of the tip; zero where it is not measured
+  Wrench contact;               ///< contact load BY the rock ON the tip, axes of the tip; zero where it is not measured
   bool measured{};              ///< the cylinders' forces are those of measured pressures
   bool contact_unknown{};       ///< the IMU shows that the rock bears on the hull, pressures do not show its force
   bool hold_down_force_lost{};  ///< the rock does not press on the hull, by measured pressures
@@ -99,10 +100,10 @@ class BoomFollower {
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Through a crank sample that gives no loads: the boom swings on, without pieces as if free.
   void swing(StampNs stamp, const WrenchHistory& step) noexcept;
-  /// Of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as far as sensors or, where they
-  /// identify nothing, the boom file leave it in doubt; zero of a boom taken as rigid.
+  /// Covariance of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as the sensors leave
+  /// it or, where they identify nothing, the boom file; zero for a boom taken as rigid.
   Eigen::Matrix3d tipCovariance() const noexcept;
-  /// How the operator moves the tip at the last blow, vibration left out.
+  /// Velocity of the tip by the operator at the last blow, without vibration.
   TipVelocity drivenTip() const noexcept;
   /// Along z, that would explain what the IMU reads beside hammer and oil, root mean square of a second [N].
   double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
@@ -119,7 +120,7 @@ class BoomFollower {
 
   const BoomState& state() const noexcept { return state_; }
   bool known() const noexcept { return known_; }  ///< the last sample had no fault
-  /// Where the last sample's loads are from.
+  /// Source of the last sample's loads.
   Known source() const noexcept {
     if (tip_) return Known::kMeasured;
     return boom_.vibration().followsReadings() ? Known::kFollowed : Known::kGiven;
@@ -127,7 +128,7 @@ class BoomFollower {
   /// Measured pressures show the rock's force on the hull.
   bool contactKnown() const noexcept { return known_ && source() == Known::kMeasured; }
   const Boom& boom() const noexcept { return boom_; }
-  /// Of a cylinder's joint, at the last sample [rad].
+  /// Angle of a cylinder's joint at the last sample [rad].
   double jointAngle(std::size_t cylinder) const noexcept {
     return motion_.position[boom_.cylinders()[cylinder].joint()];
   }
@@ -139,12 +140,13 @@ class BoomFollower {
   }
   const PressureTrust& pressureTrust() const noexcept { return trust_; }
   std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
-  /// Why the joints were not known at the last sample, a text for each joint; none where they were.
+  /// Reasons why the joints were not known at the last sample, one text for each joint; empty where they were.
   std::vector<std::string> complaints() const;
-  /// How often the vibration was more than anything makes it and began anew; its loads are withheld after that until
-  /// what was wrong would have gone.
+  /// Number of times that the vibration was implausibly large and was reset. Its loads are withheld until the effect of
+  /// the fault has decayed.
   std::uint64_t runaways() const noexcept { return runaways_; }
-  /// What state().hold_down.least belongs to, such as "front edge" or a cylinder's name; empty when it is not known.
+  /// Name of the contact to which state().hold_down.least belongs, such as "front edge" or a cylinder's name; empty
+  /// when unknown.
   const std::string& firstToGive() const noexcept;
 
  private:
@@ -183,7 +185,7 @@ class BoomFollower {
   CylinderPressures pressures_;
   MeasuredTorques measured_;
   PressureTrust trust_;
-  int lost_sensors_{};  ///< that cannot be trusted
+  int lost_sensors_{};  ///< number of sensors that cannot be trusted
   HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;
@@ -199,7 +201,7 @@ class BoomFollower {
   double unexplained_{};           ///< mean square of the force along z that would explain the IMU's readings [N2]
   double least_contact_{};         ///< along z: less is none [N]
   std::optional<StampNs> last_blow_;
-  StampNs last_stamp_{};  ///< of the last sample without a fault
+  StampNs last_stamp_{};  ///< stamp of the last sample without a fault
   bool known_{};
   std::uint64_t faults_{}, runaways_{};
   VibrationBound bound_;

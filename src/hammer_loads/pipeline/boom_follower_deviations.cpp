@@ -73,7 +73,8 @@ WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const no
   return spread;
 }
 
-/// Of what is measured the error is the measurement's: whatever the vibration's is, the contact makes up for it.
+/// Deviations of measured loads are those of the measurement: an error of the vibration is made up for by the contact
+/// load.
 void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
   BoomDeviations& deviations = state_.deviations;
   const Wrench lasting = pressuresCount() ? trust_.notOfRock(striking_distance_, least_contact_) : Wrench{};
@@ -97,8 +98,8 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
   }
 }
 
-/// As loads that do not change: a boom's modes make more of what falls on them, and less of what is above. Into what is
-/// measured they do not enter.
+/// Adds errors of constants as loads that do not change: a boom's modes amplify a load, and attenuate one at a higher
+/// frequency. They do not enter measured loads.
 void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   const bool known = sample.spread.count > 0;
   const auto of = [&](const Eigen::Matrix3d& errors) {
@@ -120,7 +121,7 @@ void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   addConstantsOfBoom(known);
 }
 
-/// Where an IMU alone shows the motion: pressures would show the torques themselves.
+/// Adds the bending's deviation where an IMU alone shows the motion; pressures would show the torques themselves.
 void BoomFollower::addBending() noexcept {
   const JointVector bending = boom_.bendingDeviation();
   BoomDeviations& all = state_.deviations;
@@ -134,8 +135,8 @@ void BoomFollower::addBending() noexcept {
   }
 }
 
-/// Of torques that are not measured: masses, centres and zeros. Of measured ones: seals that rub one way, offsets; they
-/// are in the deviation already.
+/// Adds errors of the boom's constants. Torques that are not measured have those of masses, centres and zeros. Measured
+/// ones have seal friction in one direction and offsets, which their deviation contains already.
 void BoomFollower::addConstantsOfBoom(bool common_known) noexcept {
   BoomDeviations &all = state_.deviations, &common = state_.common;
   JointVector unmeasured = boom_.weightDeviation(), lasting = unmeasured;

@@ -11,7 +11,7 @@ constexpr double kStillBeats = kLongestTurn;  // after a blow
 
 }  // namespace
 
-/// They have made frequencies, damping and motion what these never were.
+/// Discards frequencies, damping and motion that wrong readings have spoilt.
 void BoomFollower::forgetWrongReadings(bool imu_lost) noexcept {
   const int lost = static_cast<int>(trust_.isLost()) + static_cast<int>(imu_lost);
   if (lost > lost_sensors_ && boom_.vibration().identifier()) {
@@ -21,7 +21,7 @@ void BoomFollower::forgetWrongReadings(bool imu_lost) noexcept {
   lost_sensors_ = lost;
 }
 
-/// Where all pressures are known: without them the force would stay as it was.
+/// Follows the contact load where all pressures are known; without them the force would stay as it was.
 void BoomFollower::followContact(StampNs stamp) noexcept {
   bool measured = pressuresCount();
   for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.known(i, stamp);

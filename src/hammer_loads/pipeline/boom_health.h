@@ -1,4 +1,4 @@
-/// How stiff the boom's oil is and how the boom vibrates, as its sensors show it.
+/// Stiffness of the boom's oil and vibration of the boom, as its sensors show them.
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 
 namespace hammer_loads {
 
-/// What changes when a cylinder takes air, pins wear or a link cracks. Every blow is an impulse that is known, so that
-/// a hammer at work tests its boom five times a second.
+/// Figures that change when air enters a cylinder, pins wear or a link cracks. Every blow is a known impulse, so that a
+/// working hammer tests its boom five times a second.
 struct BoomHealth {
   /// Index as in Boom::cylinders(). The ratio does not depend on the pose but for what the boom file has wrong of
   /// masses and places, which is the same from day to day.
   struct OfCylinder {
-    double joint_angle{};             ///< of its joint [rad]
-    double stiffness{}, deviation{};  ///< of the oil over that of the boom file, its standard deviation [-]
+    double joint_angle{};             ///< angle of the cylinder's joint [rad]
+    double stiffness{}, deviation{};  ///< oil stiffness over that of the boom file, and its standard deviation [-]
   };
   struct OfMode {
     double frequency{}, deviation{};  ///< standard [Hz]
@@ -23,7 +23,7 @@ struct BoomHealth {
   };
   std::array<OfCylinder, kMaxJoints> cylinder;
   std::array<OfMode, kMaxJoints> mode;
-  int count{};          ///< of cylinders, and of modes
+  int count{};          ///< number of cylinders and of modes
   bool oil_explains{};  ///< false: a damping is none of oil, and what is stiff or soft beside it is doubtful
 };
 

@@ -1,5 +1,4 @@
-/// Where the uncertainty of a run's figures comes from (JCGM 100, 5.1.2: one contribution to the variance for each
-/// source).
+/// Uncertainty budget of a run's figures (JCGM 100, 5.1.2: one contribution to the variance for each source).
 #pragma once
 
 #include <array>
@@ -31,7 +30,7 @@ class BudgetRecorder {
 
   /// Takes the pipeline's last sample or the ends of Pipeline::end(). No allocation.
   void follow() noexcept;
-  /// Of pulse and blow; nothing before a turn has ended.
+  /// Budgets of pulse and blow; empty before a revolution has ended.
   std::vector<BudgetFigure> figures() const;
   /// Relative variances of the ranges of a hull channel, of kHullChannels; all zero before a turn has ended.
   std::vector<BudgetFigure::Source> ofRange(std::size_t channel) const;
@@ -52,18 +51,19 @@ class BudgetRecorder {
     double value{};
     Columns columns{Columns::Zero()};
     double readings{}, rod{};          ///< variances
-    Unknown unknown{Unknown::Zero()};  ///< as above, of UnknownForce
+    Unknown unknown{Unknown::Zero()};  ///< variances by source of UnknownForce
   };
-  /// Of a turn: the sample that is extreme, and that which may be by one of its own deviations (life::TurnExtremes).
+  /// Extreme sample of a revolution, and the sample that may be the extreme by one of its own deviations
+  /// (life::TurnExtremes).
   struct Extreme {
     End end{}, reach{};
-    double reached{};  ///< how far [channel's unit], times the sign
+    double reached{};  ///< value of reach plus its deviation [channel's unit], times the sign
     double sign{1.0};  ///< -1: the least
 
     void add(const End& sample) noexcept;
     End known() const noexcept;  ///< the sample, its variances those of the turn's extreme
   };
-  /// Of one channel: of the present turn, and sums over turns weighed by the range.
+  /// Range of one channel: of the present revolution, and sums over revolutions weighted by the range.
   struct Range {
     Extreme least, greatest;
     bool begun{};

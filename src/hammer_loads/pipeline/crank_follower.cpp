@@ -64,7 +64,7 @@ bool CrankFollower::passesCounts() const noexcept {
 
 bool CrankFollower::turns() const noexcept { return tracker_->hasSpeed() && std::abs(estimate_.speed) > kSlowCrank; }
 
-/// Its instant, by its place in the sequence of arrival.
+/// Places the sample in the sequence of arrival and so finds its instant.
 std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& measured) noexcept {
   stamp_ = header;
   if (header < 0 || header > kLastStamp) return Refusal::kBadStamp;

@@ -41,10 +41,10 @@ class CrankFollower {
 
   /// CrankFilter::moveZero().
   void moveZero(double angle) noexcept { tracker_->moveZero(angle); }
-  double reading() const noexcept { return measured_.angle; }  ///< of the judged sample [rad]
-  /// Whether angle or speed may be in another unit: not recognised yet.
+  double reading() const noexcept { return measured_.angle; }  ///< angle of the judged sample [rad]
+  /// Returns true if angle or speed may be in another unit that is not recognised yet.
   bool suspectsUnit() const noexcept { return unit_check_.suspects(); }
-  /// Whether the estimate may be published; peak_force: of the last whole turn [N], 0 before it.
+  /// Returns true if the estimate may be published. peak_force: of the last whole revolution [N], 0 before it.
   bool isSettled(const HullMotion& hull, double peak_force) noexcept;
 
   const CrankEstimate& estimate() const noexcept { return estimate_; }
@@ -56,7 +56,7 @@ class CrankFollower {
   const CrankFilter& tracker() const noexcept { return *tracker_; }
   const StampSequence& stamps() const noexcept { return sequence_; }
   CrankUnit unit() const noexcept { return unit_check_.unit(); }
-  /// When the encoder slipped last, by its stamp [ns]; nothing: it did not.
+  /// Stamp of the sample at which the encoder slipped last [ns]; none if it did not.
   const std::optional<StampNs>& slipped() const noexcept { return slipped_; }
   bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
 
@@ -73,20 +73,20 @@ class CrankFollower {
   const HullModel* model_;
   PipelineSettings settings_;
   UnitCheck unit_check_;
-  std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
-  CrankSample last_raw_;                   ///< as above
-  StampNs latency_;                        ///< of header stamps
+  std::optional<StampNs> last_raw_stamp_;  ///< stamp of the last sample, accepted or not
+  CrankSample last_raw_;                   ///< last sample, accepted or not
+  StampNs latency_;                        ///< latency of the header stamps
   StampSequence sequence_;
   std::unique_ptr<CrankFilter> tracker_;
   CrankSampleGate gate_;
   CrankStep step_;
   CrankEstimate estimate_;
 
-  StampNs stamp_{};  ///< of the judged sample
+  StampNs stamp_{};  ///< stamp of the judged sample
   CrankSample measured_;
   CrankSampleGate::Verdict verdict_;
 
-  int slips_{};  ///< of the encoder, so far
+  int slips_{};  ///< number of the encoder's slips so far
   std::optional<StampNs> slipped_;
   CrankPosition last_position_;  ///< at the last accepted sample
   bool unsettled_{};

@@ -1,4 +1,4 @@
-/// Which crank samples are taken: checks that need no model.
+/// Checks of crank samples that need no model.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ namespace hammer_loads {
 class CrankSampleGate {
  public:
   struct Limits {
-    double max_speed{};     ///< of any crank [rad/s]
+    double max_speed{};     ///< largest speed of any crank [rad/s]
     double stale_after{};   ///< age of the last sample from which on a new one restarts [s]
     double frozen_turn{};   ///< a crank that turned further does not give the same angle again [rad]
-    double frozen_speed{};  ///< nor does one that turns faster, however soon [rad/s]
+    double frozen_speed{};  ///< speed above which equal readings are frozen however soon they follow [rad/s]
   };
   explicit CrankSampleGate(const Limits& limits) : limits_(limits), stamps_(limits.stale_after) {}
 
@@ -28,7 +28,7 @@ class CrankSampleGate {
     bool speed_is_dead{};  ///< nothing but zeros while the angle moves: many drivers fill in what they do not measure
   };
 
-  /// Why a sample's own values cannot be taken, whatever its stamp.
+  /// Reason for which a sample's own values cannot be accepted, whatever its stamp.
   std::optional<Refusal> refusalOf(const CrankSample& sample) const noexcept;
   Verdict judge(StampNs stamp, const CrankSample& sample) noexcept;
   void accept(StampNs stamp, const CrankSample& sample) noexcept {
@@ -46,7 +46,7 @@ class CrankSampleGate {
   Limits limits_;
   StampOrder stamps_;
   CrankSample accepted_;  ///< last
-  bool frozen_{};         ///< the same reading ever since, while the crank turned
+  bool frozen_{};         ///< true while the reading has not changed though the crank turned
 };
 
 }  // namespace hammer_loads

@@ -31,10 +31,10 @@ class CrankStep {
     double time{};
     std::int64_t blow{};  ///< index as in CrankPosition
     bool forward{};
-    double speed_before{};  ///< of the crank there, in the order of time [rad/s]
-    double speed_after{};   ///< as above
+    double speed_before{};  ///< crank speed before the passage, in the order of time [rad/s]
+    double speed_after{};   ///< crank speed after the passage [rad/s]
     bool smooth{};          ///< onto the mirrored branch or back from it: nothing jumps
-    bool may_strike{};      ///< as strikes, or onto the mirrored branch, which may turn out wrong
+    bool may_strike{};      ///< true if it strikes, or leads onto the mirrored branch, which may turn out wrong
     bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 
@@ -48,14 +48,14 @@ class CrankStep {
   bool known() const noexcept { return known_; }
   StampNs start() const noexcept { return start_; }
   double length() const noexcept { return length_; }
-  /// Of an instant this long after the start [s].
+  /// Stamp of an instant this long after the start [s].
   StampNs stampAt(double time) const noexcept {
     return start_ + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
   }
   CrankEstimate at(double time) const noexcept { return tracker_->between(time); }
   /// At its end.
   const LinksAtAngle& links() const noexcept { return links_; }
-  /// How the links move at an angle; at the step's ends it is known already.
+  /// Motion of the links at an angle; at the step's ends it is known already.
   LinkMotion linksAt(CrankAngle angle) const noexcept {
     if (angle == links_.angle) return links_.links;
     return angle == links_before_.angle ? links_before_.links : hammer_loads::linksAt(*model_, angle).links;
@@ -72,10 +72,10 @@ class CrankStep {
   /// Estimate on one side of a passage that is not smooth: exactly at the blow, so that nothing is lost to rounding
   /// there.
   CrankEstimate besides(const Passage& passage, Side side) const noexcept;
-  /// Of the instant of a passage, standard [s].
+  /// Standard deviation of the instant of a passage [s].
   double timeDeviation(const Passage& passage) const noexcept;
-  /// What the samples at the step's ends each say of at(time), of besides(passage, side); nothing where one of them
-  /// does not reach there.
+  /// Crank at(time), or besides(passage, side), as each of the samples at the step's ends predicts it; none where one
+  /// of them does not reach that far.
   std::optional<CrankWays> ways(double time) const noexcept { return tracker_->waysBetween(time); }
   std::optional<CrankWays> waysBesides(const Passage& passage, Side side) const noexcept;
 

@@ -1,4 +1,4 @@
-/// Whether the crank is one that the model describes: which way it turns, and whether its readings agree.
+/// Check that the crank is one that the model describes: direction of rotation, agreement of its readings.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,8 @@ class CrankTrust {
   /// a crank that turns backward 6.5, with a zero 2 deg off 2.5, on machines whose rod gives below 2
   /// (crank_trust_test).
   static constexpr double kMost = mismatch::kContradicts;
-  /// Of CrankFilter::consistency(), what is said, but not withheld; a clean machine has 0.9, a zero 2 deg off 2.
+  /// threshold of CrankFilter::consistency() for a warning that withholds nothing; a correct machine has 0.9, a zero 2
+  /// deg off 2
   static constexpr double kInconsistent = mismatch::kUnexplained;
 
   explicit CrankTrust(const CrankSensor& sensor) noexcept : sensor_(sensor) {}
@@ -46,7 +47,7 @@ class CrankTrust {
   }
 
   bool turnsBackward() const noexcept { return backward_; }
-  /// It has turned forward of late: one that only ever turned backward has not struck.
+  /// Returns true if the crank has turned forward of late: one that only ever turned backward has not struck.
   bool hasRunUp() const noexcept { return forward_ > kRunUp; }
   bool isInconsistent() const noexcept { return inconsistent_ || isLost(); }
   /// The estimate is not good enough before the blow, turn after turn.

@@ -27,18 +27,18 @@ class CylinderPressures {
   /// last or far off the others (JumpGuard) is refused and counted; time running back is believed from the second
   /// reading on.
   bool update(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept;
-  /// Both chambers are.
+  /// Returns true if the pressures of both chambers are known.
   bool known(std::size_t cylinder, StampNs stamp) const noexcept {
     return known(tracks_[cylinder][0], stamp) && known(tracks_[cylinder][1], stamp);
   }
   /// Nothing unless both chambers are known.
   std::optional<ChamberPressures> at(std::size_t cylinder, StampNs stamp) const noexcept;
 
-  /// Of a cylinder's last reading.
+  /// Stamp of a cylinder's last reading.
   StampNs newest(std::size_t cylinder) const noexcept {
     return std::max(tracks_[cylinder][0].now.stamp, tracks_[cylinder][1].now.stamp);
   }
-  double greatest() const noexcept { return greatest_; }  ///< of all readings taken, either sign [Pa]
+  double greatest() const noexcept { return greatest_; }  ///< largest magnitude of all accepted readings [Pa]
   std::uint64_t accepted() const noexcept { return accepted_; }
   std::uint64_t refused() const noexcept { return refused_; }
   /// Readings taken of a cylinder: what it has more than before is new.

@@ -12,8 +12,8 @@ namespace hammer_loads {
 namespace {
 
 enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 };
-// Of slopes' walk times interval^3 (of a signal) or interval^5 (of its integral) over the noise's variance: from a hull
-// that drifts to one whose readings leave no doubt.
+// Intensities of the slope's random walk, times interval^3 (signal) or interval^5 (its integral), over the variance of
+// the noise: from a hull that drifts slowly to one whose readings leave no uncertainty.
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 // Numerical: kWalks, kWalksOfIntegral
@@ -110,7 +110,7 @@ void DrivenSignal::begin(double reading, const Eigen::Vector3d& load) noexcept {
       c.x[kSmooth] = reading - load.dot(c.x.segment<3>(kCompliance));
     else
       c.x[kIntegral] = reading;
-    // Of a rate that is read the acceleration is not.
+    // A rate that is read does not show the acceleration.
     const double smooth = itself ? square(kUnknownSignal) : square(kUnknownSignal * kUnknownSlope);
     c.P(kIntegral, kIntegral) = 1.0, c.P(kSmooth, kSmooth) = smooth;
     c.P(kSlope, kSlope) = smooth * square(kUnknownSlope);

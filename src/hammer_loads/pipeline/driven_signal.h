@@ -34,8 +34,8 @@ class DrivenSignal {
   /// A short piece of time.
   struct Step {
     double length{};           ///< [s]
-    Eigen::Vector3d impulse;   ///< of the load, blows included
-    Eigen::Vector3d blow;      ///< of the blows alone
+    Eigen::Vector3d impulse;   ///< impulse of the load, blows included
+    Eigen::Vector3d blow;      ///< impulse of the blows alone
     Eigen::Vector3d velocity;  ///< by which the hull's vibration changes: x, z, turning
     Eigen::Vector3d way;       ///< the integral of that from 0
   };
@@ -47,7 +47,7 @@ class DrivenSignal {
   };
   struct Value {
     double signal{}, integral{};  ///< the integral only where it is read
-    /// Of signal and integral.
+    /// Variances and covariance of signal and integral.
     double signal_variance{}, covariance{}, integral_variance{};
   };
 
@@ -57,9 +57,9 @@ class DrivenSignal {
 
   explicit DrivenSignal(const Settings& settings) noexcept;
 
-  /// What a description says of the compliances, and what each can be at most: it is believed to a part of these. The
-  /// first description replaces the first guess; from one to the next, as the pose changes, what was learned moves by
-  /// their difference.
+  /// Sets the compliances of a robot description and the most that each can be; their standard deviation is a part of
+  /// that. The first description replaces the first guess. From one to the next, as the pose changes, the identified
+  /// values move by the difference of the descriptions.
   void expect(const Eigen::Vector3d& compliance, const Eigen::Vector3d& most) noexcept;
   /// Readings are not continuous with those before; what the hull is stays known.
   void forgetMotion() noexcept { begun_ = false; }
@@ -99,10 +99,11 @@ class DrivenSignal {
   Swing swing(double length, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) const noexcept {
     return swing(best().x, length, impulse, lasting);
   }
-  double noise() const noexcept;  ///< of a reading, as learned
+  double noise() const noexcept;  ///< learned noise of a reading
   Eigen::Vector3d compliance() const noexcept { return best().x.segment<3>(3); }
   Eigen::Vector3d complianceDeviation() const noexcept;
-  /// Of the signal, by what loads of these mean squares do at once, as far as the hull's mass is known.
+  /// Mean square of the immediate response of the signal to loads of these mean squares, as far as the hull's mass is
+  /// known.
   double yielding(const Eigen::Vector3d& load_square) const noexcept {
     return load_square.dot(compliance().cwiseAbs2() + complianceDeviation().cwiseAbs2());
   }
@@ -110,10 +111,11 @@ class DrivenSignal {
  private:
   /// The covariance is in units of the noise's variance.
   struct Candidate {
-    double walk{};  ///< of the slope, intensity over the noise's variance, in units of the reading's interval
+    double walk{};  ///< intensity of the slope's random walk over the variance of the noise, in units of the readings'
+                    ///< interval
     State x;
     Covariance P;
-    double variance{}, log_spread{};  ///< of a reading; mean logarithm of what it was foretold with
+    double variance{}, log_spread{};  ///< variance of a reading; mean logarithm of its predicted variance
     double quiet{};                   ///< variance of a reading at rest
     double score() const noexcept;
   };

@@ -34,16 +34,16 @@ class ElasticFollower {
   bool isWanted() const noexcept { return wanted_; }  ///< level elastic, and a spring may be there
   /// The spring is followed around each blow; elsewhere the machine is that of level linkage.
   bool isUsed() const noexcept { return best_ != nullptr && best_->isProven(); }
-  /// Why the spring is not used.
+  /// Reason why the spring is not used.
   const char* whyNotUsed() const noexcept;
   bool runs() const noexcept { return isUsed() && best_->isRunning(); }
 
   /// While it runs: the crank as the two bodies have it, its acceleration as if its rod were rigid.
   CrankEstimate crank() const noexcept { return crankOf(filter().motion()); }
-  /// What a rod that gives adds to the loads of a rigid one at that crank.
+  /// Loads that an elastic rod adds to those of a rigid rod at the same crank motion.
   struct Beside {
     HullWrench wrench;
-    Eigen::Matrix3d covariance;  ///< of the whole wrench by readings and rod
+    Eigen::Matrix3d covariance;  ///< covariance of the whole wrench by readings and rod
     double crank{};              ///< acceleration [rad/s2]
   };
   /// Once a sample. ring: of the rocker's acceleration beside a rigid rod's, of any phase (RodRing) [rad/s2]. That of
@@ -57,13 +57,14 @@ class ElasticFollower {
   PinReactions pins(const HullMotion& hull, double near_blow, double angle_std) const noexcept;
   /// While it runs: of a crank whose rigid rod moves the rocker as it is before the blow [rad/s].
   double strikingSpeed() const noexcept;
-  /// Of the blow that was struck while it runs: the rocker's speed at the tool and its restitution, as a crank would
-  /// feel them whose rod takes the rocker up at once.
+  /// Blow that was struck while it runs: the rocker's speed at the tool and its restitution, as a crank would feel them
+  /// whose rod takes the rocker along at once.
   std::optional<CrankBlow> blow() const noexcept;
   /// Contact lasts, or may have begun or not.
   bool isBesideBlow() const noexcept;
 
-  /// It runs, and has over the step to the crank's last sample: what follows is within that, times after its start [s].
+  /// Returns true if it runs and has done so over the step to the crank's last sample. The functions below apply to
+  /// that step; times count from its start [s].
   bool ranOverStep() const noexcept { return runs() && best_->hasMoved(); }
   CrankEstimate crankAt(double time) const noexcept { return crankOf(motionAt(time)); }
   /// With what a rod that gives adds; the deviations of the samples stand for its own.
@@ -76,28 +77,30 @@ class ElasticFollower {
     const RodMotion there = motionAt(time);
     return instantOf(there, besideRigid(there, drive, loads(there, drive)), drive, hull);
   }
-  /// The same as the two bodies have it, not weighed, at the step's end as it was before the sample there: what the
-  /// moment of an impact leaves open of the force at a time it does not leave open of its extreme.
+  /// Instant by the two bodies alone, unweighted; at the step's end the state before the sample there. The uncertain
+  /// moment of an impact affects the force at a given time, but not its extreme.
   Instant onItsWay(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
     const RodMotion there = filter().between(time);
     return instantOf(there, loads(there, drive) - rigidLoads(there, drive), drive, hull);
   }
   bool isBesideBlowAt(double time) const noexcept;
-  /// Of links and drive, relative to the hull.
+  /// Momentum of links and drive, relative to the hull.
   LoadImpulse momentum(const TwoBodyState& bodies, const DriveReaction& drive) const noexcept;
-  /// As motionImpulse(), the jump at the blow left out likewise; doubt: by a restitution that is not known better.
+  /// Impulse like motionImpulse(), which leaves out the jump at the blow as well; doubt: standard deviation by the
+  /// uncertain restitution.
   struct Impulse {
     LoadImpulse motion;
     HullWrench doubt;
   };
   Impulse impulse(const DriveReaction& drive, double from, double to) const noexcept;
-  /// Of the links' and the drive's momentum at the sample, standard [N s, N s, N m s].
+  /// Standard deviation of the momentum of links and drive at the sample [N s, N s, N m s].
   HullWrench momentumDeviation(const DriveReaction& drive) const noexcept;
   /// While it runs: with pins tight, or with play where the last blow showed one.
   const RodFilter& filter() const noexcept { return best_ != nullptr ? *best_ : filters_[0]; }
 
  private:
-  /// Of the hull as HullWrench; acceleration of the crank, and of the rocker beside a rigid rod's, x'' [rad/s2].
+  /// Loads on the hull as HullWrench; acceleration of the crank, and x'' of the rocker relative to a rigid rod's
+  /// [rad/s2].
   using Loads = Eigen::Matrix<double, 5, 1>;
   using LoadCovariance = Eigen::Matrix<double, 5, 5>;
   enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
@@ -107,7 +110,7 @@ class ElasticFollower {
                     const HullMotion& hull) const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
-  /// Of these, weighed, what is beside a rigid rod's.
+  /// Difference of these loads to those of a rigid rod, weighted.
   Loads besideRigid(const RodMotion& motion, const DriveReaction& drive, Loads loads) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;
@@ -126,14 +129,14 @@ class ElasticFollower {
   bool alone_{};  ///< the likelier filter alone, at this blow
   std::array<RodFilter, 2> filters_;
   double evidence_{};          ///< mean over some blows of the rod's fit less that of the rigid mechanism
-  double rigid_fit_{};         ///< of this blow
+  double rigid_fit_{};         ///< fit of the rigid mechanism at this blow
   const RodFilter* best_{};    ///< null: rigid
   std::int64_t blow_{};        ///< CrankPosition::blow
   double late_{};              ///< standard deviation of what all stamps are off alike [s]
-  RunningMean<> squares_;      ///< of x'' since the blow [rad2/s4]
-  double length_{};            ///< of the last step [s]
+  RunningMean<> squares_;      ///< mean square of x'' since the blow [rad2/s4]
+  double length_{};            ///< length of the last step [s]
   double vibration_{};         ///< x'' at the last sample [rad/s2]
-  Loads gain_{Loads::Zero()};  ///< of beside()'s correction, by x''
+  Loads gain_{Loads::Zero()};  ///< derivative of beside()'s correction by x''
 };
 
 }  // namespace hammer_loads

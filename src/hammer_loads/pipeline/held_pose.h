@@ -1,4 +1,4 @@
-/// Where the operator holds the boom, without the vibration that joint sensors may see.
+/// Pose in which the operator holds the boom, without the vibration that joint sensors may see.
 #pragma once
 
 #include "hammer_loads/boom/chain_dynamics.h"
@@ -19,26 +19,26 @@ class HeldPose {
   /// A blow was struck in the last step.
   void struck() noexcept;
   bool isDriven() const noexcept { return unrest_ > 0.0; }
-  /// Of the last call; as measured while driven. The acceleration is the operator's slow one, but as measured while
-  /// driven and for 2.5 s after that, after a gap and after the start.
+  /// Motion at the last call; as measured while driven. The acceleration is the operator's slow one, except while
+  /// driven and for 2.5 s after that, after a gap and after the start, when it is the measured one.
   const JointMotion& motion() const noexcept { return motion_; }
 
   const JointVector& slowAngle() const noexcept { return slow_; }  ///< [rad], 1 s late
   JointVector slowRate() const noexcept;                           ///< [rad/s], 1 s late
-  /// Of the operator, at the last blow [rad/s]: of a joint that is driven what its angle changed by from blow to blow,
-  /// over which the vibration comes back, drawn on by half a turn; else slowRate().
+  /// Joint rates by the operator at the last blow [rad/s]. A driven joint has its change of angle from blow to blow,
+  /// over which the vibration repeats, extrapolated by half a revolution; others have slowRate().
   JointVector rateAtBlow() const noexcept { return isDriven() && of_turn_.size() > 0 ? of_turn_ : slowRate(); }
 
  private:
   void goOn(double step) noexcept;
   JointVector slowAcceleration() const noexcept;  ///< [rad/s2]; of a swing of 14 s 27 % are wrong
 
-  JointVector angle_;                               ///< as measured
+  JointVector angle_;                               ///< angle as measured
   JointVector at_blow_, of_turn_, of_turn_before_;  ///< angles; rates of the last turn drawn on, and of it [rad/s]
   double since_blow_{};                             ///< [s]
   JointVector first_, slow_, slowest_, last_;       ///< angles through one to four filters [rad]
-  double unrest_{};    ///< this long the operator's last fast move, or its not being known, still counts [s]
-  double settling_{};  ///< this long the acceleration is not known [s]
+  double unrest_{};    ///< time for which the operator's last fast motion, or a gap, still counts [s]
+  double settling_{};  ///< time for which the acceleration is not known [s]
   JointMotion motion_;
 };
 

@@ -1,4 +1,4 @@
-/// How far the published wrench may be off, by the crank estimate's covariance.
+/// Standard deviations of the published wrench, from the crank estimate's covariance.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,11 +16,11 @@ class CrankFilter;
 
 /// Standard deviations; NaN where the crank's covariance is not known.
 struct HullDeviation {
-  HullWrench wrench;  ///< of force_x [N], force_z [N], torque_y [N m]
+  HullWrench wrench;  ///< standard deviations of force_x [N], force_z [N], torque_y [N m]
   HullWrench common;  ///< the part of it that is the same in all samples: of constants
   /// Coefficients of (force_x, force_z), (force_x, torque_y), (force_z, torque_y) [-]; 0 beside a deviation of 0.
   Eigen::Vector3d correlation, common_correlation;
-  double angle{};                                                ///< of the crank [rad]
+  double angle{};                                                ///< standard deviation of the crank angle [rad]
   double speed{};                                                ///< [rad/s]
   double acceleration{};                                         ///< [rad/s2]
   double common_angle{}, common_speed{}, common_acceleration{};  ///< the part of constants of these
@@ -29,7 +29,7 @@ struct HullDeviation {
 /// Adds an error of the load that is independent of those in `deviation.wrench`.
 void addCovariance(const Eigen::Matrix3d& covariance, HullDeviation& deviation) noexcept;
 
-/// How the links move at a crank angle and a little beside it: what gradients by the angle need.
+/// Motion of the links at a crank angle and slightly beside it, for gradients by the angle.
 struct LinksBeside {
   LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept;
   LinksAtAngle here, beside;
@@ -69,10 +69,10 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 /// Rows: x, z [N s].
 using MomentumColumns = ByConstants<2, kLoadColumns>;
 
-/// Of the momentum of the links where the crank is at an angle with a speed [rad/s]; of_speed: errors of that [rad/s].
+/// Errors of the links' momentum at a crank angle and a speed [rad/s]; of_speed: errors of that speed [rad/s].
 MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
                                 const Eigen::Matrix<double, 1, ConstantErrors::kSize>& of_speed) noexcept;
-/// What errors of masses make of the links' weight [N].
+/// Errors of the links' weight by errors of the masses [N].
 MomentumColumns weightColumns(const WrenchColumns& hammer, const HullModel& model, Gravity gravity) noexcept;
 
 /// Samples and the sensor's constants as three errors of the load that are independent of each other, from motion of
@@ -86,8 +86,8 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
 Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept;
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept;
 
-/// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong, or that a
-/// rod which gives lets the rocker strike later. angle_std: its own [rad]; NaN: not known.
+/// Standard deviation of the crank's angle from the blow [rad]. It contains that of the angle, the zero error that the
+/// readings show, and the later blow of an elastic rod. angle_std: of the angle [rad]; NaN: not known.
 double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept;
 
 /// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing

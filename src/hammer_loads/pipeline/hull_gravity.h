@@ -22,7 +22,7 @@ class HullGravity {
   /// Boom joint angles, any subset in any order. Whether any was of use.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
-  /// Of the chain's joints, once all of them have been heard; null: not yet, or no chain.
+  /// Positions of the chain's joints once all of them have been received; null before, or without a chain.
   const JointVector* position() const noexcept { return chain_ && allHeard() ? &position_ : nullptr; }
   const Gravity& gravity() const noexcept { return gravity_; }  ///< hull axes [m/s2]
   const HullPitch& pitch() const noexcept { return pitch_; }
@@ -36,9 +36,9 @@ class HullGravity {
   Eigen::Vector3d g_B_;  ///< in the root's axes [m/s2]
   std::optional<Chain> chain_;
   double beyond_{};           ///< pitch of the hull against the chain's tip [rad]
-  JointVector zeros_;         ///< what they read at the chain's zeros
-  JointVector position_;      ///< of the chain's joints; zero: not heard
-  std::vector<bool> heard_;   ///< of each of them
+  JointVector zeros_;         ///< readings at the chain's zeros
+  JointVector position_;      ///< positions of the chain's joints; zero: not received
+  std::vector<bool> heard_;   ///< true for each joint that was received
   bool pitch_is_of_chain_{};  ///< the pitch joints are joints of the chain
   Gravity gravity_;
 };

@@ -27,7 +27,7 @@ struct StampedImuReading {
   ImuReading reading;
 };
 
-/// Why a reading was not taken.
+/// Reason for which a reading was refused.
 enum class ImuRefusal : std::size_t { kNotFinite, kImplausible, kOutOfOrder, kJump, kCount };
 
 constexpr std::array<const char*, static_cast<std::size_t>(ImuRefusal::kCount)> kImuRefusalNames{
@@ -47,7 +47,7 @@ class HullImu {
 
   /// A blow was struck at that instant: accelerations jump there, so no line and no difference goes across it.
   void struck(StampNs stamp) noexcept;
-  /// How D moved at the last blow, where that is known.
+  /// Motion of D at the last blow; none where it is not known.
   std::optional<TipVelocity> speedAtBlow() const noexcept { return speed_.atBlow(); }
 
   /// The unit's reading at a stamp, in axes of hammer_hull: on the line through the last two readings, also one

@@ -34,7 +34,7 @@ std::optional<HullMobility::Mobility> HullMobility::movedTo(const JointVector& p
   const auto mobility = [&](const auto& of, const auto& by) {
     return Eigen::Matrix3d(of * factor.solve(by.transpose()));
   };
-  // Of a positive definite matrix no entry is beyond the geometric mean of its diagonal's.
+  // No entry of a positive definite matrix exceeds the geometric mean of the two diagonal entries.
   const Eigen::Vector3d rows = mobility(of_unit, of_unit).diagonal().cwiseSqrt();
   const Eigen::Vector3d columns = mobility(of_d, of_d).diagonal().cwiseSqrt();
   const Mobility result{mobility(of_unit, of_d), rows * columns.transpose()};

@@ -1,4 +1,4 @@
-/// How a hull on its boom yields to a load at once, before the oil does.
+/// Immediate response of a hull on its boom to a load, before the oil yields.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,8 @@
 
 namespace hammer_loads {
 
-/// Of links and hull of a robot description that turn in the joints of their cylinders, all others held.
+/// Mobility of links and hull of a robot description that turn in the joints of their cylinders; all other joints are
+/// held.
 class HullMobility {
  public:
   /// position: of the unit in axes of the hull, from D [m].
@@ -20,7 +21,7 @@ class HullMobility {
   /// moment about D [N m].
   struct Mobility {
     Eigen::Matrix3d value;  ///< J M^-1 J^T
-    Eigen::Matrix3d most;   ///< what each entry can be at most where the links were coupled otherwise
+    Eigen::Matrix3d most;   ///< largest possible value of each entry if the links were coupled otherwise
   };
   /// At a pose. Nothing where no joint has moved by the boom's refresh_angle since
   /// the last one, where the links have no inertia or no joint has a cylinder.
@@ -33,7 +34,7 @@ class HullMobility {
   std::vector<int> joints_;
   Eigen::Vector3d unit_;
   double refresh_angle_;  ///< [rad]
-  JointVector at_;        ///< of the last one given; empty: none
+  JointVector at_;        ///< positions of the last call; empty: none
 };
 
 }  // namespace hammer_loads

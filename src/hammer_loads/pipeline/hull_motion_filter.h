@@ -17,8 +17,8 @@
 
 namespace hammer_loads {
 
-/// Of effective gravity along x and z [m/s2], turning rate [rad/s], its derivative [rad/s2], in this order: what the
-/// hull's motion may be off, and independent of the crank's errors.
+/// Covariance of effective gravity along x and z [m/s2], angular velocity [rad/s] and its derivative [rad/s2], in this
+/// order. The errors of the hull's motion are independent of the crank's.
 using HullMotionCovariance = Eigen::Matrix4d;
 
 struct KnownHullMotion {
@@ -34,7 +34,7 @@ class HullMotionFilter {
  public:
   HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer);
 
-  /// What a robot description says of how the hull yields.
+  /// Sets the mobility of the hull that a robot description gives.
   void expect(const HullMobility::Mobility& mobility) noexcept;
   /// A reading that was taken, axes of hammer_hull.
   void add(const StampedImuReading& reading) noexcept { waiting_.add(reading); }
@@ -45,10 +45,10 @@ class HullMotionFilter {
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
   /// Readings up to a stamp that no crank sample has followed yet.
   std::ptrdiff_t waiting(StampNs stamp) const noexcept { return waiting_.upTo(stamp); }
-  /// Of a hull whose motion is not read, about its weight: twice what the load of the last 2 s does to it at once, as
-  /// far as its mass is known. What it turns at is next to nothing.
+  /// Covariance of the motion of an unmeasured hull, about its weight: twice the immediate response to the load of the
+  /// last 2 s, as far as its mass is known. The angular velocity is negligible.
   HullMotionCovariance unread() const noexcept;
-  /// Of the last reading used [ns].
+  /// Stamp of the last reading used [ns].
   StampNs last() const noexcept { return last_.stamp; }
 
  private:
@@ -61,13 +61,14 @@ class HullMotionFilter {
 
   HullImuSettings settings_;
   DrivenSignal x_, z_, turning_;
-  std::optional<HullMobility::Mobility> mobility_;  ///< as described last
+  std::optional<HullMobility::Mobility> mobility_;  ///< mobility of the last description
   WrenchPath path_;
   WaitingReadings waiting_;
   StampedImuReading last_;
   WrenchPath::Instant at_last_;
   HullWrench beside_;
-  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< of the samples
+  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns,
+                                            Eigen::Vector3d::Zero()};  ///< mean square of the samples' loads
   int readings_{};
   double greatest_load_{};
 };

@@ -1,4 +1,4 @@
-/// How fast the hull moves when the rocker strikes, from its IMU.
+/// Speed of the hull when the rocker strikes, from its IMU.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ class HullSpeed {
     StampNs stamp{};
     double force{}, integral{};  ///< less the first force
     TipVelocity velocity;        ///< but for weight and offsets
-    TipVelocity way;             ///< its integral
+    TipVelocity way;             ///< integral of the velocity
   };
   static constexpr std::size_t kKept = 64;  ///< some 60 ms at 1 kHz: so late a crank sample may show a blow
 

@@ -6,14 +6,14 @@
 namespace hammer_loads {
 namespace {
 
-/// Of the tip of a boom; none if it is rigid.
+/// Motion of a boom's tip by vibration; zero if the boom is rigid.
 HullMotion vibrationOf(const BoomState& boom) noexcept {
   if (!boom.choice.compliant) return {};
   const auto& a = boom.tip.acceleration;  // linear, then angular
   return {{-a[0], -a[2]}, boom.tip.velocity[4], a[4]};
 }
 
-/// Likewise how far it may be off; of its rate, which turns next to nothing, none is given.
+/// Covariance of that motion; the angular velocity is negligible and has none.
 HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
   HullMotionCovariance doubt = HullMotionCovariance::Zero();
   doubt.topLeftCorner<2, 2>() = tip.topLeftCorner<2, 2>();
@@ -107,8 +107,8 @@ void HullState::find(StampNs stamp) noexcept {
   if (overdue > 0.0 && pitch_known_) forgetReading(1.0 - forgottenPart(overdue));
 }
 
-/// What a reading that is held has beside the weight is no longer true: only a part of it. Held to the end it would
-/// lead the crank's filter astray, and jump there.
+/// Reduces the part beside the weight of a reading that is held too long. A full value held to the end would bias the
+/// crank's filter, and the motion would jump there.
 void HullState::forgetReading(double part) noexcept {
   HullMotion& m = now_.motion;
   const Gravity& weight = weight_.gravity();

@@ -33,7 +33,7 @@ class HullState {
   struct Motion {
     HullMotion motion;  ///< at the sample
     bool moves{};       ///< the hull's own motion is in it
-    /// How far an IMU's motion may be off, or that of a boom whose oil sensors identify. Zero where another gives it.
+    /// Covariance of an IMU's motion, or of that of a boom whose oil the sensors identify. Zero for other sources.
     HullMotionCovariance covariance = HullMotionCovariance::Zero();
   };
 
@@ -53,7 +53,7 @@ class HullState {
   /// Prior of the motion where nothing measures it; null: the hull is held.
   const UnmeasuredHull* prior() const noexcept { return source_ == HullMotionSource::kFixed ? nullptr : &prior_; }
   bool followsLoad() const noexcept { return source_ == HullMotionSource::kImu; }  ///< follow() has an effect
-  /// Of D at the last blow by the IMU, where that is known.
+  /// Velocity of D at the last blow by the IMU; none where it is not known.
   std::optional<TipVelocity> speedAtBlow() const noexcept {
     return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
   }
@@ -89,20 +89,23 @@ class HullState {
 
   HullMotionSource source_;
   UnmeasuredHull prior_;
-  RunningMean<Eigen::Vector3d> load_{look_back::kTenTurns, Eigen::Vector3d::Zero()};         ///< carry()
-  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< of its components
+  RunningMean<Eigen::Vector3d> load_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< carry()
+  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns,
+                                            Eigen::Vector3d::Zero()};  ///< mean squares of the load's components
   HullGravity weight_;
   HullImu imu_;
   HullMotionFilter filter_;
-  std::optional<HullMobility> mobility_;  ///< of the boom; none: followsLoad() is not wanted, or no boom
+  std::optional<HullMobility> mobility_;  ///< mobility of the boom; none: followsLoad() is not wanted, or no boom
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
-  std::optional<HullMotion> vibration_;  ///< of the boom's tip at the last sample, without weight; none: not known
-  std::optional<HullMotionCovariance> vibration_doubt_;  ///< of it; none: it was not asked for while an IMU spoke
+  std::optional<HullMotion>
+      vibration_;  ///< motion of the boom's tip at the last sample, without weight; none: not known
+  std::optional<HullMotionCovariance>
+      vibration_doubt_;  ///< covariance of vibration_; none: not requested while the IMU was in use
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
   bool known_{true}, by_imu_{};
-  bool pitch_known_{}, in_degrees_{};  ///< as of the last message of joints
+  bool pitch_known_{}, in_degrees_{};  ///< state at the last message of joints
 };
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// Whether an inertial unit can sit on this hull as it is said to.
+/// Check that an inertial unit can sit on the hull as the parameters describe it.
 #pragma once
 
 #include <Eigen/Core>
@@ -69,7 +69,7 @@ class ImuTrust {
   RunningMean<Eigen::Vector2d> off_{look_back::kTenTurns, Eigen::Vector2d::Zero()};  ///< from the weight
   Latch off_weight_{kMostPart};
   double same_for_{}, last_rate_{};
-  Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), rate_ = force_;  ///< of the last reading
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), rate_ = force_;  ///< force and rate of the last reading
   bool varies_{}, is_lost_{};
 };
 

@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-/// Why the joints' motion is not known at an instant.
+/// Reason why the joints' motion is not known at an instant.
 struct JointFault {
   /// kRunAway: the boom's vibration was more than anything makes it, and begins anew
   enum class Kind { kMissing, kStale, kRunAway };
@@ -72,8 +72,8 @@ class JointBuffer {
   static constexpr std::uint64_t kKept = 64;
   struct Track {
     std::array<State, kKept> states;
-    std::uint64_t count{};           ///< of states since the beginning; the newest is count - 1
-    std::optional<StampNs> rewound;  ///< of the last state, if it was refused as out of order
+    std::uint64_t count{};           ///< number of states since the beginning; the newest is count - 1
+    std::optional<StampNs> rewound;  ///< stamp of the last state, if it was refused as out of order
     bool jumped{};                   ///< the last state was refused for that
     bool turns_freely{};             ///< no limits: positions may wind, the shorter way counts
 

@@ -137,8 +137,8 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
   endTurnsUntil(step.length());
 }
 
-/// What is closer to the blow than the crank's angle is known counts as little as a sample there: of the blow's sides,
-/// the place is moved to where they are known. False: it is not in the step.
+/// Moves a place that is closer to the blow than the uncertainty of the crank angle to where the sides of the blow are
+/// known. Closer loads count as little as a sample there. Returns false if that place is not in the step.
 bool LifeFollower::moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const double deviation = deviationFromBlow(pipeline_->crank().tracker(), pipeline_->result().deviation.angle);
@@ -189,7 +189,7 @@ double LifeFollower::ownOfBoth(std::size_t i, const StepEnd& end) const noexcept
          life::LoadError::at(i, end.deviation.data(), end.common.data()).own;
 }
 
-/// Whether it was a blow shows later.
+/// Ends a revolution; it becomes known later whether it ended with a blow.
 void LifeFollower::endTurn(StampNs stamp) noexcept {
   turns_[next_turn_] = turn_.endTurn(stamp);
   next_turn_ = (next_turn_ + 1) % turns_.size();

@@ -27,7 +27,7 @@ class LifeFollower {
   /// Refers to the pipeline, which must outlive it. settings: checked against channelNames() of its boom.
   LifeFollower(const Pipeline& pipeline, const life::LifeSettings& settings);
 
-  /// Whether the piece ends before the pipeline's last sample.
+  /// Returns true if the piece ends before the pipeline's last sample.
   bool due() const noexcept;
   /// Ends the piece and adds it to the total. Allocates.
   life::LifePiece take();
@@ -40,7 +40,7 @@ class LifeFollower {
 
   const std::vector<std::string>& channels() const noexcept { return channels_; }
   const life::LifeRecorder& recorder() const noexcept { return recorder_; }
-  /// What take() has given so far; nothing before its first call.
+  /// Sum of all results of take(); none before its first call.
   const std::optional<life::LifePiece>& total() const noexcept { return total_; }
   std::optional<StampNs> since() const noexcept { return since_; }  ///< first sample counted
 

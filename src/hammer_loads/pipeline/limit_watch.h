@@ -22,8 +22,8 @@ enum class AlarmLevel : std::uint8_t { kOk, kWarn, kError };
 struct LimitState {
   AlarmLevel level{};
   double value{kNaN}, std{kNaN};  ///< in the limit's unit; NaN: not known yet; of a count the std is never known
-  double limit{kNaN};             ///< that is exceeded
-  StampNs since{};                ///< of the first turn of the present level [ns]
+  double limit{kNaN};             ///< limit that is exceeded
+  StampNs since{};                ///< stamp of the first revolution at the present level [ns]
 };
 
 /// A sum over the last hour of work, in whole minutes; before that over all of the work. Nothing is extrapolated.
@@ -64,8 +64,8 @@ class LimitWatch {
 
   std::vector<Limit> limits_;
   std::vector<LimitState> states_;
-  std::vector<std::size_t> channel_;  ///< of each limit of damage, in channels_
-  std::vector<Damage> damage_;        ///< of each limit
+  std::vector<std::size_t> channel_;  ///< index in channels_ for each limit of damage
+  std::vector<Damage> damage_;        ///< damage for each limit
   std::vector<life::LedgerChannel> channels_;
   MisuseCounts before_, misuse_;
   LastHour blank_;

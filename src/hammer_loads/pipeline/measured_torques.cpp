@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLag = 0.4;  // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
 
-/// What seals take between oil and joint, as part of the load's torque on the joint [N m].
+/// Friction of seals between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
   double torque{};
   double deviation{}, lasting{};  ///< standard; the part of it while the operator's motion sets the rod's direction
@@ -36,8 +36,8 @@ double longerLine(double delay, double interval) noexcept {
 
 }  // namespace
 
-/// As a random walk that readings with noise show (Kalman filter): a change over two readings has the walk twice and
-/// the noise once. A jump is the rock's.
+/// Follows the rest as a random walk with measurement noise (Kalman filter): a change over two readings contains the
+/// walk twice and the noise once. A jump comes from the rock.
 void MeasuredTorques::followRest(Track& track, double rest) noexcept {
   track.one_square.add(square(rest - track.last));
   track.two_square.add(square(rest - track.before));
@@ -79,7 +79,7 @@ MeasuredTorques::Doubt MeasuredTorques::doubtOf(const Vibration& vibration, doub
   doubt.delay = identifier->delay(Clock::kPressures);
   doubt.delay_std = identifier->delayDeviation(Clock::kPressures);
   const double surprise = identifier->oilSurprise();
-  // Where it is found how late stamps are, what does not fit is no lag.
+  // Where the stamps' delay is identified, a residual that does not fit is no delay.
   doubt.misfit = surprise > kSurprised && identifier->knowsLag();
   if (surprise > kSurprised && !doubt.misfit) doubt.lag = square(kLag) * surprise;
   return doubt;
@@ -132,7 +132,7 @@ MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double ag
   const double ahead = std::min(age + doubt.delay, look_back::kLine);
   const double line_square = longerLine(doubt.delay, track.interval) * track.line_square.mean();
   const bool by_oil = track.oil_square.mean() <= line_square;
-  // What does not fit has a swing of its own then: a hose's, not the load's.
+  // A residual that does not fit is then an oscillation of its own, of a hose and not of the load.
   const double rest = doubt.misfit ? track.unexplained.mean.mean() : track.rest;
   const double value = by_oil ? rest + model.now : track.torque + ahead * track.slope;
   const double lost = forgottenPart(overdue(age, track.interval));
@@ -145,7 +145,7 @@ MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double ag
   return {value, off, 0.0, 0.0, track.at};
 }
 
-/// What seals take, and what that and the sensors' offsets leave in doubt. motion: of the joint [rad/s].
+/// Adds the friction of seals, its uncertainty and that of the sensors' offsets. motion: of the joint [rad/s].
 void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motion, Torque& torque) noexcept {
   const Cylinder& cylinder = boom.cylinders()[i];
   const double arm = torque.at.arm;

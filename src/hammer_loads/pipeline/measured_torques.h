@@ -21,13 +21,13 @@ class MeasuredTorques {
   static constexpr double kSurprised = 1.0;
 
   struct Torque {
-    double value{};       ///< of the load on the cylinder's joint [N m]
+    double value{};       ///< torque of the load on the cylinder's joint [N m]
     double deviation{};   ///< standard: how far the last readings were from what was said before them; more where the
                           ///< readings do not fit the vibration (kSurprised): by their difference, or where it is
                           ///< not known how late they are as if they lagged; or where the next is overdue [N m]
     double constant{};    ///< standard deviation by constants, beside it: friction of the seals, offsets [N m]
     double lasting{};     ///< the part of that which stays while the operator drives the joint one way [N m]
-    CylinderPosition at;  ///< as the joint's sensor shows it
+    CylinderPosition at;  ///< position by the joint's sensor
   };
 
   struct Instant {
@@ -53,31 +53,31 @@ class MeasuredTorques {
     }
   };
   struct Track {
-    std::uint64_t readings{};         ///< taken
-    double position{kNaN};            ///< of the joint, as its sensor shows it
-    CylinderPosition at;              ///< there
-    StampNs stamp{};                  ///< of the last one
-    double interval{};                ///< since the one before [s]
-    bool goes_on{};                   ///< known at the last sample
-    double torque{};                  ///< by it [N m]
-    double model{};                   ///< of weight, motion and oil then, by the vibration that has taken it [N m]
+    std::uint64_t readings{};  ///< taken
+    double position{kNaN};     ///< position of the joint by its sensor
+    CylinderPosition at;       ///< there
+    StampNs stamp{};           ///< stamp of the last reading
+    double interval{};         ///< since the one before [s]
+    bool goes_on{};            ///< known at the last sample
+    double torque{};           ///< by it [N m]
+    double model{};  ///< torque of weight, motion and oil at that reading, by the vibration updated with it [N m]
     double rest{}, last{}, before{};  ///< reading less model: as followed, of the last and the one before [N m]
-    double gain{1.0};                 ///< of the last reading in it
+    double gain{1.0};                 ///< gain of the last reading in the rest
     RunningMean<> one_square{look_back::kReadings},
         two_square{look_back::kReadings};  ///< mean squares of its change over one reading and over two [N2 m2]
-    double slope{};                        ///< of the line through the last two [N m/s]
-    Swing swing, unexplained;              ///< of the torque; of reading less model
+    double slope{};                        ///< slope of the line through the last two readings [N m/s]
+    Swing swing, unexplained;              ///< oscillation of the torque; of reading less model
     RunningMean<> oil_square{look_back::kReadings},
         line_square{look_back::kReadings};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
-  /// What is open of the pressures' stamps.
+  /// Uncertainty of the pressures' stamps.
   struct Doubt {
     double delay{}, delay_std{};  ///< [s]
-    double stamp_noise{};         ///< of the sample [s]
-    double lag{};                 ///< of the swing's mean square: how late readings that do not fit are is not known
-    bool misfit{};                ///< it is, and they do not fit
+    double stamp_noise{};         ///< noise of the sample's stamp [s]
+    double lag{};   ///< unknown delay of readings that do not fit, as a part of the oscillation's mean square
+    bool misfit{};  ///< true if the delay is known and the readings do not fit
   };
-  /// Of weight, motion and oil at the sample [N m], and by the second.
+  /// Torque of weight, motion and oil at the sample [N m] and its rate [N m/s].
   struct Model {
     double now{}, rate{};
   };
@@ -90,7 +90,7 @@ class MeasuredTorques {
   std::array<Track, kMaxJoints> tracks_;
   std::array<std::optional<Torque>, kMaxJoints> torque_;
   Vibration::OilTorque model_;  ///< with weight and motion, at the last sample
-  JointVector read_;            ///< of that what pressures would show then [N m]
+  JointVector read_;            ///< part of the model that pressures would show at that time [N m]
   StampNs sample_{};
 };
 

@@ -14,11 +14,13 @@ struct MisuseCounts {
   double work_time{};             ///< over accepted samples, gaps left out [s]
   std::uint64_t blank_firings{};  ///< the rocker went through where the tool should have been
   std::uint64_t judged_blows{};   ///< at which cylinder pressures show the rock's force on the hull
-  /// Of these: since the blow before it was never more than its error. The blow falls on the hull's retainer, or what
-  /// presses the hull down is too little to bring it back after its recoil; in the pressures both look alike.
+  /// Number of judged blows at which the hold-down force had not exceeded its error since the previous blow. The blow
+  /// falls on the hull's retainer, or the hold-down force is too small to bring the hull back after its recoil; in the
+  /// pressures both look alike.
   std::uint64_t blows_without_hold_down{};
-  double placed_time{};  ///< of whole turns at which the boom's joints show where the hull is [s]
-  double still_time{};   ///< of that: the hull had not moved for MisuseFollower::kPatience of hammering or more [s]
+  double placed_time{};  ///< duration of whole revolutions at which the boom's joints show the place of the hull [s]
+  double still_time{};   ///< part of placed_time for which the hull had not moved for MisuseFollower::kPatience of
+                         ///< hammering or more [s]
 
   void add(const MisuseCounts& other) noexcept {
     work_time += other.work_time;
@@ -45,7 +47,7 @@ class MisuseFollower {
   /// The hull has moved: two deviations of a tip 6 m away by joint sensors of 0.1 deg.
   static constexpr double kMoved = 0.02;  // [m]
 
-  /// Where the hull's origin is, at a sample [m]; any frame that stands still.
+  /// Takes the position of the hull's origin at a sample [m], in any fixed frame.
   void hullAt(const Eigen::Vector3d& place) noexcept {
     if (place_ && (place - *place_).norm() <= kMoved) return;
     place_ = place;
@@ -53,8 +55,8 @@ class MisuseFollower {
   }
   /// The joints do not show where the hull is.
   void hullLost() noexcept { place_.reset(); }
-  /// Whether the rock bears on the hull at a sample; nothing where pressures do not show it. A hull leaves the rock at
-  /// each recoil: that is no misuse as long as it comes back.
+  /// Takes whether the rock bears on the hull at a sample; none where pressures do not show it. A hull leaves the rock
+  /// at each recoil: that is no misuse as long as it comes back.
   void pressed(std::optional<bool> now) noexcept {
     unknown_ = unknown_ || !now;
     pressed_ = pressed_ || now.value_or(false);

@@ -1,4 +1,4 @@
-/// How far a number of a turn may be off.
+/// Uncertainty of a figure of a revolution.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,18 +18,18 @@ struct NumberError {
   double own{};                      ///< standard deviation, as above
   double rod{};                      ///< the part of it that a rod makes which may give
 
-  /// Where that is not known apart: what a deviation is beyond that of readings alone.
+  /// Sets the rod's part where it is not known separately: the part of the deviation beyond that of readings alone.
   void setRodBeyond(double readings) noexcept { rod = std::sqrt(std::max(0.0, own * own - readings * readings)); }
   double common() const noexcept { return columns.norm(); }
   double deviation() const noexcept { return std::hypot(own, common()); }
 };
 
-/// Of a HalfSinePulse.
+/// Errors of a HalfSinePulse.
 struct PulseErrors {
   NumberError amplitude, impulse, turn_impulse_x, turn_impulse_z;
 };
 
-/// Of a RockerBlow.
+/// Errors of a RockerBlow.
 struct BlowErrors {
   NumberError restitution, energy, tool_impulse_z, support_impulse_z;
 

@@ -31,7 +31,7 @@ class PendingBlow {
   }
   bool isWaiting() const noexcept { return waiting_; }
   bool isEarly() const noexcept { return early_; }  ///< the tool was met before the dead centre
-  /// It was none.
+  /// Discards the passage, which was no blow.
   void drop() noexcept { waiting_ = false; }
   /// The estimate at the latest sample; call after begin() and then at each sample that continues.
   void follow(const BlowFactor& factor) noexcept {
@@ -48,7 +48,7 @@ class PendingBlow {
     if (early_) columns.row(0) = (columns_.row(0) - (blow_.speed / blow_.factor) * columns_.row(1)) / blow_.factor;
     return columns;
   }
-  /// Of crankSpeedAfter() [rad/s].
+  /// Errors of crankSpeedAfter() by constants [rad/s].
   Eigen::Matrix<double, 1, ConstantErrors::kSize> columnsAfter() const noexcept {
     if (early_) return columns_.row(0);
     return blow_.factor * columns_.row(0) + blow_.speed * columns_.row(1);
@@ -64,7 +64,7 @@ class PendingBlow {
   /// The hull's own velocity at the striking point along z, at the blow [m/s]; nothing: not measured.
   void setHullSpeed(double speed) noexcept { hull_speed_ = speed; }
   const std::optional<double>& hullSpeed() const noexcept { return hull_speed_; }
-  double time() const noexcept { return time_; }                                                   ///< of the blow [s]
+  double time() const noexcept { return time_; }  ///< time of the blow [s]
   double crankSpeedAfter() const noexcept { return (early_ ? 1.0 : blow_.factor) * blow_.speed; }  ///< [rad/s]
   CrankBlow take() noexcept {
     waiting_ = false;

@@ -52,15 +52,15 @@ class Pipeline {
   /// No more samples come: a blow that is still being measured is among the result's ends, as it is known by now.
   const SampleResult& end() noexcept;
 
-  const SampleResult& result() const noexcept { return result_; }  ///< of the last sample
-  /// Of the wrench within the step of the last sample, see WrenchSampler.
+  const SampleResult& result() const noexcept { return result_; }  ///< result of the last sample
+  /// Standard deviations of the wrench within the step of the last sample, see WrenchSampler.
   HullDeviation stepDeviation(double time, const CrankEstimate& crank) const noexcept {
     return sampler_.deviation(time, crank, result_);
   }
   SampleCounts counts() const noexcept;
   const HullModel& model() const noexcept { return model_; }
   const CrankFollower& crank() const noexcept { return crank_; }
-  /// Of SampleResult::load_columns: names of the hammer's, behind those of the sensor.
+  /// Names of the hammer's columns in SampleResult::load_columns, which follow those of the sensor.
   std::vector<std::string> hammerColumns() const { return columns_.names(); }
   const CrankTrust& crankTrust() const noexcept { return trust_; }
   const ZeroWatch& zeroWatch() const noexcept { return zero_; }
@@ -110,7 +110,7 @@ class Pipeline {
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
   double nominal_force_;  ///< peak of Fz at turn_rate_Hz and constant speed [N]; see isPlausible()
-  double seen_peak_{};    ///< of the force, see isKnown() [N]
+  double seen_peak_{};    ///< largest force seen, see isKnown() [N]
   double peak_at_speed_;  ///< largest component of the force there [N]
   bool settled_{};        ///< the last sample's estimate is good enough to be published, whatever the crank is trusted
   bool boom_follows_{};   ///< the boom has had every step since the last restart

@@ -1,4 +1,4 @@
-/// Whether measured pressures can be those of a hammer that stands on rock or hangs free.
+/// Check that measured pressures can be those of a hammer that stands on rock or hangs free.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class PressureTrust {
     if (beyond_for_ > look_back::kHalfTurn) late_by_ = delay, late_left_ = kUntilTriedAgain;
   }
   bool isLate() const noexcept { return late_left_ > 0.0; }
-  double lateBy() const noexcept { return late_by_; }  ///< as it was when it showed [s]
+  double lateBy() const noexcept { return late_by_; }  ///< delay when it was detected [s]
   bool isLost() const noexcept { return lost_.isEngaged() || isLate(); }
   /// Mean load on the tip that no rock makes; along the tool it may, from least_force [N] on. Pressures, lengths or
   /// masses are otherwise than said.

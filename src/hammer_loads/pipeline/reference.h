@@ -12,11 +12,11 @@
 
 namespace hammer_loads {
 
-/// How one component of the computed load agrees with the measured one.
+/// Agreement of one component of the computed load with the measured one.
 struct ReferenceFigures {
   std::uint64_t samples{};
   double rms{kNaN};             ///< root mean square of the measured load [N, N m]
-  double rms_error{kNaN};       ///< of computed less measured [N, N m]
+  double rms_error{kNaN};       ///< root mean square of computed less measured [N, N m]
   double bias{kNaN};            ///< mean of computed less measured [N, N m]
   double scale{kNaN};           ///< slope of the computed load over the measured one, by least squares [-]
   double correlation{kNaN};     ///< Pearson's [-]
@@ -37,7 +37,7 @@ class ReferenceComparison {
   void computed(StampNs stamp, const HullWrench& wrench, const HullWrench& deviation, bool continues);
 
   std::uint64_t received() const { return received_; }  ///< measured loads
-  std::uint64_t leftOut() const { return left_out_; }   ///< of them, those that met no computed load
+  std::uint64_t leftOut() const { return left_out_; }   ///< number of samples without a computed load at their instant
   ReferenceFigures figures(std::size_t component) const;
 
  private:

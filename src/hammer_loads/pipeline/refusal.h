@@ -1,4 +1,4 @@
-/// Why an input gave no wrench, and how often.
+/// Reasons why inputs gave no wrench, and their counts.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace hammer_loads {
 
-/// Why a crank sample gave no wrench.
+/// Reason why a crank sample gave no wrench.
 enum class Refusal : std::size_t {
   kMissingJoint,  ///< the crank joint is not in the message
   kShortArray,    ///< fewer positions (or, where there are any, speeds) than names
   kNotFinite,     ///< NaN or infinity
   kImplausible,   ///< faster than any crank, or contradicting the samples before it
   kOutOfOrder,    ///< older than the last accepted sample
-  kDuplicate,     ///< as old as the last accepted sample
+  kDuplicate,     ///< stamp equal to that of the last accepted sample
   kBadStamp,      ///< beyond the last time that a message can carry
   kDegrees,       ///< crank or boom are recognised to send degrees: withheld until that is over
-  kSpeedUnit,     ///< as above, the crank's speed in rpm or in turns a second
-  kAngleUnit,     ///< as above, the crank's angle in turns
+  kSpeedUnit,     ///< crank speed recognised to be in rpm or revolutions per second: withheld until that is over
+  kAngleUnit,     ///< crank angle recognised to be in revolutions: withheld until that is over
   kBackward,      ///< the crank turns backward: withheld until it has made half a turn forward
   kInconsistent,  ///< readings contradict the model, and have for some time: withheld until they agree
   kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)
@@ -40,8 +40,8 @@ constexpr bool isOfUnit(Refusal reason) noexcept {
 struct SampleCounts {
   std::uint64_t accepted{};
   std::array<std::uint64_t, static_cast<std::size_t>(Refusal::kCount)> refused{};
-  std::uint64_t beside_blow{};       ///< of the accepted ones: not published, see SampleResult
-  std::uint64_t uncertain{};         ///< likewise, of the others
+  std::uint64_t beside_blow{};       ///< accepted samples that are not published because of the blow, see SampleResult
+  std::uint64_t uncertain{};         ///< other accepted samples that are not published, see SampleResult
   std::uint64_t restarts{};          ///< drop-outs, jumps and time running back
   std::uint64_t blows{};             ///< forward, for the first time, not creeping
   std::uint64_t impossible_blows{};  ///< not among them: RockerBlow::impossible

@@ -1,4 +1,4 @@
-/// How far the links are from those of a rigid rod after a blow: what the levels below `elastic` leave out.
+/// Deviation of the links' motion from that of a rigid rod after a blow, which the levels below `elastic` neglect.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace hammer_loads {
 
 class CrankFilter;
 
-/// What a rod may be, as far as its file says: with little damping it rings longest, with much it is first, with worn
-/// pins the rocker flies until their play is taken up.
+/// Rods that the file leaves possible. With little damping the vibration lasts longest, with much it peaks first, and
+/// with worn pins the rocker flies until the joint clearance is used up.
 using Rods = std::array<RodSpring, 3>;
 Rods rodsOf(const RodPrior& prior) noexcept;
 
@@ -31,8 +31,8 @@ class RodRing {
   /// A rod that is said to be rigid does not ring.
   explicit RodRing(const HullModel& model) noexcept;
 
-  /// What came before the crank's last sample is not known: it has passed the blow, if it is behind it, by the kinetic
-  /// energy that it has.
+  /// Restarts at the crank's last sample; the motion before it is not known. A crank behind the blow has passed it with
+  /// the kinetic energy that it has now.
   void restart(const CrankFilter& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankFilter& tracker) noexcept;
@@ -42,17 +42,18 @@ class RodRing {
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].
   Eigen::Matrix3d covariance(const LinkMotion& links, double crank) const noexcept;
-  /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
+  /// Root mean square over the phase of the rocker's angular acceleration relative to the rigid links' [rad/s2].
   double acceleration() const noexcept { return moves_ ? share_ * acceleration_ : 0.0; }
-  /// How far a restitution may be off that was read off a crank as if the rod were rigid, standard [-].
+  /// Standard deviation of a restitution that is computed from the crank as if the rod were rigid [-].
   double restitutionDoubt(double restitution) const noexcept;
-  /// How far the crank's speed at the last blow may be above that which drives a rigid mechanism's rocker as fast as
-  /// this one struck, standard [rad/s]. A rocker at the side of its play is slower than the linkage has it, by the more
-  /// the nearer the dead centre; nothing brakes it within the play: it strikes with the most it was driven at.
+  /// Standard deviation by which the crank's speed at the last blow may exceed that which drives a rigid mechanism's
+  /// rocker as fast as this one struck [rad/s]. A rocker at the side of its joint clearance is slower than the linkage
+  /// predicts, the more so the nearer the dead centre. nothing brakes it within the play: it strikes with the most it
+  /// was driven at.
   double lackingSpeed() const noexcept { return let_go_ * lacking_; }
-  /// Of the rocker's speed what the last blow left for the rod to take up [rad/s].
+  /// Part of the rocker's speed that the last blow left for the rod to take up [rad/s].
   double struck() const noexcept { return gives_ ? share_ * struck_ : 0.0; }
-  /// Likewise of its speed [rad/s].
+  /// Root mean square of the rocker's angular speed relative to the rigid links' [rad/s].
   double speed() const noexcept;
 
  private:
@@ -81,9 +82,9 @@ class RodRing {
   bool lost_{};       ///< nothing explains what blows did to the crank
 };
 
-/// What the rocker's angular acceleration [rad/s2] is on the hull; of a speed [rad/s] the momentum [N s, N m s].
+/// Wrench on the hull of a rocker's angular acceleration [rad/s2]; for a speed [rad/s] its momentum [N s, N m s].
 HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, double acceleration) noexcept;
-/// What a tool takes off the hull that carries the rocker, at rest at the dead centre: it pushes along z there.
+/// Load that a tool takes off the hull carrying the rocker, at rest at the dead centre: it pushes along z there.
 HullWrench rockerOnTool(const Mechanism& mechanism, const LinkMotion& links, Gravity gravity) noexcept;
 
 }  // namespace hammer_loads

@@ -36,7 +36,7 @@ struct WrenchOutput {
   StampNs stamp{};
   double interval{};          ///< the wrench is the mean over it, before the stamp [s]; 0: at the stamp
   CrankEstimate crank;        ///< at the stamp
-  HullWrench wrench;          ///< of links and drive
+  HullWrench wrench;          ///< wrench of links and drive
   double drive_reaction_y{};  ///< part of its moment [N m]
   HullDeviation deviation;  ///< for a mean: of its end or, if less, what the momentum's at both ends allows; its common
                             ///< part is that of the mean
@@ -56,26 +56,27 @@ struct SampleResult {
   }
 
   StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence
-  StampNs sample_stamp{};          ///< its header stamp
-  std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
-  /// Which side of the blow the sample is on is not known: what belongs to its instant is of the likelier side, and not
-  /// published. Sums over steps go on.
+  StampNs sample_stamp{};          ///< header stamp of the sample
+  std::optional<Refusal> refusal;  ///< if set, all below except `ends` is void
+  /// True if the side of the blow is uncertain at the sample. Values at its instant belong to the likelier side and are
+  /// not published; sums over steps continue.
   bool beside_blow{};
   /// The crank is held at constant speed, and a force's standard deviation exceeds five times withhold_above of its
   /// peak: the sample is not published. Sums over steps go on.
   bool uncertain{};
   bool isPublished() const noexcept { return !refusal && !beside_blow && !uncertain; }
-  Level level{};  ///< of the model that gave the wrench: linkage where `elastic` has not shown itself
+  Level level{};  ///< level of the model that gave the wrench: linkage where `elastic` is not confirmed by the readings
   CrankEstimate crank;
-  CrankUncertainty doubt;    ///< of the crank's motion
-  LoadColumns load_columns;  ///< of the wrench
-  HullWrench rod_momentum;  ///< that the rocker may have beside a rigid rod's, where no spring is followed [N s, N m s]
+  CrankUncertainty doubt;    ///< uncertainty of the crank's motion
+  LoadColumns load_columns;  ///< errors of the wrench
+  HullWrench rod_momentum;   ///< possible momentum of the rocker relative to a rigid rod's, where no spring is followed
+                             ///< [N s, N m s]
   HullWrench contact_doubt;  ///< standard deviation, with signs, by whether the tool was met
   /// Covariance of the wrench's errors that are not of the crank's motion: of rod, contact and unknown forces, in
   /// products of [N], [N], [N m].
   Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
   HullWrench rod_ring;  ///< part of the deviation that the rod makes, whose spring the level leaves out
-  UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< of forces that no level has: squares, by source
+  UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< squares of forces that no level models, by source
   bool rod_followed{};      ///< else rod_ring is a root mean square over a phase that is not known
   HullDeviation deviation;  ///< at the sample, with what the hull's motion adds
   double consistency{};     ///< CrankFilter::consistency()
@@ -88,7 +89,7 @@ struct SampleResult {
   const BoomState* boom{};            ///< null: no boom; with a fault in it void but for stamp and fault
   std::vector<WrenchOutput> outputs;  ///< one at the sample, or those on the grid of output_rate since the one before;
                                       ///< none beside the blow but means
-  std::size_t turn_ends{};            ///< how many of `ends` are meant; more than one only for sparse samples
+  std::size_t turn_ends{};            ///< number of valid `ends`; more than one only for sparse samples
   std::array<TurnEnd, 4> ends;
 };
 

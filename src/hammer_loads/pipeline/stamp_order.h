@@ -12,7 +12,7 @@ class StampOrder {
   enum class Place {
     kFirst,       ///< nothing to continue from: start, gap, time ran back
     kNext,        ///< behind the last accepted sample
-    kDuplicate,   ///< as old as the last accepted sample
+    kDuplicate,   ///< stamp equal to that of the last accepted sample
     kOutOfOrder,  ///< older than it
   };
   struct Verdict {
@@ -45,8 +45,8 @@ class StampOrder {
 
  private:
   double stale_after_;
-  std::optional<StampNs> last_;     ///< of the last accepted sample
-  std::optional<StampNs> rewound_;  ///< of the last sample, if it was refused as out of order
+  std::optional<StampNs> last_;     ///< stamp of the last accepted sample
+  std::optional<StampNs> rewound_;  ///< stamp of the last sample, if it was refused as out of order
 };
 
 }  // namespace hammer_loads

@@ -28,7 +28,7 @@ LoadImpulse change(const HullModel& model, const DriveReaction& drive, const Par
   return {{from.x - to.x, from.z - to.z, from.about_d - to.about_d + drive_y}, drive_y};
 }
 
-/// Of the passage, by the crank's speeds at it.
+/// Blow of a passage, by the crank's speeds at it.
 RockerBlow blowAt(const HullModel& model, double drive_inertia, const CrankStep::Passage& passage) noexcept {
   CrankBlow crank;
   crank.speed = passage.speed_before;

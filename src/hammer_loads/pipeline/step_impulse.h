@@ -24,7 +24,7 @@ LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, co
 /// The hull's motion over a step: on the line between those at its ends, but for a blow, at which it jumps.
 struct HullPath {
   HullMotion from, to;
-  double length{};             ///< of the step [s]
+  double length{};             ///< length of the step [s]
   std::optional<double> blow;  ///< [s] after its start
 
   HullMotion at(double time) const noexcept {

@@ -13,7 +13,7 @@ constexpr double kHardly = 1e-3;  // of a component: a change so small decides n
 
 using Components = std::array<double, kHullChannels>;
 
-/// Where in (0, 1) the cubic with these values at 0 and 1 and slopes of opposite signs has its extreme.
+/// Position of the extreme in (0, 1) of the cubic with these values at 0 and 1 and slopes of opposite signs.
 double extremeOfCubic(double value_0, double value_1, double slope_0, double slope_1) noexcept {
   // slope(s) = a s^2 + b s + slope_0
   const double rise = value_1 - value_0;
@@ -38,9 +38,9 @@ void insert(double time, ExtremeInstants& sorted) noexcept {
   sorted.time[place] = time;
 }
 
-/// Whether every component clearly rises or falls all along a span: its values, and those a little within by the motion
-/// at its ends alone. What a sample corrects on the way adds nearly the same to both slopes, which is what the
-/// components rise more than the slopes say.
+/// Returns true if every component clearly rises or falls all along a span. after, before: values slightly within the
+/// span by the motion at its ends alone. A sample's correction on the way adds nearly equally to both slopes: it is the
+/// rise of the components beyond the slopes.
 bool risesOrFalls(const Components& from, const Components& after, const Components& before,
                   const Components& to) noexcept {
   for (std::size_t i = 0; i < from.size(); ++i) {

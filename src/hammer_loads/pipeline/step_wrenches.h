@@ -37,11 +37,11 @@ struct ExtremeInstants {
 /// extreme where the cubic by values and slopes of both ends has it: off by some 1e-4 of the span.
 ExtremeInstants extremeInstants(const StepLoad& load, const CrankStep& step, const SmoothSpan& span) noexcept;
 
-/// Where in a step a wrench is: at a time after its start [s], or exactly on one side of a passage of the blow.
+/// Place of a wrench in a step: at a time after its start [s], or exactly on one side of a passage of the blow.
 struct StepPlace {
   double time{};
   const CrankStep::Passage* passage{};  ///< null: at the time
-  Side side{};                          ///< of the passage
+  Side side{};                          ///< side of the passage
 
   std::optional<CrankWays> ways(const CrankStep& step) const noexcept {
     return passage != nullptr && !passage->smooth ? step.waysBesides(*passage, side) : step.ways(time);

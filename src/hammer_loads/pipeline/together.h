@@ -8,7 +8,7 @@ namespace hammer_loads {
 /// No sensor of a machine is read more often than this [s].
 constexpr double kSameInstant = 1e-4;
 
-/// Of stamps of one sensor, one after the other: their difference is the bus's, and no rate can be found over it.
+/// Returns true if two consecutive stamps of one sensor are too close for a rate: their difference comes from the bus.
 inline bool cameTogether(StampNs before, StampNs after) noexcept { return seconds(after - before) < kSameInstant; }
 
 }  // namespace hammer_loads

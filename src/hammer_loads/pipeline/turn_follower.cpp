@@ -37,7 +37,7 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
           added.force_x, added.force_z};
 }
 
-/// Where the rod's spring is followed; origin: of the step's start [s].
+/// Instant while the rod's spring is followed; origin: of the step's start [s].
 TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
   const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
   const ElasticFollower::Instant there = elastic_->onItsWay(time, drive, hull_);

@@ -48,7 +48,7 @@ class TurnFollower {
     peak_.withheld = std::max(peak_.withheld, std::exchange(peak_.of_step, 0.0));
     if (pending_.isWaiting()) pending_.count(false);
   }
-  /// They are published.
+  /// Takes a published result.
   void published(const SampleResult& result) noexcept {
     run_up_ = true;
     peak_.published = std::max(peak_.published, std::exchange(peak_.of_step, 0.0));
@@ -59,11 +59,15 @@ class TurnFollower {
   /// Velocity of the hull at that blow; until it is given, the prior of the hull's motion counts.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
 
-  double peakForce() const noexcept { return peak_force_; }  ///< of the last whole turn's strike [N], 0 before it
+  double peakForce() const noexcept {
+    return peak_force_;
+  }  ///< peak force of the last whole revolution's strike [N], 0 before it
   std::uint64_t blows() const noexcept { return turns_ - impossible_; }   ///< since the start
   std::uint64_t impossibleBlows() const noexcept { return impossible_; }  ///< RockerBlow::impossible, not among them
-  std::uint64_t blankFirings() const noexcept { return blank_; }       ///< onto the mirrored branch: no tool was there
-  std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again
+  std::uint64_t blankFirings() const noexcept { return blank_; }  ///< onto the mirrored branch: no tool was there
+  std::uint64_t backwardPasses() const noexcept {
+    return backward_;
+  }  ///< number of backward passages of the blow, less those forward again
 
  private:
   void doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept;
@@ -90,17 +94,18 @@ class TurnFollower {
   TurnRecorder turn_;
   TurnErrors errors_;
   PendingBlow pending_;
-  TurnEnd pending_end_;  ///< of the pending blow
+  TurnEnd pending_end_;  ///< end of the revolution by the pending blow
   HullMotion hull_;
   StampNs epoch_{};                   ///< first sample since the last restart by time
-  std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole
+  std::optional<StampNs> last_blow_;  ///< stamp of the last blow, if the revolution since then was seen whole
   std::uint64_t turns_{}, impossible_{}, backward_{}, blank_{};
   double peak_force_{};
   bool run_up_{};  ///< the last sample's loads are published
-  /// Of Fz over the present turn [N]: of steps to a published sample, to a withheld one, and of the last step.
+  /// Peak of Fz over the present revolution [N]: of steps to a published sample, to a withheld one, and of the last
+  /// step.
   struct Peak {
     double published{}, withheld{}, of_step{};
-    double of_strike{}, of_ring{};  ///< of points where no rod rings, and where one does
+    double of_strike{}, of_ring{};  ///< peak at points without and with vibration of the rod
   };
   Peak peak_;
 };

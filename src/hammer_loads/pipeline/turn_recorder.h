@@ -19,7 +19,7 @@ struct TurnInstant {
   HullWrench wrench;      ///< weight included where the published wrench includes it
   LinkMomentum momentum;  ///< relative to the hull
   double weight_x{};      ///< weight within the wrench from here to the next instant [N]
-  double weight_z{};      ///< as above [N]
+  double weight_z{};      ///< weight along z [N]
 };
 
 /// Keeps the force and the exact impulses of the present turn in a track of bounded size: a turn with too many instants
@@ -61,15 +61,16 @@ class TurnErrors {
  public:
   /// A turn begins with a blow.
   void begin(StampNs blow) noexcept;
-  /// How far a momentum may be off [N s]: in all, and by readings alone, without a rod that may give.
+  /// Standard deviations of a momentum [N s]: in total, and by readings alone, without an elastic rod.
   struct Momentum {
     HullWrench all, by_readings;
   };
-  /// That after the blow, and by constants [N s]. Known some time later.
+  /// Takes the deviation of the momentum after the blow and its errors by constants [N s], which are known some time
+  /// later.
   void momentumAfterBlow(const Momentum& deviation, const MomentumColumns& columns) noexcept {
     after_blow_ = deviation, at_begin_ = columns;
   }
-  /// Whether Fz rises through zero with the coming sample: who knows says rose() first.
+  /// Returns true if Fz rises through zero with the coming sample; the caller calls rose() first if so.
   bool rises(double force_z) const noexcept { return last_force_ <= 0.0 && force_z > 0.0; }
   /// A lobe begins here. There the momentum along z stands still, so that the instant itself does not matter.
   void rose(StampNs stamp, const MomentumColumns& columns) noexcept { rise_ = {stamp, columns}; }
@@ -94,7 +95,7 @@ class TurnErrors {
   StampNs begin_{};
   MomentumColumns at_begin_{MomentumColumns::Zero()};
   Momentum after_blow_;
-  std::optional<Lobe> rise_, lobe_;  ///< of the last rise; of the last lobe that counts
+  std::optional<Lobe> rise_, lobe_;  ///< lobes begun by the last rise, and the last lobe that counts
   double last_force_{1.0}, peak_{};  ///< Fz of the last sample; its largest [N]
   NumberError at_peak_;
   NumberError highest_;  ///< own, rod: of the sample that may be highest, by one of its own deviations

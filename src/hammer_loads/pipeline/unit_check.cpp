@@ -129,7 +129,7 @@ void UnitCheck::vote(int& votes, CrankUnit unit) noexcept {
   const bool wrong = unit != CrankUnit::kRadians;
   votes = std::clamp(votes + (wrong ? 1 : -1), 0, kEnough);
   if (wrong && votes == kEnough && suspected_for_ >= look_back::kTurn) recognised_ = unit;
-  // Too fast for radians may be counts as well: the length of a revolution says which.
+  // A rate too fast for radians may be counts as well: the length of a revolution decides.
   if (recognised_ == CrankUnit::kDegrees && cycle_votes_ == kEnough && cycle_unit_ == CrankUnit::kAngleInCounts)
     recognised_ = CrankUnit::kAngleInCounts;
   if (speed_votes_ == 0 && bound_votes_ == 0 && cycle_votes_ == 0) recognised_ = CrankUnit::kRadians;

@@ -15,7 +15,7 @@ enum class CrankUnit {
   kSpeedInRpm,    ///< turns a minute
   kSpeedInTurns,  ///< turns a second
   kAngleInTurns,
-  kAngleInCounts,  ///< of the encoder
+  kAngleInCounts,  ///< angle in the encoder's counts
   kSpeedSign,      ///< the speed's sign is not that of the angle's change
 };
 
@@ -81,21 +81,21 @@ class UnitCheck {
 
   double max_speed_, gain_;
   std::optional<double> last_angle_;
-  double last_rate_{};             ///< of the angle over the last step [rad/s]
-  double turned_{}, predicted_{};  ///< of this stretch, by angles and by speeds [rad]
+  double last_rate_{};             ///< rate of the angle over the last step [rad/s]
+  double turned_{}, predicted_{};  ///< rotation over this stretch, by angles and by speeds [rad]
   double suspected_for_{};         ///< time since the votes became suspicious [s]
   double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
   int speed_votes_{}, bound_votes_{}, cycle_votes_{};
-  CrankUnit cycle_unit_{CrankUnit::kRadians};  ///< that cycle_votes_ are for
-  double last_step_{};                         ///< of the angle, but for steps back by a revolution
+  CrankUnit cycle_unit_{CrankUnit::kRadians};  ///< unit to which cycle_votes_ belong
+  double last_step_{};                         ///< last step of the angle, except for steps back by a revolution
   /// Length of the cycles from one slow place of the crank to the next, in the angle's own unit.
   struct {
-    double turned{}, time{};    ///< of the present window
+    double turned{}, time{};    ///< rotation and duration of the present window
     double mean{};              ///< rate [1/s]
     double length{}, before{};  ///< turned since the cycle began; in the one before
     bool slow{};
   } cycle_;
-  CrankUnit speed_unit_{CrankUnit::kRadians};  ///< that speed_votes_ are for
+  CrankUnit speed_unit_{CrankUnit::kRadians};  ///< unit to which speed_votes_ belong
   CrankUnit recognised_{CrankUnit::kRadians};
 };
 

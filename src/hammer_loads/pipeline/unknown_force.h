@@ -55,7 +55,7 @@ class UnknownForce {
 
  private:
   struct Greatest {
-    double moment{}, force{};  ///< of the rod on the rocker [N m]; in the rod [N]
+    double moment{}, force{};  ///< moment of the rod on the rocker [N m]; force in the rod [N]
   };
   Greatest greatest() const noexcept {
     return {std::max(now_.moment, last_.moment), std::max(now_.force, last_.force)};

@@ -41,7 +41,7 @@ class UnmeasuredHull {
 
  private:
   static constexpr double kUsualMass = 10.0;      ///< times the rocker's, where none is given
-  static constexpr double kUsualDeviation = 0.5;  ///< of that mass
+  static constexpr double kUsualDeviation = 0.5;  ///< relative, for that mass
   static constexpr double kGyration = 0.4;        ///< [m] about D
   /// Motion over that of a free hull where the boom's frequency is near that of the blows: of the acceleration; of the
   /// velocity, of which the first harmonic is a larger part.

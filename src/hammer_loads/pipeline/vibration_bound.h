@@ -1,4 +1,4 @@
-/// Whether the boom vibrates more than anything could have made it.
+/// Bound on the vibration of the boom: more than it nothing could have caused.
 #pragma once
 
 #include "hammer_loads/boom/boom.h"

@@ -24,7 +24,7 @@ class WaitingReadings {
     while (taken < count_ && readings_[taken].stamp <= stamp) each(readings_[taken++]);
     if (taken > 0) drop(taken);
   }
-  /// How many there are up to a stamp. Those that wait for a bus may be later.
+  /// Number of readings up to a stamp. Readings that wait for a bus may be later.
   std::ptrdiff_t upTo(StampNs stamp) const noexcept {
     return std::count_if(readings_.begin(), readings_.begin() + static_cast<std::ptrdiff_t>(count_),
                          [stamp](const StampedImuReading& reading) { return reading.stamp <= stamp; });

@@ -88,12 +88,12 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
                         true});
 }
 
-/// What a rod that gives makes of the sensor's place, if the crank's filter takes it for rigid: the zero looks smaller
-/// by 0.2 to 3 deg (rods of 2e8 to 1e10 N/m, play to 0.5 mm, 200 Hz to 1 kHz), more is withheld; the encoder eccentric
-/// by 1 deg.
+/// Apparent errors of the sensor's mounting if the crank's filter takes an elastic rod for rigid. The zero looks
+/// smaller by 0.2 to 3 deg (rods of 2e8 to 1e10 N/m, joint clearance to 0.5 mm, 200 Hz to 1 kHz); larger errors are
+/// withheld. The encoder looks eccentric by 1 deg.
 constexpr double kRodLooksEccentric = 1.5 * kDegree;
 
-/// How far an amount is beyond what such a rod explains.
+/// Part of an amount that such a rod does not explain.
 double beyondRod(const Unknown& unknown, double amount) {
   if (std::string_view(unknown.name) == "zero") return std::max(0.0, amount);
   return std::max(0.0, std::abs(amount) - kRodLooksEccentric);
@@ -156,7 +156,7 @@ std::string rodOf(const Pipeline& pipeline, const CrankFilter& filter) {
       filter.rodEvidence().pickedUp());
 }
 
-/// What contradicts the model, by where in the turn it does. strike: before the blow as well.
+/// Cause of the contradiction to the model, by its place in the revolution. strike: before the blow as well.
 std::string contradictionOf(const Pipeline& pipeline, bool strike) {
   const CrankFilter& filter = pipeline.crank().tracker();
   const double all = filter.consistency(), before = filter.strikeConsistency();
@@ -192,7 +192,7 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
 /// For readings that contradict the model before the blow.
 bool mostIsWithheld(const SampleCounts& counts) { return counts.refusedFor(Refusal::kInconsistent) > counts.accepted; }
 
-/// It was withheld, and is no longer.
+/// Text for a crank that was withheld and is no longer.
 std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
   return format(
       "crank: %s samples withheld while readings contradicted the model; now they agree (%.2g times the variance). "
@@ -201,7 +201,7 @@ std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
       count(withheld).c_str(), filter.consistency());
 }
 
-/// Of readings and model. gives: the rod does, and that explains them.
+/// Warns of readings that contradict the model. gives: the rod is elastic, and that explains them.
 void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gives, std::vector<Warning>& warnings) {
   const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
   const bool strike = filter.strikeConsistency() > CrankTrust::kInconsistent;
@@ -217,7 +217,7 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
   warnOfConstants(filter.constantErrors(), pipeline.settings().crank_sensor, gives, warnings);
 }
 
-/// What the filter's innovations look like.
+/// Warns of a sensor error to which the filter's innovations point.
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   const CrankFilter& filter = pipeline.crank().tracker();

@@ -1,4 +1,4 @@
-/// What a user must know of the inputs: what is missing, what contradicts itself.
+/// Warnings to the user about the inputs: what is missing and what is inconsistent.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 namespace hammer_loads {
 
 struct Warning {
-  const char* key;   ///< the same for the same cause
+  const char* key;   ///< equal for equal causes
   std::string text;  ///< one line: what, how much, what to do
   bool now{};        ///< still so; else it was so since the start
-  bool awaited{};    ///< of an input that has not come yet: it may begin later than the crank
+  bool awaited{};    ///< true for an input that has not come yet: it may begin later than the crank
 };
 
 /// A warning of this key says that the crank's readings are not those of such a machine.

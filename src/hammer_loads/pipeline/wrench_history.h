@@ -16,7 +16,7 @@ struct SmoothPiece {
   HullWrench mean;      ///< over it, exact by the momentum difference
   bool ends_in_blow{};
   HullWrench blow;    ///< impulse of that blow BY links and drive ON the hull about D [N s, N s, N m s]
-  double blow_std{};  ///< of that blow's instant, standard [s]
+  double blow_std{};  ///< standard deviation of that blow's instant [s]
 };
 
 /// The pieces of one step in order of time; none after a restart, when the step before the sample is not known.

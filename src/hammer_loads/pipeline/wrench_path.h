@@ -15,7 +15,7 @@ namespace hammer_loads {
 /// Force along x and z, moment about D: [N, N, N m], their impulse [N s, N s, N m s].
 class WrenchPath {
  public:
-  /// What would be added to an instant were it on the other side of the last blow, and the probability of that.
+  /// Load that would be added to an instant on the other side of the last blow, and the probability of that.
   struct OtherSide {
     double probability{};
     Eigen::Vector3d load = Eigen::Vector3d::Zero(), blow = Eigen::Vector3d::Zero();
@@ -31,7 +31,7 @@ class WrenchPath {
   /// Steps in the order of time, each to `end`. beside_from, beside_to: what acts beside the step's own load at its
   /// ends. A step that does not begin where the last one ended begins anew. No allocation.
   void add(StampNs end, const WrenchHistory& step, const HullWrench& beside_from, const HullWrench& beside_to) noexcept;
-  /// Whether an instant lies within what is remembered.
+  /// Returns true if an instant lies within the stored time.
   bool covers(StampNs stamp) const noexcept { return known() && stamp >= oldest().start && stamp <= end_; }
   StampNs end() const noexcept { return end_; }
   /// After the end: the load stays. Before what is remembered: as at its beginning.
@@ -41,9 +41,9 @@ class WrenchPath {
  private:
   struct Blow {
     StampNs stamp{};
-    double deviation{};  ///< of the instant, standard [s]
+    double deviation{};  ///< standard deviation of the instant [s]
     Eigen::Vector3d impulse;
-    std::optional<Eigen::Vector3d> jump;  ///< of the load; none: what follows is not known yet
+    std::optional<Eigen::Vector3d> jump;  ///< jump of the load; none: the load after the blow is not known yet
   };
   struct Piece {
     StampNs start{};

@@ -26,7 +26,7 @@ std::size_t WrenchSampler::mostOutputs() const noexcept {
   return static_cast<std::size_t>(std::ceil(rate_ * longest_gap_)) + 2;
 }
 
-/// Whether the first sample has an output: a mean has no interval yet.
+/// Returns true if the first sample has an output: a mean has no interval yet.
 bool WrenchSampler::begin(const SampleResult& result) noexcept {
   begun_ = true;
   origin_ = last_output_ = result.stamp;
@@ -52,7 +52,7 @@ void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexc
   if (kind_ == OutputKind::kMean) addUpTo(step_->length(), result);
 }
 
-/// Whether it is clear on which side of the blow the output is; a mean does not depend on it.
+/// Returns true if the side of the blow is certain at the output; a mean does not depend on it.
 bool WrenchSampler::isKnown(double time, const WrenchOutput& output, const SampleResult& result) const noexcept {
   if (kind_ == OutputKind::kMean) return true;
   if (output.stamp == result.stamp) return result.isPublished();
@@ -91,7 +91,7 @@ void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
   added_up_to_ = time;
 }
 
-/// Of the step that the sample ends.
+/// Follows the hull over the step that the sample ends.
 void WrenchSampler::followHull(const HullMotion& hull) noexcept {
   hull_.from = hull_.to;
   hull_.to = hull;
@@ -163,7 +163,7 @@ HullDeviation WrenchSampler::deviation(double time, const CrankEstimate& crank,
                    LinksBeside(*model_, linksAt(*model_, crank.position.angle)), result.hull.motion, result);
 }
 
-/// What a sample's error is of, the momenta at both ends bound; a constant's is the mean of its own.
+/// Bounds the error of a mean: readings enter by the momenta at both ends; a constant's error is the mean of its own.
 void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const SampleResult& result,
                               WrenchOutput& output) noexcept {
   if (kind_ != OutputKind::kMean) return;

@@ -1,5 +1,5 @@
-/// When the hull wrench is published and what it is then: at each sample or at a rate of its own, as it is at the
-/// instant or as its mean since the output before.
+/// Schedule and kind of the published hull wrench: at each sample or at a rate of its own, as the value at the instant
+/// or as the mean since the output before.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,10 @@ class WrenchSampler {
   /// Appends to the result's outputs those up to its sample, with which the step ended; links: at the sample. No
   /// allocation once the outputs have the room of mostOutputs().
   void sample(const LinksBeside& links, SampleResult& result) noexcept;
-  /// Of the wrench at an instant of the last sample's step, where the crank is as given; time: after its start [s].
+  /// Standard deviations of the wrench at an instant of the last sample's step, where the crank is as given; time:
+  /// after its start [s].
   HullDeviation deviation(double time, const CrankEstimate& crank, const SampleResult& result) const noexcept;
-  /// Of one sample.
+  /// Largest number of outputs of one sample.
   std::size_t mostOutputs() const noexcept;
 
  private:
@@ -56,8 +57,8 @@ class WrenchSampler {
   double near_blow_;    ///< [rad]
   double torque_part_;  ///< PipelineSettings::torque_std_part
   bool begun_{};
-  StampNs origin_{};       ///< of the grid
-  std::uint64_t index_{};  ///< of the next output on the grid
+  StampNs origin_{};       ///< origin of the grid
+  std::uint64_t index_{};  ///< index of the next output on the grid
   StampNs last_output_{};
   double added_up_to_{};                             ///< part of the step whose impulse is in impulse_ [s]
   HullPath hull_;                                    ///< over the step to the sample

@@ -1,4 +1,4 @@
-/// Whether the encoder's zero is so far off that nothing may be published, and where it is.
+/// Check whether the encoder's zero is so far off that nothing may be published, and where it is.
 #pragma once
 
 #include <cmath>
@@ -34,7 +34,7 @@ class ZeroWatch {
 
  private:
   static constexpr double kNone = 0.3 * kDegree;      ///< an error that was there and is gone leaves less
-  static constexpr double kRodLooks = 1.6 * kDegree;  ///< of a right zero, negative
+  static constexpr double kRodLooks = 1.6 * kDegree;  ///< largest apparent error of a correct zero, negative
 
   double move(double angle) noexcept;
   static bool agrees(const CrankFilter& filter) noexcept;
