@@ -17,7 +17,7 @@ struct BehindHose {
     torque[mode] = to - behind + std::exp(-step / lag) * (before - from + behind);
     rate[mode] = (torque[mode] - before) / step;
   }
-  /// This long after the present, or before it [s]; oil: its torque at present.
+  /// Torque at a time after the present, or before it if negative [s]; oil: its torque at present.
   double at(int mode, double ahead, double lag, double oil) const noexcept {
     if (ahead < 0.0) return torque[mode] + ahead * rate[mode];
     return torque[mode] + (1.0 - std::exp(-ahead / lag)) * (oil - torque[mode]);

@@ -9,11 +9,11 @@
 
 namespace hammer_loads {
 
-/// How a link moves in the root's axes.
+/// Motion of a link in the root's axes.
 struct BodyMotion {
   Eigen::Vector3d rate;                  ///< [rad/s]
   Eigen::Vector3d angular_acceleration;  ///< [rad/s2]
-  Eigen::Vector3d acceleration;          ///< of its origin [m/s2]
+  Eigen::Vector3d acceleration;          ///< acceleration of the link's origin [m/s2]
 };
 
 /// A body where its link stands, in the root's axes.
@@ -41,10 +41,10 @@ void placeBodies(const std::vector<RigidBody>& bodies, const ChainPose& pose, Pl
 void findChainLoads(const Chain& chain, const PlacedBodies& bodies, const ChainPose& pose, const JointMotion& motion,
                     const Eigen::Vector3d& g_B, ChainLoads& result) noexcept;
 
-/// Of inertia and weight on the joints, positive drives the joint forward [N m] ([N] for a prismatic one).
+/// Joint torques by inertia and weight; positive drives the joint forward [N m] ([N] for a prismatic one).
 JointVector jointTorque(const Chain& chain, const ChainPose& pose, const ChainLoads& loads) noexcept;
 
-/// Of a body's inertia, in the root's frame.
+/// Load of a body's inertia, in the root's frame.
 Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion) noexcept;
 
 inline Wrench operator+(const Wrench& a, const Wrench& b) noexcept { return {a.force + b.force, a.torque + b.torque}; }

@@ -20,10 +20,10 @@ namespace hammer_loads {
 struct BoomParameters {
   ChainRequest chain;                         ///< root_link, tip_link; joints are those of the cylinders
   std::vector<CylinderParameters> cylinders;  ///< at most one per joint
-  double bulk_modulus{};                      ///< of oil with hose and air [Pa], > 0
+  double bulk_modulus{};                      ///< bulk modulus of oil with hose and air [Pa], > 0
   VibrationSettings vibration;
   std::optional<Supports> supports;         ///< [m]; nothing: not known
-  std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
+  std::vector<SectionParameters> sections;  ///< sections whose load is wanted; may be empty
   double link_mass_std{0.03};               ///< standard, of each link that is not weighed, relative [-]
   double link_com_std{0.02};                ///< standard, of its centre of mass in x and z each [m]
   // Prior: link_mass_std, link_com_std
@@ -34,11 +34,11 @@ struct BoomParameters {
 /// joint forward. The part that holds the joint - a cylinder - gives the opposite of the total.
 struct BoomLoads {
   JointVector hammer;                              ///< J^T w, as on a rigid boom
-  JointVector weight;                              ///< of the links
+  JointVector weight;                              ///< weight of the links
   JointVector motion;                              ///< inertia of the links as the boom moves
   JointVector vibration;                           ///< inertia of the links as the boom vibrates; zero for a rigid boom
   JointVector total;                               ///< sum of the four
-  std::array<CylinderForce, kMaxJoints> cylinder;  ///< of the total, index as in Boom::cylinders()
+  std::array<CylinderForce, kMaxJoints> cylinder;  ///< cylinder forces of the total, index as in Boom::cylinders()
 };
 
 /// Errors of the hammer's load that are independent of each other, one standard deviation each.
@@ -49,16 +49,16 @@ struct WrenchSpread {
 
 /// Standard deviations; at a dead centre as SteelLoads.
 struct BoomDeviations {
-  JointVector torque;                         ///< of BoomLoads::total [N m]
-  std::array<double, kMaxJoints> cylinder{};  ///< of the force [N]
+  JointVector torque;                         ///< standard deviation of BoomLoads::total [N m]
+  std::array<double, kMaxJoints> cylinder{};  ///< standard deviation of the cylinder's force [N]
   std::array<Wrench, kMaxSections> section;   ///< each component
-  std::array<Wrench, kMaxJoints> joint;       ///< of the reactions, each component
+  std::array<Wrench, kMaxJoints> joint;       ///< reactions at the joint, each component
 };
 
-/// Whether the boom may be taken as rigid for a pulse.
+/// Verdict whether the boom may be taken as rigid for a pulse.
 struct RigidVerdict {
   double error{};   ///< rigidError() of the pulse [-]
-  bool suffices{};  ///< it is within rigid_tolerance
+  bool suffices{};  ///< true if the error is within rigid_tolerance
 };
 
 /// Per sample: move() when the boom moved, advance() for the vibration if wanted, then loads(). After make() nothing
@@ -72,10 +72,10 @@ class Boom {
 
   /// Joint motion of the chain's joints, g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level base.
   void move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
-  /// Also brings the vibration to this pose: only then modes are found.
+  /// Moves the boom and brings the vibration to this pose; modes are found only then.
   void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
-  /// The same for a motion without the vibration: the modes are those of its pose, the links where the vibration takes
-  /// them, as by Vibration::displacementAfter() [rad].
+  /// Moves the boom by a motion without the vibration. The modes are those of its pose; the links are displaced by the
+  /// vibration, as by Vibration::displacementAfter() [rad].
   void moveVibrating(const JointMotion& motion, const JointVector& displacement, const Eigen::Vector3d& g_B) noexcept;
 
   const ChainPose& pose() const noexcept { return pose_; }
@@ -89,7 +89,7 @@ class Boom {
     return jointTorqueOfTipLoad(jacobian_, w_tip);
   }
 
-  /// Of weight and motion on a joint [N m].
+  /// Torque of weight and motion on a joint [N m].
   double steadyTorque(int joint) const noexcept { return weight_[joint] + motion_[joint]; }
 
   Vibration& vibration() noexcept { return vibration_; }
@@ -103,7 +103,7 @@ class Boom {
   /// Along a unit vector in the tip's axes, at the pose of the modes.
   ReducedHull reducedHull(const Eigen::Vector3d& direction) const noexcept;
 
-  /// What inertia and weight of the links make of the present motion; rigid: without vibration.
+  /// Loads by inertia and weight of the links in the present motion; rigid: without vibration.
   ChainLoads chainLoads(bool rigid) const noexcept;
   /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
   /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. links: of
@@ -113,21 +113,22 @@ class Boom {
   bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
     return loads(w_tip, rigid, chainLoads(rigid), result);
   }
-  /// What the steel carries, as above and with the same cylinders' forces.
+  /// Section loads and joint reactions, with the arguments and cylinder forces of loads().
   bool steelLoads(const Wrench& w_tip, const ChainLoads& links, SteelLoads& result) const noexcept;
   bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
     return steelLoads(w_tip, chainLoads(rigid), result);
   }
   /// Joint torques of the errors of a load: what VibrationSpread::advance() takes.
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
-  /// How far loads() and steelLoads() may be off by the hammer's load and, unless rigid, the oil. Not by masses,
-  /// dimensions, weight and motion. For the pose within four times refresh_angle: what a difference does is found anew
-  /// for each such move of a joint.
+  /// Finds the standard deviations of loads() and steelLoads() by errors of the hammer's load and, unless rigid, of the
+  /// oil. Errors of masses, dimensions, weight and motion are not in them. They hold for the pose within four times
+  /// refresh_angle: the response to an error is computed anew for each such move of a joint.
   void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                   BoomDeviations& result) noexcept;
-  /// The same by errors as they are, as where cylinders' forces are measured.
+  /// Finds the standard deviations by given errors, as where the cylinders' forces are measured.
   void deviations(const LoadErrors& errors, BoomDeviations& result) noexcept;
-  /// The same by errors of the load in the boom's plane alone (force x, z, moment y): one standard deviation a column.
+  /// Finds the standard deviations by errors of the load in the boom's plane alone (force x, z, moment y): one standard
+  /// deviation a column.
   void deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexcept;
   /// Standard deviations of the weight's torques on the joints by the masses and centres of the links and the zeros of
   /// the joints' sensors [N m]: the same in all samples at a pose. As of the last deviations(), zero before.
@@ -135,17 +136,17 @@ class Boom {
   /// Standard deviations of the joints' torques by links that bend as the boom vibrates [N m]: what is beyond a link's
   /// middle moves as its joints say, its own mass less. Nothing without vibration. As of the last deviations().
   JointVector bendingDeviation() const noexcept;
-  /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
+  /// Faults of a cylinder under these loads, sum of CylinderFlag. The steady part is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
   RigidVerdict rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept;
-  /// Whether weight and cylinders hold the hull down against a mean load of the hammer on the tip.
+  /// Factors by which weight and cylinders hold the hull down against a mean load of the hammer on the tip.
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 
   const Chain& chain() const noexcept { return chain_; }
   /// Readings of the joints at the description's zeros [rad], [m].
   JointVector jointZeros() const noexcept;
-  /// Where a cylinder stands at this pose.
+  /// Position of a cylinder at this pose.
   const CylinderPosition& cylinderPosition(std::size_t cylinder) const noexcept { return at_[cylinder]; }
   const std::vector<Cylinder>& cylinders() const noexcept { return cylinders_; }
   const std::vector<Section>& sections() const noexcept { return steel_.sections(); }
@@ -167,7 +168,7 @@ class Boom {
   PlacedBodies bodies_;
   Jacobian jacobian_;
   JointMotion joints_;
-  JointVector steady_position_;  ///< of joints_, without the vibration
+  JointVector steady_position_;  ///< position of joints_ without the vibration
   JointVector weight_, motion_;
   std::array<CylinderPosition, kMaxJoints> at_;
 
@@ -183,7 +184,7 @@ class Boom {
   /// on their bases' pins.
   Eigen::MatrixXd response_;
   Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane, nor the rows, half of all, that are then 0
-  Eigen::VectorXi rows_in_plane_;      ///< which rows these are, the first in_plane_ of them
+  Eigen::VectorXi rows_in_plane_;      ///< indices of these rows, the first in_plane_ of them
   Eigen::Index in_plane_{};
   JointVector weight_std_;     ///< at response_at_
   JointMatrix bending_;        ///< at response_at_: torque of a joint per N m/s2 at the middle of a link [s2]

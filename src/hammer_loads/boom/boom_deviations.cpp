@@ -127,7 +127,7 @@ void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexce
   takeDeviations(result);
 }
 
-/// Of one link in the mass matrix [kg m2].
+/// Part of one link in the mass matrix [kg m2].
 double Boom::ownInertia(int link, int joint, int other) const noexcept {
   const auto j = static_cast<std::size_t>(joint), k = static_cast<std::size_t>(other);
   if (pose_.prismatic[j] || pose_.prismatic[k]) return 0.0;

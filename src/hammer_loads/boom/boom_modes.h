@@ -1,4 +1,4 @@
-/// How the boom vibrates on the oil of its cylinders, at one pose.
+/// Modes of the boom on the oil of its cylinders, at one pose.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@ struct BoomModes {
   int count{};                          ///< modes = joints with a cylinder; 0 at a dead centre or without inertia
   bool zero_moment_arm{};               ///< some cylinder does not hold its joint: there are no modes
   std::array<int, kMaxJoints> joint{};  ///< index in the chain of the joints that vibrate
-  JointVector stiffness;                ///< of the cylinders of those [N m/rad]
+  JointVector stiffness;                ///< stiffness of these joints' cylinders [N m/rad]
   JointMatrix mass;                     ///< M of all joints [kg m2]
   JointVector omega;                    ///< natural frequencies, as identified where they are [rad/s]
-  JointVector given_omega;              ///< those of the stiffness given [rad/s]
-  JointMatrix oil_share;                ///< of each cylinder (row) in omega^2, per mode; the rest is the weight's [-]
-  JointMatrix shape;                    ///< of the joints that vibrate, per mode; shape^T M shape = 1 [1/sqrt(kg m2)]
-  JointMatrix inertia;                  ///< M shape, of all joints, per mode [sqrt(kg m2)]
+  JointVector given_omega;              ///< angular frequencies by the stiffness given [rad/s]
+  JointMatrix oil_share;  ///< share of each cylinder (row) in omega^2, per mode; the rest is the weight's [-]
+  JointMatrix shape;      ///< shapes of the joints that vibrate, per mode; shape^T M shape = 1 [1/sqrt(kg m2)]
+  JointMatrix inertia;    ///< M shape, of all joints, per mode [sqrt(kg m2)]
 };
 
 /// Joint torques of the hammer over one step, signs as in jointTorqueOfTipLoad() [N m].

@@ -20,10 +20,10 @@ struct BucketLinkageParameters {
 /// State of the linkage at one angle, in the plane (x, z) of the link that carries the cylinder, from the joint's axis.
 struct BucketLinkagePosition {
   bool closed{};               ///< the links reach each other; otherwise guide and coupler are in line
-  double length{};             ///< of the cylinder, between its pins [m]
+  double length{};             ///< length of the cylinder, between its pins [m]
   double arm{}, arm_rate{};    ///< dL/dq [m/rad] and d2L/dq2 [m/rad2]; zero where it is not closed
   Eigen::Vector2d rod_pin;     ///< the common pin [m]
-  Eigen::Vector2d driven_pin;  ///< of the coupler on the driven link [m]
+  Eigen::Vector2d driven_pin;  ///< pin of the coupler on the driven link [m]
 };
 
 /// Forces of the three links on the common pin over the force of the rod, along the links; positive pushes on the pin.

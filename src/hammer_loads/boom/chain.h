@@ -38,11 +38,11 @@ auto findLink(Links& links, const std::string& name) noexcept -> decltype(links.
   return nullptr;
 }
 
-/// Which part of the description is the boom.
+/// Part of the description that is the boom.
 struct ChainRequest {
   std::string root{"base_link"};
   std::string tip{"hammer_hull"};
-  std::vector<std::string> joints;     ///< that must move between root and tip
+  std::vector<std::string> joints;     ///< joints that must move between root and tip
   bool massless{};                     ///< for directions alone: it need have no mass
   std::vector<WeighedLink> weighed{};  ///< links between root and tip whose bodies are not the description's
 };
@@ -71,7 +71,7 @@ struct ChainLink {
   bool prismatic{};
   Eigen::Matrix3d steady, sine, cosine;
   Eigen::Vector3d origin, slide;
-  Eigen::Vector3d axis;  ///< of the joint in P; zero when fixed
+  Eigen::Vector3d axis;  ///< axis of the joint in P; zero when fixed
   PointMass body;        ///< in its own frame, with what is fixed to it beside the chain
 };
 
@@ -100,7 +100,7 @@ class Chain {
 
   const JointVector& lower() const noexcept { return data_->lower; }  ///< [rad], -infinity for a continuous joint
   const JointVector& upper() const noexcept { return data_->upper; }  ///< [rad]
-  /// The same chain for KDL, fixed neighbours included in its inertias.
+  /// Chain in the form of KDL, fixed neighbours included in its inertias.
   const KDL::Chain& kdl() const noexcept { return *data_->kdl; }
 
  private:

@@ -23,7 +23,7 @@ class ChainDynamics {
   JointVector torqueOfMotion(const ChainPose& pose, const PlacedBodies& bodies,
                              const JointMotion& motion) const noexcept;
 
-  /// What inertia and weight of the links make; g_B: gravity in the root's axes [m/s2].
+  /// Finds the loads by inertia and weight of the links; g_B: gravity in the root's axes [m/s2].
   void chainLoads(const ChainPose& pose, const PlacedBodies& bodies, const JointMotion& motion,
                   const Eigen::Vector3d& g_B, ChainLoads& result) const noexcept;
 

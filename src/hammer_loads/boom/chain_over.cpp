@@ -7,7 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Whether the link lies beyond every joint, or is one's own.
+/// Returns true if the link lies beyond every joint, or is a joint's own.
 bool isBeyond(urdf::LinkConstSharedPtr link, const std::vector<std::string>& joints) {
   std::size_t met = 0;
   for (; link && link->parent_joint; link = link->getParent())

@@ -1,4 +1,4 @@
-/// Where the chain's links are at given joint positions, and what that makes of a wrench.
+/// Poses of the chain's links at given joint positions, and wrenches transformed between them.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct ChainPose {
   std::array<Eigen::Vector3d, kMaxJoints> axis_B;  ///< unit vector of each joint
   std::array<Eigen::Vector3d, kMaxJoints> p_BJ_B;  ///< a point on each joint's axis [m]
   std::array<bool, kMaxJoints> prismatic{};
-  std::array<double, kMaxJoints> sine{}, cosine{};  ///< of each revolute joint's position
+  std::array<double, kMaxJoints> sine{}, cosine{};  ///< sine and cosine of each revolute joint's position
 
   const Pose& tip() const noexcept { return X_BL[static_cast<std::size_t>(links - 1)]; }
   const Pose& link(int index) const noexcept { return X_BL[static_cast<std::size_t>(index)]; }
@@ -47,7 +47,7 @@ inline JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_t
   return jointTorqueOfTipLoad(tipJacobian(pose), w_tip);
 }
 
-/// The same of the links' weight, with g_B the gravity in the root's axes [m/s2].
+/// Joint torques by the links' weight, with g_B the gravity in the root's axes [m/s2].
 JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept;
 
 /// All links from `first` to the tip as one body in the root's frame.

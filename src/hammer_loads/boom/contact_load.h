@@ -15,7 +15,7 @@ class InPlaneTip {
   InPlaneTip(const Jacobian& J, const std::array<int, 3>& joints) noexcept;
   /// Not where the three joints do not move the tip in its plane independently (boom and arm in line).
   bool isKnown() const noexcept { return known_; }
-  /// Of torques on all joints of the chain [N m], linear in them: force x, z [N], moment y [N m].
+  /// Load in the plane by torques on all joints of the chain [N m], linear in them: force x, z [N], moment y [N m].
   template <typename Torques>
   Eigen::Vector3d inPlane(const Torques& torque) const noexcept {
     return inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);

@@ -15,7 +15,7 @@ using CovarianceBlock = Eigen::Ref<Eigen::MatrixXd>;
 /// P <- P - column column^T/S. S below 0 gives back.
 void subtractSquare(CovarianceBlock P, const Eigen::Ref<const Eigen::VectorXd>& column, double S) noexcept;
 
-/// What a step makes two neighbouring states of: a sum over two states or more that hold both of them.
+/// New values of two neighbouring states: weighted sums over two states or more, which include both.
 struct TwoOf {
   static constexpr int kMost = 16;
   int count{};

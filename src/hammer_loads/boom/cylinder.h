@@ -25,7 +25,8 @@ struct CylinderParameters {
   double bore_hose_volume{};  ///< bore_hose_volume_m3: oil trapped beside the piston's sweep, hose included, > 0
   double rod_hose_volume{};   ///< rod_hose_volume_m3, > 0
   double relief_pressure{};   ///< relief_pressure_Pa: highest pressure that the chambers hold, > 0
-  /// Of the seals, against the rod's motion: friction_force_N and friction times the oil's force [N], [-]; >= 0.
+  /// Friction of the seals, against the rod's motion: friction_force_N, and friction times the oil's force [N], [-]; >=
+  /// 0.
   double friction_force{}, friction{};
   /// Standard [N], [-]; not a number: kFrictionForceDeviation of the greatest push.
   double friction_force_std{std::numeric_limits<double>::quiet_NaN()}, friction_std{kFrictionDeviation};
@@ -34,10 +35,11 @@ struct CylinderParameters {
   /// pressure_offset_Pa: of the bore's sensor, as that of both chambers acts on the force [Pa].
   double pressure_offset{}, pressure_offset_std{};
 
-  /// Where the boom file gives none, of the greatest push and of the force: a loader crane's cylinders rubbed with a
-  /// constant 1 to 1.6 % of the push, 3 to 6 % of a large force (doc/boom_calibration.md).
+  /// Defaults where the boom file gives none, as parts of the greatest push and of the force. A loader crane's
+  /// cylinders had a constant friction of 1 to 1.6 % of the push, and 3 to 6 % of a large force
+  /// (doc/boom_calibration.md).
   static constexpr double kFrictionForceDeviation = 0.015, kFrictionDeviation = 0.03;
-  static constexpr double kStiffnessDeviation = 0.1;  ///< as above; air and hoses of one machine's cylinders
+  static constexpr double kStiffnessDeviation = 0.1;  ///< default for air and hoses of one machine's cylinders [-]
   // Prior: kFrictionDeviation, kStiffnessDeviation
 };
 
@@ -88,7 +90,7 @@ class Cylinder {
   /// dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.
   double stiffness(double length) const noexcept;
   OilVolumes volumes(double length) const noexcept;  ///< beyond the stroke as at its end
-  /// Its stiffness about the joint [N m/rad]: stiffness times arm^2; zero at a dead centre, nothing is divided.
+  /// Stiffness about the joint [N m/rad]: stiffness times arm^2; zero at a zero moment arm, where nothing is divided.
   /// Neglects the pre-load's share, force times d2L/dq2.
   double jointStiffness(const CylinderPosition& position) const noexcept;
 
@@ -102,7 +104,7 @@ class Cylinder {
   void findTriangle(const Chain& chain);
   void findLinkage(const Chain& chain, std::vector<std::string>& problems);
   void checkClosure(const Chain& chain, std::vector<std::string>& problems) const;
-  /// Where within the joint's limits the length is farthest from what the stroke allows.
+  /// Joint angle within the limits at which the length is farthest from what the stroke allows.
   struct Reach {
     double miss{}, angle{}, length{};  ///< [m], [rad], [m]
   };
@@ -115,7 +117,7 @@ class Cylinder {
   double bulk_modulus_{};
   double bore_area_{}, rod_area_{};
   std::optional<BucketLinkage> linkage_;
-  double shorter_side_{};                ///< of the two from the joint's axis to the anchors; or of the linkage [m]
+  double shorter_side_{};  ///< shorter one of the two from the joint's axis to the anchors; or of the linkage [m]
   double steady_{}, cosine_{}, sine_{};  ///< L^2 = steady + cosine cos q + sine sin q [m2]
 };
 

@@ -14,7 +14,7 @@ constexpr int kRangeSteps = 1000;  // over the joint's range
 
 Eigen::Vector2d inPlane(const Eigen::Vector3d& v) { return {v.x(), v.z()}; }
 
-/// Whether the joint turns both links about their common y and lies in the plane of the pins.
+/// Returns true if the joint turns both links about their common y and lies in the plane of the pins.
 bool isPlanar(const ChainLink& link) {
   const Eigen::Matrix3d at_zero = link.steady + link.cosine;
   return std::abs(std::abs(link.axis.y()) - 1.0) < kInPlane && std::abs(at_zero(1, 1) - 1.0) < kInPlane &&

@@ -10,7 +10,7 @@ namespace hammer_loads {
 
 class Chain;
 
-/// How the chain's root leans against the horizon (REP-103): first rolled about x, then pitched about the level y.
+/// Inclination of the chain's root against the horizon (REP-103): first rolled about x, then pitched about the level y.
 struct BaseTilt {
   double roll{};   ///< base_roll_rad: positive lowers the right side [rad]
   double pitch{};  ///< base_pitch_rad: positive lowers the boom's side [rad]
@@ -24,14 +24,16 @@ Eigen::Vector3d gravityInRoot(double gravity, const BaseTilt& base) noexcept;
 /// link moves. No allocation.
 Eigen::Vector3d gravityInTip(const Chain& chain, const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
 
-/// How a chain's joints pitch its tip, as the sum that HullPitch takes: exact where their axes are along y of the tip.
+/// Pitch of the tip by the chain's joints, as the sum that HullPitch uses: exact where their axes are along y of the
+/// tip.
 struct PitchOfChain {
   std::vector<std::string> joints;
   std::vector<int> signs;  ///< 1 about +y of the tip, -1 about -y
   double offset{};         ///< pitch of the tip with every joint at zero [rad]
 };
 
-/// Of the joints asked for if the chain has them all, else of those of its joints that turn about y rather than across.
+/// Pitch of the requested joints if the chain has them all, else of those of its joints that turn about y rather than
+/// across.
 PitchOfChain pitchOf(const Chain& chain, const std::vector<std::string>& asked);
 
 }  // namespace hammer_loads

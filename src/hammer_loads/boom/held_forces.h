@@ -18,7 +18,7 @@ class HeldForces {
     double duration{};  ///< [s]
     ModeVector from = ModeVector::Zero(), to = from, mean = from;
     bool strikes{};
-    ModeVector jump = ModeVector::Zero();  ///< of the velocities by that blow [m sqrt(kg)/s]
+    ModeVector jump = ModeVector::Zero();  ///< jump of the velocities by that blow [m sqrt(kg)/s]
   };
 
   bool empty() const noexcept { return count_ == 0; }
@@ -27,7 +27,7 @@ class HeldForces {
   void push(double step, const TorqueStep& modal) noexcept;
   /// At the end of what was pushed last; not where nothing is held.
   void strike(const ModeVector& jump) noexcept;
-  /// This much of the front [s] as one piece, less where a blow ends it. At least one must be held.
+  /// Takes at most this much of the front [s] as one piece, less where a blow ends it. At least one must be held.
   Piece take(double most) noexcept;
   /// Forces this long after the front [s] >= 0, and what blows up to there make of the velocities. Of what is not known
   /// yet the last; nothing held: `present`.
@@ -51,8 +51,9 @@ class HeldForces {
   std::size_t front_{}, count_{};
 };
 
-/// What the hammer makes of a reading whose instant is known to a deviation: its force and the velocities by a second
-/// of that, over the deviation to both sides, and what a line lacks there. A blow is a jump that has been or has not.
+/// Errors of the hammer's force and of the velocities at a reading whose instant has a standard deviation: the slopes
+/// over that deviation to both sides, and the rest that a line does not describe. A blow is a jump that has been or has
+/// not.
 struct DrivenAround {
   ModeVector force_rate, velocity_rate, force_bend, velocity_bend;
 };

@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-/// How many times `load` may be added to `now` before the sum passes `limit`; each in the direction that gives.
+/// Factor by which `load` may be added to `now` before the sum reaches `limit`, all in the direction of failure.
 double factor(double now, double load, double limit) noexcept {
   if (!(now <= limit) || std::isnan(load)) return 0.0;
   return load > 0.0 ? (limit - now) / load : kInfinity;

@@ -1,4 +1,4 @@
-/// Whether the machine can press the hammer onto the rock: its weight, its cylinders.
+/// Ability of the machine to press the hammer onto the rock, by its weight and its cylinders.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace hammer_loads {
 
-/// Where the machine stands, in the root's frame; all on the ground.
+/// Supports of the machine in the root's frame, all on the ground.
 struct Supports {
   double front_x{};           ///< stabilisers, on the boom's side [m], > rear_x
   double front_half_width{};  ///< [m], > 0
@@ -18,13 +18,13 @@ struct Supports {
   double rear_half_width{};   ///< [m], > 0
 };
 
-/// How many times a mean load may act before something gives; infinity: the load relieves it, or
-/// the machine's supports are not known; 0: it gives already.
+/// Factors by which a mean load may act before a support or a cylinder yields. Infinity: the load relieves it, or the
+/// machine's supports are not known; 0: it yields already.
 struct HoldDown {
   double machine{};                           ///< before the machine tips over an edge of its supports or lifts
-  int edge{};                                 ///< that edge: 0 front, 1 left, 2 rear, 3 right
+  int edge{};                                 ///< edge of machine: 0 front, 1 left, 2 rear, 3 right
   std::array<double, kMaxJoints> cylinder{};  ///< before a relief valve opens or a dead centre lets go, per cylinder
-  double least{};                             ///< of all
+  double least{};                             ///< smallest of all factors
   bool holds() const noexcept { return least >= 1.0; }
 };
 

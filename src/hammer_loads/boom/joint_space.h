@@ -43,7 +43,7 @@ using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMa
 /// Rows: linear velocity, angular velocity; one column per joint.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxJoints>;
 
-/// How the chain moves; revolute joints in [rad], prismatic ones in [m].
+/// Motion of the chain's joints; revolute ones in [rad], prismatic ones in [m].
 struct JointMotion {
   JointVector position;
   JointVector velocity;      ///< [1/s]

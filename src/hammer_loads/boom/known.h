@@ -1,4 +1,4 @@
-/// How well the loads of a boom are known.
+/// Sources of a boom's loads, by their quality.
 #pragma once
 
 namespace hammer_loads {

@@ -9,32 +9,32 @@
 
 namespace hammer_loads {
 
-/// Of the accelerations of the cylinders' joints [rad/s2] and of the load on the tip with them, axes of the tip [N, N
-/// m]. No allocation.
+/// Errors of the accelerations of the cylinders' joints [rad/s2] and of the load on the tip, axes of the tip [N, N m].
+/// No allocation.
 class LoadErrors {
  public:
   static constexpr int kMost = kMaxJoints + 6;
-  /// What is in error: accelerations in the order of the cylinders, then of the load what lies in the boom's plane
-  /// (force x, z, moment y), then what lies across it (force y, moment x, z).
+  /// Quantities in error: accelerations in the order of the cylinders, then the part of the load in the boom's plane
+  /// (force x, z, moment y), then the part across it (force y, moment x, z).
   using Inputs = Eigen::Matrix<double, kMost, 1>;
 
   explicit LoadErrors(const std::vector<Cylinder>& cylinders) noexcept;
 
   /// One error that is independent of the others, one standard deviation of it; acceleration: of all joints.
   void add(const JointVector& acceleration, const Wrench& tip) noexcept;
-  /// Of the load alone, in the boom's plane: force x, z, moment y.
+  /// Adds an error of the load alone, in the boom's plane: force x, z, moment y.
   void addInPlane(const Eigen::Vector3d& tip) noexcept;
   /// Errors of the modes' accelerations, covariance [m2 kg/s4]; tip: of the load in the plane with one unit of each
   /// mode's.
   void add(const BoomModes& modes, const JointMatrix& covariance,
            const std::array<Eigen::Vector3d, kMaxJoints>& tip) noexcept;
-  /// Of two errors that exclude each other, one standard deviation each, the larger counts for each load.
+  /// Adds two errors that exclude each other, one standard deviation each; for each load the larger counts.
   void addLarger(const JointVector& acceleration, const JointVector& other) noexcept;
 
-  int size() const noexcept { return isAcross() ? held_ + 6 : held_ + 3; }  ///< of the inputs in use
+  int size() const noexcept { return isAcross() ? held_ + 6 : held_ + 3; }  ///< number of inputs in use
   bool isAcross() const noexcept { return across_; }                        ///< some of the load lies across the plane
-  /// What they make of loads that are linear in the inputs, one variance a row of response; its columns are the inputs
-  /// in use. Where rounding would make one negative it is zero.
+  /// Finds the variances of loads that are linear in the inputs, one a row of response; its columns are the inputs in
+  /// use. A variance that rounding would make negative is zero.
   void findVariances(const Eigen::Ref<const Eigen::MatrixXd>& response,
                      Eigen::Ref<Eigen::VectorXd> variance) const noexcept;
 
@@ -48,7 +48,7 @@ class LoadErrors {
   int held_{};  ///< by cylinders
   std::array<int, kMaxJoints> joint_{};
   bool across_{}, has_larger_{};
-  /// What counts is below the diagonal, and on it, of the inputs that there are.
+  /// Covariance of the inputs in use; only the lower triangle with the diagonal counts.
   Eigen::Matrix<double, kMost, kMost> covariance_;
   std::array<Inputs, 2> larger_;
 };

@@ -62,7 +62,7 @@ inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
   const double w = mode.omega, ww = w * w, damping = 2.0 * mode.zeta * w;
   ModeResponse r;
   if (w * t <= 1.0) {
-    // What is left out is below 1e-18; the equation of motion gives impulse and step.
+    // The series is truncated below 1e-18; the equation of motion gives impulse and step.
     constexpr double kShort = 0.25;
     // Numerical: kShort
     r = w * t <= kShort ? seriesOf<12>(w * t, mode.zeta) : seriesOf<20>(w * t, mode.zeta);
@@ -81,7 +81,7 @@ inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
   return r;
 }
 
-/// What a step h of a mode does to its state, and its responses at h.
+/// Transition of a mode's state over a step h, and its responses at h.
 struct ModeStep {
   ModeResponse r;
   double x_by_x{}, x_by_v{}, v_by_x{}, v_by_v{};
@@ -105,7 +105,7 @@ struct ModeForce {
   double from{}, to{}, mean{};
 };
 
-/// The same as from + slope t + bend t^2/2.
+/// Force on a mode over one step in the form from + slope t + bend t^2/2.
 struct ForcePath {
   double from{}, slope{}, bend{};
 };

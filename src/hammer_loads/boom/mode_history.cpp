@@ -34,7 +34,7 @@ ModeHistory::Moment ModeHistory::at(const Place& place, int mode, double omega, 
   const Step& step = stepWith(place.newer);
   const double h = step.duration, per_time = 1.0 / h, u = place.since * per_time, w = 1.0 - u;
   const double from_x = step.from_x[mode], to_x = step.to_x[mode], moved = to_x - from_x;
-  // What a straight line lacks at its ends.
+  // Deviations of the end slopes from a straight line.
   const double lacks_first = h * step.from_v[mode] - moved, lacks_last = moved - h * step.to_v[mode];
   const double force_from = step.force_from[mode], force_to = step.force_to[mode];
   Moment then{{w * from_x + u * to_x + u * w * (w * lacks_first + u * lacks_last),
@@ -45,7 +45,7 @@ ModeHistory::Moment ModeHistory::at(const Place& place, int mode, double omega, 
   double t = -place.ago;
   for (std::size_t newer = 0; newer <= place.newer; ++newer) {
     const Step& its = stepWith(newer);
-    // What was shown then, back without force, undamped: cosine and sine to the fifth power of omega t.
+    // Corrections since then, carried back without force, undamped: cosine and sine to the fifth power of omega t.
     const double x = after.x - its.to_x[mode], v = after.v - its.to_v[mode] - its.jump[mode], xx = square(omega * t);
     const double cosine = 1.0 - xx * (0.5 - xx / 24.0), sine = t * (1.0 - xx * (1.0 / 6.0 - xx / 120.0));
     then.state.x += cosine * x + sine * v, then.state.v += cosine * v - square(omega) * sine * x;

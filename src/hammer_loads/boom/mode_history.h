@@ -1,4 +1,4 @@
-/// How each mode moved in the last few milliseconds: what a reading whose stamp is late belongs to.
+/// Motion of each mode in the last few milliseconds, to which a reading with a late stamp belongs.
 #pragma once
 
 #include <array>
@@ -35,34 +35,35 @@ class ModeHistory {
   /// A blow at the end of the last step [m sqrt(kg)/s].
   void strike(int mode, double jump) noexcept { steps_[newest_].jump[mode] += jump; }
 
-  /// This long before the present [s] >= 0; of what is too long ago the oldest.
+  /// Forces at a time before the present [s] >= 0; before the history begins, its oldest.
   Driven drivenAt(double ago) const noexcept;
 
-  /// Whether it, or its line over one more step, goes back for so long [s].
+  /// Returns true if the history, or its extrapolation over one more step, goes back this far [s].
   bool reaches(double ago) const noexcept;
 
   struct Place {
-    std::size_t newer{};  ///< this many steps are newer than its own
+    std::size_t newer{};  ///< number of steps newer than its own
     double ago{};         ///< [s]
-    double since{};       ///< its step's begin [s]
+    double since{};       ///< time since its step's begin [s]
   };
-  /// This long before the present [s]. False: that is too long.
+  /// Finds the place at a time before the present [s]. Returns false if that is too long ago.
   bool find(double ago, Place& place) const noexcept;
   /// A mode at an instant, with the force of the hammer, modal, and that by the second.
   struct Moment {
     ModeState state;
     double force{}, force_rate{};
   };
-  /// What a mode did there. By cubics through both ends of a step, relative error (omega step)^4/384. now: what
-  /// readings have shown since then counts for then as well.
+  /// Motion of a mode at that place, by cubics through both ends of a step, relative error (omega step)^4/384. now: the
+  /// state with all corrections since then, which are carried back.
   Moment at(const Place& place, int mode, double omega, const ModeState& now) const noexcept;
 
  private:
   struct Step {
-    double duration{};                                                                      ///< [s]
-    ModeVector from_x = ModeVector::Zero(), from_v = from_x, to_x = from_x, to_v = from_x;  ///< as ModeState
-    ModeVector force_from = from_x, force_to = from_x;                                      ///< modal, of the hammer
-    ModeVector jump = from_x;  ///< of the velocity by a blow at the end [m sqrt(kg)/s]
+    double duration{};  ///< [s]
+    ModeVector from_x = ModeVector::Zero(), from_v = from_x, to_x = from_x,
+               to_v = from_x;                           ///< states at both ends, as ModeState
+    ModeVector force_from = from_x, force_to = from_x;  ///< modal, of the hammer
+    ModeVector jump = from_x;                           ///< jump of the velocity by a blow at the end [m sqrt(kg)/s]
   };
 
   /// The last but `newer`.

@@ -261,7 +261,7 @@ void ModeIdentifier::walkContact(double step) noexcept {
   }
 }
 
-/// What is not finite anywhere reaches the diagonal with the next step.
+/// Returns false if a state or variance is not finite; it reaches the diagonal with the next step.
 bool ModeIdentifier::finite() const noexcept {
   double sum = 0.0;
   for (int i = begin(); i < end(); ++i) sum += 0.0 * (state_[i] + covariance_(i, i));

@@ -49,7 +49,7 @@ struct CrankLead {
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
-  static constexpr double kMostOil = 2.0;  ///< of log stiffness that is found: a frequency that is e times that given
+  static constexpr double kMostOil = 2.0;  ///< largest identified log stiffness: a frequency of e times the given one
   // Prior: kMostOil
   /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
@@ -69,24 +69,25 @@ class ModeIdentifier {
   double oilCovariance(int one, int other) const noexcept { return covariance_(at(one, kOil), at(other, kOil)); }
   /// Over a step [s], as Vibration::advance(), by its modal forces.
   void advance(double step, const TorqueStep& modal) noexcept;
-  /// As Vibration::strike().
+  /// Applies a blow, see Vibration::strike().
   void strike(const JointVector& impulse) noexcept;
   /// Vibration unknown, as after a gap; what is known of frequencies and damping stays. swing: how far each mode goes
   /// as a rule, standard [m sqrt(kg)]; empty: not known.
   void forgetMotion(const JointVector& swing = {}) noexcept;
   /// From now on a force of the rock is followed; torque: on the joints per newton of it [N m/N]. Call at each pose.
   void followContact(const JointVector& torque) noexcept;
-  /// Whether the rock bears on the hull, by the mean of that force.
+  /// Sets whether the rock bears on the hull, by the mean of that force.
   void bear(bool bears) noexcept { bears_ = bears; }
   /// No more: the hull counts as free.
   void leaveContact() noexcept;
-  /// Whether frequencies and damping stay as they are, whatever the next readings show; the motion is followed all the
-  /// same. For a hammer at rest: no known force shakes the boom then, and noise and the walk of the rock's force would
-  /// be taken for a soft oil, by a factor e of frequency in half a minute.
+  /// Sets whether frequencies and damping are kept, whatever the next readings show; the motion is followed all the
+  /// same. This is for a hammer at rest. No known force excites the boom then, and noise and the walk of the rock's
+  /// force would be taken for soft oil, by a factor e of frequency in half a minute.
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
   /// By how much time the crank's angle leads as far as its own model knows [s].
   void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
-  /// Of a cylinder, by its last pressures: what is known of them acts on the modes; the rest of it damps them.
+  /// Sets the seals of a cylinder by its last pressures: the known part of their friction acts on the modes, the rest
+  /// damps them.
   void setSeals(std::size_t cylinder, const Seals& seals) noexcept { seals_[cylinder] = seals; }
   /// Readings of one instant by one clock, at the present time or a little before. A channel in [0, kMaxChannels) keeps
   /// its offset; others, and values that are no number, do not count. A reading far off counts less. Three at a time,
@@ -97,11 +98,11 @@ class ModeIdentifier {
   bool imuStampsJitter() const noexcept { return jitterVariance(Clock::kImu, 0) > 0.0; }  ///< beyond its delay
   /// By which the readings of an IMU are to be given later: its stamps are early [s].
   double waiting() const noexcept { return waiting_; }
-  /// What was found of the oil does not hold: give modes of the oil as given.
+  /// True if the identified oil is refuted: the caller gives modes of the nominal oil.
   bool forgets() const noexcept { return !explains_; }
   /// Give modes of the oil as it is found, known or not.
   bool seeks() const noexcept { return seeks_; }
-  /// How late pressures are is found, against an IMU: alone they show delay and oil together.
+  /// Returns true if the delay of the pressures is identified, against an IMU: alone they show delay and oil together.
   bool knowsLag() const noexcept { return isDelayFollowed(Clock::kPressures) && imuSpeaks(); }
   /// Mean square of the errors of predicted oil torques over their variance, of some 1 s [-]: right pressures at 500 Hz
   /// have 0.3 to 0.7, one of 20 machines 1.2 for a moment; those that lag by 5 ms 1.2 and more. 0 where nothing is
@@ -109,13 +110,13 @@ class ModeIdentifier {
   double oilSurprise() const noexcept { return learns_ ? oil_surprise_ : 0.0; }
 
   int modes() const noexcept { return count_; }
-  int channels() const noexcept { return channels_; }  ///< that have had a reading
+  int channels() const noexcept { return channels_; }  ///< number of channels that have had a reading
   /// Over the given frequency [-].
   double frequencyRatio(int mode) const noexcept { return ratio_[static_cast<std::size_t>(mode)]; }
   /// Ratio of damping [-].
   double damping(int mode) const noexcept { return damping_[static_cast<std::size_t>(mode)]; }
-  double frequencyVariance(int mode) const noexcept;  ///< of its logarithm [-]
-  double dampingVariance(int mode) const noexcept;    ///< of its logarithm [-]
+  double frequencyVariance(int mode) const noexcept;  ///< variance of the logarithm of the frequency [-]
+  double dampingVariance(int mode) const noexcept;    ///< variance of the logarithm of the damping [-]
   double frequencyDeviation(int mode) const noexcept { return std::sqrt(frequencyVariance(mode)); }  ///< standard
   double dampingDeviation(int mode) const noexcept { return std::sqrt(dampingVariance(mode)); }      ///< standard
   /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
@@ -123,12 +124,13 @@ class ModeIdentifier {
   bool learns() const noexcept { return learns_; }
   /// Frequencies and damping are yet to be found with the delay of an IMU that speaks.
   bool waitsForDelay() const noexcept { return unlearns_for_ > 0.0 || (imuSpeaks() && !isDelayFollowed(Clock::kImu)); }
-  /// What damps a cylinder's joint beyond the damping given, root mean square of a swing [N m]: no pressures show it.
+  /// Torque on a cylinder's joint by damping beyond that given, root mean square over an oscillation [N m]; pressures
+  /// do not show it.
   double dampingBesideOil(std::size_t cylinder) const noexcept;
-  ModeState motion(int mode) const noexcept;  ///< as estimated
+  ModeState motion(int mode) const noexcept;  ///< estimated motion
   /// Modal torque of the oil as pressures show it whose stamp is this time [s] after the present, or before it.
   double oilTorqueRead(int mode, double ahead) const noexcept;
-  JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
+  JointVector displacement() const noexcept;  ///< estimated displacement of the joints [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
   double contact() const noexcept { return state_[kContact]; }  ///< the rock's force [N]; below 0: an error
@@ -139,11 +141,11 @@ class ModeIdentifier {
   double delayDeviation(Clock clock) const noexcept;
   /// By how much time the crank's angle leads, as its model expects and the sensors show [s].
   double crankLead() const noexcept { return crank_lead_; }
-  /// Of the errors of the modes' accelerations [m2 kg/s4].
+  /// Covariance of the errors of the modes' accelerations [m2 kg/s4].
   JointMatrix accelerationCovariance() const noexcept;
 
  private:
-  static constexpr double kDelayDeviation = 2e-3;  ///< of a delay that is not known, standard [s]
+  static constexpr double kDelayDeviation = 2e-3;  ///< standard deviation of a delay that is not known [s]
   // Prior: kDelayDeviation
   static constexpr double kForcePart = 0.05;  ///< deviation of the modal force over its root mean square
   static constexpr double kForceTime = 0.01;  ///< for which a force stays wrong the same way [s]
@@ -153,7 +155,7 @@ class ModeIdentifier {
   static_assert(kMaxStates <= kMostStates);
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
-  enum Part { kX, kV, kOil, kDamping, kParts };  ///< of a mode; kOil: of the cylinder of the same number
+  enum Part { kX, kV, kOil, kDamping, kParts };  ///< states of a mode; kOil: of the cylinder of the same number
 
   static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }
   static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
@@ -179,8 +181,8 @@ class ModeIdentifier {
     return clock == Clock::kCrank ? 0.0 : imuDelay() + (clock == Clock::kPressures ? pressureLag() : 0.0);
   }
   double delayVariance(Clock clock) const noexcept;
-  /// How long a mode's swing is held up in a clock's readings [s], by the sensors' time, and the part that is left.
-  /// Pressures that are late beside an IMU are so behind a hose: it holds up by less than its time, and takes some.
+  /// Delay of a mode's oscillation in a clock's readings [s], by the sensors' time, and the amplitude that is left. A
+  /// delay of pressures against an IMU comes from a hose: it delays by less than its time constant, and attenuates.
   struct Lag {
     double held{}, left{1.0};
   };
@@ -214,7 +216,7 @@ class ModeIdentifier {
   /// [s]: of agreement with the oil, which does not change from one second to the next; of frequencies that were lost,
   /// or are unlearned; of a hull without rock, whose mean force has no longer memory.
   static constexpr double kProven = look_back::kFiveTurns;
-  double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< of the pressures, variance over its own
+  double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< factor on the variance of the pressures
   double byDelay(Clock clock, const State& row) const noexcept;
   bool delayShows(Clock clock) const noexcept;
   StateList keptStates() const noexcept;
@@ -230,7 +232,7 @@ class ModeIdentifier {
                const StateList& kept) noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
   void takeBack(const StateList& kept, double moved, double S, const State& gain_S) noexcept;
-  /// Of all states, where one of them is so much more than it was taken for.
+  /// Change of all states if one of them moves by an amount.
   State movedWith(int state, double by) const noexcept {
     return by / covariance_(state, state) * covariance_.col(state);
   }
@@ -273,26 +275,28 @@ class ModeIdentifier {
   double unlearns_for_{};      ///< time for which what was found still counts as less known [s]
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
   HeldForces held_;
-  std::optional<BehindHose> behind_hose_;  ///< where it is followed
+  std::optional<BehindHose> behind_hose_;  ///< torques behind the hoses, where they are followed
   double waiting_{};                       ///< by which the sensors' time is behind the crank's stamps [s]
   std::optional<ModeVector> struck_;       ///< by a blow that has just been: of the velocities
   bool moving_known_{};                    ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
-  alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
+  alignas(64) Covariance covariance_ =
+      Covariance::Zero();  ///< aligned to cache lines, which saves a tenth of the time of a reading
   std::array<Seals, kMaxJoints> seals_;
   /// Modal, at the present time; and by the second.
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
-  std::array<double, kMaxJoints> ratio_{}, damping_{};                   ///< of state_
-  LogOil stiffness_ratio_ = LogOil::Ones(), used_oil_ = LogOil::Zero();  ///< likewise; logarithms of it
-  std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};     ///< logarithms of these
-  int channels_{};                                                       ///< in use
+  std::array<double, kMaxJoints> ratio_{}, damping_{};  ///< ratios of frequency and of damping by state_
+  LogOil stiffness_ratio_ = LogOil::Ones(),
+         used_oil_ = LogOil::Zero();  ///< ratios of stiffness by state_, and their logarithms
+  std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};  ///< logarithms of these
+  int channels_{};                                                    ///< in use
   std::array<int, kMaxChannels> slot_{};          ///< state of each channel's offset; -1: not in use
   std::array<double, kMaxChannels> age_{};        ///< since the channel's last reading [s]
   std::array<Clock, kMaxChannels> clock_{};       ///< whose stamps it has
-  std::array<TimingNoise, kMaxChannels> jitter_;  ///< of these, as the channel shows it
+  std::array<TimingNoise, kMaxChannels> jitter_;  ///< jitter of its stamps, as the channel shows it
 };
 
 }  // namespace hammer_loads

@@ -18,7 +18,7 @@ constexpr double kWrongByPressures = 0.3;  // by them alone
 constexpr double kDoubt = 0.6;             // deviations of an expected lead: they are large, see ConstantErrors
 constexpr double kWrongLead = 0.3;         // of what is taken for the crank's: it may be a sensor's
 
-/// Of two of one sign the one nearer to 0; else 0.
+/// Value nearer to 0 of two of equal sign; else 0.
 double lesserOf(double a, double b) noexcept {
   return a * b > 0.0 ? std::copysign(std::min(std::abs(a), std::abs(b)), a) : 0.0;
 }
@@ -35,7 +35,7 @@ void ModeIdentifier::followDelay(Clock clock) noexcept {
   unlearns_for_ = kProven;
 }
 
-/// Of what oil and damping were taken for without a delay.
+/// Reduces the information on oil and damping that was gained without a delay.
 void ModeIdentifier::unlearn(double part) noexcept {
   for (int k = 0; k < count_; ++k) {
     covariance_(at(k, kOil), at(k, kOil)) += part * square(kOilWithDelay);
@@ -54,7 +54,7 @@ void ModeIdentifier::advanceDelays(double step) noexcept {
     known_for_ = identified() ? known_for_ + step : 0.0;
     return;
   }
-  // Where the rock bears on a hull unseen, a delay makes up for its force.
+  // Where the rock bears on a hull unseen, an identified delay imitates its force.
   lost_for_ = identified() ? 0.0 : lost_for_ + step;
   if (lost_for_ > kProven) forgetOil();
 }
@@ -77,8 +77,8 @@ double ModeIdentifier::delay(Clock clock) const noexcept {
   return isDelayFollowed(clock) ? delayByCrank(clock) - crankLead() : 0.0;
 }
 
-/// What all clocks that are followed have in common, as far as it is what is expected; the less of the rest, the more
-/// it is. A sensor that is not late shows no lead.
+/// Delay that all followed clocks have in common, as far as it is expected; the more the rest exceeds the expectation,
+/// the less of it counts. A sensor without delay shows no lead.
 double ModeIdentifier::findCrankLead() const noexcept {
   double common = 0.0;
   bool first = true;
@@ -116,7 +116,8 @@ void ModeIdentifier::followHose(double step, const States& now, const States& ne
   }
 }
 
-/// What readings have shown of the motion was so, as a free swing, for as long as the hose takes.
+/// Corrects the hose's torque by what readings have shown of the motion, taken as a free oscillation over the hose's
+/// time constant.
 void ModeIdentifier::correctHose(const State& by) noexcept {
   if (!behind_hose_) return;
   const double late = pressureLag();
@@ -143,14 +144,15 @@ double ModeIdentifier::byDelay(Clock clock, const State& row) const noexcept {
   return square(kDelayDeviation * row[delayAt(clock)]);
 }
 
-/// How far the instant of one of its readings is known [s].
+/// Standard deviation of the instant of one of the IMU's readings [s].
 double ModeIdentifier::imuStampDeviation() const noexcept {
   const double unknown = learns_ ? square(kDelayDeviation) : 0.0;
   return std::sqrt((isDelayFollowed(Clock::kImu) ? delayVariance(Clock::kImu) : unknown) +
                    jitterVariance(Clock::kImu, 0));
 }
 
-/// Of stamps, as a channel shows it: of the IMU's, which are one clock's, that which shows most.
+/// Variance of the stamps' jitter [s2], as a channel shows it; for the IMU, whose channels have one clock, the largest
+/// of its channels.
 double ModeIdentifier::jitterVariance(Clock clock, int own) const noexcept {
   if (clock != Clock::kImu) return jitter_[static_cast<std::size_t>(own)].variance();
   double variance = 0.0;

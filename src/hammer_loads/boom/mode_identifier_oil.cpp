@@ -1,4 +1,4 @@
-// What is known of the oil: stiffness of the cylinders, frequencies and damping of the modes, and their forces.
+// Identified properties of the oil: stiffness of the cylinders, frequencies and damping of the modes, and their forces.
 #include <algorithm>
 #include <cmath>
 
@@ -78,7 +78,7 @@ void ModeIdentifier::useOil() noexcept {
   for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }
 
-/// Of a mode's acceleration, mean square over a swing.
+/// Mean square over an oscillation of a mode's acceleration by damping beside the oil's.
 double ModeIdentifier::besideOil(int k) const noexcept {
   const Mode mode = modeAt(k);
   const ModeState now = stateOf(k);
@@ -112,7 +112,7 @@ ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
   return force;
 }
 
-/// What a unit of each logarithm of stiffness adds to the oil's torques on the joints [N m].
+/// Derivatives of the oil's torques on the joints by the logarithms of stiffness [N m].
 LogOil ModeIdentifier::oilTorques(const States& of) const noexcept {
   LogOil torque = LogOil::Zero();
   for (int i = 0; i < count_; ++i) {
@@ -142,7 +142,8 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
     with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
     for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
-    // What the mode's shape lacks; and what damps beside the oil is nothing that is linear, nor of one mode.
+    // The first term stands for damping beside the oil, which is neither linear nor of one mode; the rest for errors of
+    // the mode's shape.
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
     covariance(k, k) += besideOil(k) + square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +

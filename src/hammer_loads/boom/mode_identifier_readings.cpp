@@ -52,15 +52,16 @@ double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead,
   return force + lag.left * (torque - force);
 }
 
-/// Of a mode, for readings of one instant. by_oil: what a unit of each logarithm of stiffness takes from its
-/// acceleration.
+/// View of a mode for readings of one instant. by_oil: decrease of its acceleration per unit of each logarithm of
+/// stiffness.
 struct ModeIdentifier::Seen {
   ModeHistory::Moment then;
   std::array<double, kMaxJoints> by_oil;
   double acceleration, stiff, damped, rock;
-  double cosine, sine;           ///< of what was then: how displacement and velocity of now show in it
-  double read{};                 ///< of the oil's torque
-  double left{1.0}, fades_by{};  ///< of a swing behind a hose, and the part of that which a second more of it takes
+  double cosine, sine;           ///< derivatives of the state then by the displacement and velocity of now
+  double read{};                 ///< predicted reading of the oil's torque
+  double left{1.0}, fades_by{};  ///< amplitude of an oscillation behind a hose, and the part of it that one more second
+                                 ///< of delay takes
 };
 
 ModeIdentifier::Seen ModeIdentifier::see(int mode, double ahead) const noexcept {
@@ -75,7 +76,7 @@ ModeIdentifier::Seen ModeIdentifier::see(int mode, double ahead) const noexcept 
   return seen;
 }
 
-/// What is predicted of the reading.
+/// Prediction of the reading.
 ModeIdentifier::Predicted ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes& modes,
                                                   const std::optional<DrivenAround>& around,
                                                   State& row) const noexcept {
@@ -269,7 +270,8 @@ StateList ModeIdentifier::keptStates() const noexcept {
   return kept;
 }
 
-/// What a reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
+/// Reverts the correction of these states. The other states are corrected with these taken as uncertain as before
+/// (Schmidt-Kalman filter).
 void ModeIdentifier::takeBack(const StateList& kept, double moved, double S, const State& gain_S) noexcept {
   for (int i : kept) {
     state_[i] -= moved * gain_S[i];

@@ -1,4 +1,4 @@
-/// Whether a boom may be taken as rigid: pulse length against natural frequencies.
+/// Error of a rigid boom: pulse length against natural frequencies.
 #pragma once
 
 #include "hammer_loads/boom/boom_modes.h"

@@ -1,4 +1,4 @@
-/// What the seals of a cylinder take between its oil and its joint.
+/// Friction of a cylinder's seals, between its oil and its joint.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace hammer_loads {
 struct Seals {
   double known{}, deviation{};  ///< standard [N m]
   double driven{};              ///< rate of the joint beside its vibration [rad/s]
-  double slow{1.0};             ///< that rate up to which they may rub either way [rad/s]
+  double slow{1.0};             ///< joint rate below which the direction of friction is uncertain [rad/s]
 
   /// -1 to 1: of the joint, at a rate of vibration [rad/s].
   double way(double vibrating) const noexcept {

@@ -1,4 +1,4 @@
-/// Where a link of the chain is cut to know what the steel carries there.
+/// Section of a link of the chain, at which the internal load is computed.
 #pragma once
 
 #include <optional>
@@ -46,9 +46,9 @@ class Section {
   const std::string& name() const noexcept { return parameters_.name; }
   const SectionParameters& parameters() const noexcept { return parameters_; }
   int link() const noexcept { return link_; }                ///< index in the chain
-  const Pose& poseInLink() const noexcept { return X_LC_; }  ///< of the cut in its link
-  const RigidBody& part() const noexcept { return part_; }   ///< of the link beyond the cut, in the link's frame
-  /// Whether a point of the link, in its frame, lies beyond.
+  const Pose& poseInLink() const noexcept { return X_LC_; }  ///< pose of the cut in its link
+  const RigidBody& part() const noexcept { return part_; }   ///< part of the link beyond the cut, in the link's frame
+  /// Returns true if a point of the link, in its frame, lies beyond the cut.
   bool beyond(const Eigen::Vector3d& p_L) const noexcept;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMostLoad = 1e200;
 // Numerical: kMostLoad
 
-/// Of the root's frame, at a point, in axes of its own.
+/// Wrench in the root's frame, transformed to a point and to axes of its own.
 HAMMER_LOADS_INLINE Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& axes, const Wrench& w) noexcept {
   return {axes.transpose() * w.force, axes.transpose() * (w.torque - p.cross(w.force))};
 }

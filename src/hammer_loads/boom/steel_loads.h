@@ -19,8 +19,8 @@ struct PinForces3d {
   Eigen::Vector3d rod = Eigen::Vector3d::Zero();    ///< by the rod or the coupler on the link beyond, in its axes
 };
 
-/// Where a cylinder stands at its dead centre, all that it carries is NaN: its pins, the reaction of its joint, and the
-/// sections that it crosses.
+/// Section loads and joint reactions. Where a cylinder has a zero moment arm, everything that it carries is NaN: its
+/// pins, the reaction of its joint, and the sections that it crosses.
 struct SteelLoads {
   /// BY everything beyond the cut, towards the hammer, ON what lies before it, about the cut's origin, axes of the cut.
   std::array<Wrench, kMaxSections> section;
@@ -34,9 +34,9 @@ struct SteelLoads {
 /// Accelerations and loads that the chain has at one instant.
 struct ChainState {
   const ChainPose& pose;
-  const ChainLoads& links;            ///< of weight and motion, the vibration's included
+  const ChainLoads& links;            ///< loads of weight and motion, the vibration's included
   const Wrench& w_tip;                ///< BY the hammer ON the tip, as for Boom::loads()
-  const CylinderPosition* cylinders;  ///< of each cylinder
+  const CylinderPosition* cylinders;  ///< position of each cylinder
 };
 
 /// The load of everything beyond each cut. A cylinder's force is the one that leaves no moment about its joint's axis,

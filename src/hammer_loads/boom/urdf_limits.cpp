@@ -76,7 +76,7 @@ std::string urdfLimitPassed(const std::string& text) {
     if (tag.kind == Tag::Kind::kClose) depth = std::max(0, depth - 1);
     if (tag.kind == Tag::Kind::kOpen || tag.kind == Tag::Kind::kEmpty) {
       if (depth >= UrdfLimits::kDepth) return passed("tags within tags", UrdfLimits::kDepth);
-      // Those of other depths are a transmission's, a sensor's.
+      // Tags at other depths belong to a transmission or a sensor.
       if (depth == 1 && tag.name == "link" && ++links > UrdfLimits::kLinks) return passed("links", UrdfLimits::kLinks);
       if (depth == 1 && tag.name == "joint" && ++joints > UrdfLimits::kJoints) {
         return passed("joints", UrdfLimits::kJoints);

@@ -176,8 +176,8 @@ void Vibration::useIdentified() noexcept {
   for (int k = 0; k < modes_.count; ++k) modes_.omega[k] = modes_.given_omega[k] * identifier_->frequencyRatio(k);
 }
 
-/// What damps beside the oil is of no one mode: what of its force, 2 zeta of the stiffness's, is in phase with that is
-/// not known.
+/// Uncertainty of a logarithm of stiffness by damping beside the oil's. It belongs to no single mode, and the part of
+/// its force, 2 zeta of the stiffness's, that is in phase with the stiffness's is not known.
 double Vibration::oilDoubt(int cylinder) const noexcept {
   double doubt = 0.0;
   for (int k = 0; k < modes_.count; ++k)

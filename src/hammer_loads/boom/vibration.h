@@ -13,7 +13,7 @@
 namespace hammer_loads {
 
 struct VibrationSettings {
-  double damping_ratio{};  ///< of every mode [-], in (0, 1)
+  double damping_ratio{};  ///< damping ratio of every mode [-], in (0, 1)
   double refresh_angle{};  ///< new modes for each such move of a joint; theirs is off by half of it [rad], >= 0
 };
 
@@ -33,9 +33,9 @@ class Vibration {
   void setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
   /// At rest without load, as after a gap in the samples; the next setPose() finds new modes.
   void rest() noexcept;
-  /// As at the start: at rest, frequencies and damping as given. What was found came from readings that were wrong.
+  /// Resets to the start: at rest, frequencies and damping as given. This discards what wrong readings have identified.
   void startAnew() noexcept;
-  /// How far each mode has swung of late, root mean square of displacements [m sqrt(kg)]; rest() leaves it as it is.
+  /// Recent root mean square of each mode's displacement [m sqrt(kg)]; rest() leaves it as it is.
   JointVector usualSwing() const noexcept { return swing_.cwiseSqrt(); }
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
   /// Where torques are so large that the state would not be finite, the boom comes to rest.
@@ -70,21 +70,21 @@ class Vibration {
     reading.channel = channel;
     observe(&reading, 1);
   }
-  /// Of a cylinder's oil against the mean of the others', logarithms of stiffness: as found, its standard deviation,
-  /// and how far that may be by the boom file, standard.
+  /// Stiffness of a cylinder's oil against the mean of the others': logarithm as identified, its standard deviation,
+  /// and the standard deviation that the boom file leads one to expect.
   struct OilAgainstOthers {
     double stiffer{}, deviation{}, expected{};
   };
   /// Nothing while frequencies are not found, and without other cylinders.
   std::optional<OilAgainstOthers> oilAgainstOthers(std::size_t cylinder) const noexcept;
-  /// Of a cylinder's oil over that of the boom file: logarithm of stiffness as found, its standard deviation, which has
-  /// what a boom that is damped beside its oil leaves open.
+  /// Stiffness of a cylinder's oil over that of the boom file: logarithm as identified, and its standard deviation,
+  /// which includes the effect of damping beside the oil.
   struct OilFound {
     double stiffer{}, deviation{};
   };
-  /// As above.
+  /// Oil of a cylinder; none while frequencies are not identified.
   std::optional<OilFound> oilFound(std::size_t cylinder) const noexcept;
-  /// What follows the readings, if anything does.
+  /// Filter that follows the readings, if one does.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
   /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
   /// Else they are those of the hammer's load alone.
@@ -95,7 +95,7 @@ class Vibration {
   bool known() const noexcept { return modes_.count > 0; }
   /// No motion and no load.
   bool rests() const noexcept { return contact_ == 0.0 && x_.isZero(0.0) && v_.isZero(0.0) && force_.isZero(0.0); }
-  ModeState motion(int mode) const noexcept { return {x_[mode], v_[mode]}; }  ///< of a mode
+  ModeState motion(int mode) const noexcept { return {x_[mode], v_[mode]}; }  ///< motion of a mode
   double loadOn(int mode) const noexcept { return force_[mode]; }             ///< modal, at the end of the last step
   JointVector displacement() const noexcept;                                  ///< [rad], zero for held joints
   JointVector velocity() const noexcept;                                      ///< [rad/s]
@@ -105,13 +105,13 @@ class Vibration {
   /// -M q'': what vibration adds to the static torque of the load, so that hammer + vibration = what the cylinders hold
   /// (K q + C q') for the joints that they hold, and as above for the held ones [N m].
   JointVector torque() const noexcept;
-  /// What the oil carries, K q + C q', and how fast that changes; of the readings where they are followed [N m, N m/s].
-  /// With the weight's share of K: the torque beside that of the weight where the vibration has taken it.
+  /// Torque that the oil carries, K q + C q', and its rate; by the readings where they are followed [N m, N m/s]. With
+  /// the weight's share of K: the torque beside that of the weight where the vibration has taken it.
   struct OilTorque {
     JointVector now, rate;
   };
   OilTorque oilTorque() const noexcept;
-  /// As pressures show it whose stamp is this long [s] after the present, or before it [N m].
+  /// Oil torque that pressures show with a stamp this long [s] after the present, or before it if negative [N m].
   JointVector oilTorqueRead(double ahead) const noexcept;
   /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
   double energy() const noexcept;
@@ -124,8 +124,9 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
-  double oilDoubt(int cylinder) const noexcept;        ///< of its logarithm of stiffness, standard
-  OilFound oilFound(const LogOil& by) const noexcept;  ///< of that sum over the cylinders
+  double oilDoubt(
+      int cylinder) const noexcept;  ///< standard deviation of its logarithm of stiffness by damping beside the oil's
+  OilFound oilFound(const LogOil& by) const noexcept;  ///< weighted sum over the cylinders
   LogOil oilToTake() const noexcept;
   void useMotion() noexcept;
   void takeMotion() noexcept;
@@ -138,17 +139,17 @@ class Vibration {
   LogOil own_oil_ = LogOil::Zero();  ///< deviation of each cylinder's oil against the common one
   std::optional<ModeIdentifier> identifier_;
   BoomModes modes_;
-  JointVector position_;  ///< where the modes belong
-  JointVector last_;      ///< as last given
+  JointVector position_;  ///< position for which the modes were found
+  JointVector last_;      ///< position of the last setPose()
   bool posed_{};
   LogOil log_oil_ = LogOil::Zero();  ///< logarithms of the stiffness of the modes' oil over that given
   bool follows_readings_{};
-  std::array<KeptStep, kMaxJoints> step_;                ///< of each mode
+  std::array<KeptStep, kMaxJoints> step_;                ///< last step of each mode
   JointVector x_, v_;                                    ///< modal displacements and velocities
   JointVector swing_;                                    ///< mean squares of the displacements
   JointVector contact_by_newton_;                        ///< modal force of the rock
   double contact_{}, mean_contact_{}, least_contact_{};  ///< [N]
-  JointVector torque_, force_;                           ///< of the load at the end of the last step; modal
+  JointVector torque_, force_;  ///< torque of the load at the end of the last step; its modal force
 };
 
 }  // namespace hammer_loads

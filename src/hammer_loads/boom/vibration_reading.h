@@ -9,9 +9,9 @@ namespace hammer_loads {
 /// Whose stamps a reading has. Those of a sensor with a clock of its own may all be late by one time.
 enum class Clock { kCrank, kImu, kPressures };
 
-/// What one channel of a sensor reads of the joints' vibration q: offset + displacement . q + velocity . q' +
-/// acceleration . q'', or, of the oil, offset + oil . (K q + C q'). Whatever else it sees (weight, the boom's slow
-/// motion) must be taken off value first, as far as known; the offset takes up what is left of it.
+/// Reading of one channel of a sensor, as a function of the joints' vibration q: offset + displacement . q + velocity .
+/// q' + acceleration . q'', or, for the oil, offset + oil . (K q + C q'). Everything else that the sensor sees (weight,
+/// the boom's slow motion) must be subtracted from value first, as far as known; the offset absorbs the rest.
 struct VibrationReading {
   /// One entry per joint of the chain, then zeros.
   using Row = Eigen::Matrix<double, kMaxJoints, 1>;
@@ -19,17 +19,18 @@ struct VibrationReading {
   bool of_oil{};  ///< `oil` counts, else the three others
   int channel{-1};
   double value{};
-  double ahead{};              ///< of the reading's instant over the present one [s]; negative: it is older
-  Clock clock{Clock::kCrank};  ///< its stamp is late by ModeIdentifier::delay()
+  double ahead{};              ///< instant of the reading less the present one [s]; negative: it is older
+  Clock clock{Clock::kCrank};  ///< clock whose stamps are late by ModeIdentifier::delay()
   double noise{};              ///< standard deviation of one reading, unit of value
-  double neglected{};          ///< of what modes cannot say of it: it weighs less, and is as surprising
-  double offset_std{};         ///< of its offset at the start, unit of value
-  double offset_walk{};        ///< how far the offset wanders in a second, unit of value
+  double neglected{};    ///< part that modes cannot describe: it lowers the weight of the reading, but not the reaction
+                         ///< to a surprise
+  double offset_std{};   ///< standard deviation of its offset at the start, unit of value
+  double offset_walk{};  ///< random walk of the offset in a second, unit of value
 };
 
 /// Turning rate [rad/s] about a unit vector n in the tip's axes; J of tipJacobian().
 VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, double rate);
-/// What an accelerometer at p reads along n [m/s2], acceleration less gravity g (all in the tip's axes).
+/// Reading of an accelerometer at p along n [m/s2]: acceleration less gravity g (all in the tip's axes).
 VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
                                         const Eigen::Vector3d& g_T, double acceleration);
 /// A joint's angle [rad]: above 100 Hz it shows the vibration.

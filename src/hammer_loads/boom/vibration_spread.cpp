@@ -51,7 +51,7 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
   waits_ = vibration.followsReadings();
 }
 
-/// What is known by readings goes its own way from there when they end.
+/// Starts the runs from the state known by readings, when these end.
 void VibrationSpread::start(const Vibration& vibration) noexcept {
   if (!waits_) rest();
   for (int k = 0; k < modes_.count; ++k) {

@@ -1,4 +1,4 @@
-/// How far the vibration may be off: the same hammer on oil that is stiffer, softer, more damped, and its own errors.
+/// Uncertainty of the vibration: the same hammer on oil that is stiffer, softer or more damped, and errors of its load.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class VibrationSpread {
 
   /// After Vibration::setPose(): its modes and, where they are identified, how well.
   void follow(const Vibration& vibration) noexcept;
-  /// As Vibration::advance(); errors of the load at the step's end, linear from those at its begin.
+  /// Advances as Vibration::advance(); errors of the load at the step's end, linear from those at its begin.
   void advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept;
   void strike(const JointVector& impulse) noexcept;
   void rest() noexcept;
@@ -34,14 +34,14 @@ class VibrationSpread {
 
   /// While the vibration follows readings: advance() does nothing.
   bool waits() const noexcept { return waits_; }
-  /// Of a mode: as given or, where that is less, as identified.
+  /// Deviation of a mode: as given or, where that is less, as identified.
   const OilDeviation& deviation(int mode) const noexcept { return deviation_[static_cast<std::size_t>(mode)]; }
   int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }
   /// By what the joints' accelerations of a run differ from those of the vibration, at the same instant [rad/s2].
   JointVector accelerationDifference(int run, const JointVector& vibration) const noexcept;
-  /// Whether the vibration was going on, in a way not known, when it began to be followed.
+  /// Returns true if a vibration of unknown state was going on when it began to be followed.
   bool swings() const noexcept { return swing_.size() > 0; }
-  /// What that makes of the joints' accelerations, standard, by one mode [rad/s2].
+  /// Standard deviation of the joints' accelerations by that unknown vibration, of one mode [rad/s2].
   JointVector accelerationOfSwing(int mode) const noexcept;
   int modes() const noexcept { return modes_.count; }
 
@@ -64,11 +64,12 @@ class VibrationSpread {
   std::array<Factors, kMaxJoints> factor_;
   BoomModes modes_;
   bool waits_{};
-  std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
-  std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
+  std::array<std::array<Mode, kMaxJoints>, kLoads + 1>
+      mode_;                                         ///< modes of the first runs; last: those of the vibration
+  std::array<JointVector, kMaxRuns> x_, v_, force_;  ///< modal, of each run
   LoadSpread load_;
   JointVector swing_;                                              ///< empty: none
-  std::array<std::array<KeptStep, kMaxJoints>, kLoads + 1> step_;  ///< as mode_
+  std::array<std::array<KeptStep, kMaxJoints>, kLoads + 1> step_;  ///< last steps, index as mode_
 };
 
 }  // namespace hammer_loads

@@ -17,8 +17,8 @@ struct Wrench {
 /// The part in the boom's plane: force x, z, moment y.
 inline Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
 
-/// The same load at the origin of Q: f_Q = R f_P, t_Q = R t_P + p x f_Q with X_QP = (R, p).
-/// Error below 1e-15 of |t| + |p||f|. tf2 0.7.6's doTransform leaves out p x f.
+/// Wrench of the load at the origin of Q: f_Q = R f_P, t_Q = R t_P + p x f_Q with X_QP = (R, p). Error below 1e-15 of
+/// |t| + |p||f|. tf2 0.7.6's doTransform leaves out p x f.
 Wrench shifted(const Pose& X_QP, const Wrench& w_P) noexcept;
 
 }  // namespace hammer_loads
