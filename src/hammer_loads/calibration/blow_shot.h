@@ -8,7 +8,7 @@
 
 namespace hammer_loads::calibration {
 
-constexpr int kNodesBeside = 4;  ///< of the torque, on either side of the blow
+constexpr int kNodesBeside = 4;  ///< nodes of the torque on either side of the blow
 
 /// Parameters of one blow alone: instant [s], the crank's speeds before and after [rad/s], net torque [N m] in nodes at
 /// the blow and at equal steps before (odd ones) and after it (even ones), linear in between.
@@ -28,7 +28,7 @@ constexpr Eigen::Index torqueIndex(bool before, int node) {
                    : static_cast<Eigen::Index>(kTorques) + (before ? 0 : kNodesBeside) + node - 1;
 }
 
-/// How the drive's torque follows the crank, alike at every blow.
+/// Law by which the drive's torque follows the crank, equal at every blow.
 struct DriveLaw {
   double mean_speed{};  ///< [rad/s]
   double stiffness{};   ///< torque lost per angle that the crank is ahead of the mean speed: oil in the line [N m/rad]

@@ -15,10 +15,10 @@ namespace hammer_loads::calibration {
 struct WeighedRecording {
   BoomRecording recording;
   TipWeight weight;
-  std::string name{};  ///< of its bag, for texts
+  std::string name{};  ///< name of its bag, for texts
 };
 
-/// How well the weight of all beyond a joint is known, over the poses of the recording.
+/// Uncertainty of the weight beyond a joint, over the poses of the recording.
 struct JointWeight {
   std::string joint;
   double torque{};     ///< static, rms over the poses [N m]
@@ -34,7 +34,7 @@ struct CylinderFit {
   double force{};               ///< rms [N]
   double left{};                ///< rms, with the values found [N]
   double before{};              ///< rms, with those given [N]
-  std::vector<double> left_in;  ///< the same of each recording, where there are several [N]; NaN: no rows there
+  std::vector<double> left_in;  ///< left in each recording, where there are several [N]; NaN: no rows there
   double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
   double friction{};            ///< at that force [N]
   double friction_std{};        ///< standard [N]
@@ -47,7 +47,7 @@ struct CylinderFit {
 /// One row as a picture shows it.
 struct BoomResidual {
   std::size_t cylinder{};
-  double angle{};  ///< of its joint [rad]
+  double angle{};  ///< angle of its joint [rad]
   bool extends{};
   double before{}, after{};  ///< [N]
 };
@@ -57,12 +57,12 @@ struct BoomCalibration {
   /// together.
   static constexpr double kLimit = 0.03;
 
-  std::vector<std::string> names;  ///< of the recordings
+  std::vector<std::string> names;  ///< names of the recordings
 
-  std::string problem;  ///< why there is nothing
+  std::string problem;  ///< reason why there is no result
   double seconds{};
   std::size_t points{}, left_out{};
-  std::vector<Estimate> estimates;  ///< of the boom file; limit: not used, see joints
+  std::vector<Estimate> estimates;  ///< keys of the boom file; limit: not used, see joints
   std::vector<Correlation> correlations;
   std::vector<JointWeight> joints;
   std::vector<CylinderFit> cylinders;

@@ -127,7 +127,7 @@ class Fitter {
     return -u.given / u.deviation;
   }
 
-  /// As far as there is such a boom.
+  /// Moves to the next values, or as far towards them as a boom with such values exists.
   void move(const Eigen::VectorXd& next) {
     double part = 1.0;
     while (part > 1e-3 && !model_.boomAt(fit_.x + part * (next - fit_.x), 0)) part *= 0.5;

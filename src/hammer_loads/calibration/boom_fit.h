@@ -16,12 +16,13 @@ struct BoomRow {
   double measured{};  ///< force [N]
 };
 
-/// Of the points of all recordings, in the order of recordings, cylinders, times. They must outlive the rows.
+/// Rows of the points of all recordings, in the order of recordings, cylinders, times. The points must outlive the
+/// rows.
 std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints>& recordings);
 
 struct BoomFit {
-  Eigen::VectorXd x;             ///< as BoomModel orders it, in standard deviations before the recording
-  Eigen::MatrixXd covariance;    ///< of x
+  Eigen::VectorXd x;             ///< values in the order of BoomModel, in standard deviations before the recording
+  Eigen::MatrixXd covariance;    ///< covariance of x
   std::vector<double> noise;     ///< per cylinder: standard deviation of what is left of a row [N]
   std::vector<double> together;  ///< per cylinder: this many rows in a row say as much as one, >= 1 [-]
   bool converged{};
@@ -32,7 +33,7 @@ struct BoomFit {
 /// of neighbours may be alike: then this many of them count as one. Friction is not below zero.
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
 
-/// What rows show more than the model with values x says [N].
+/// Residuals: forces of the rows less those of the model with values x [N].
 Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
 
 /// Standard deviation of any function of x; by differences over a tenth of each unknown's deviation.

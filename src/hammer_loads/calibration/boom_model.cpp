@@ -32,7 +32,7 @@ WeighedLink together(WeighedLink link, double mass, double x, double z) {
   return link;
 }
 
-/// As much heavier as its link.
+/// Scales a part by the ratio of its link's mass.
 void scale(PartBeyond& part, double by) { part.mass *= by, part.inertia_y *= by; }
 
 void replace(std::vector<WeighedLink>& links, const WeighedLink& link) {

@@ -14,7 +14,7 @@ namespace hammer_loads::calibration {
 /// A weight that hangs on the tip in one recording.
 struct TipWeight {
   double mass{}, deviation{};  ///< [kg]; a deviation of zero: it is known
-  double x{}, z{};             ///< its centre of mass in the tip's frame [m]
+  double x{}, z{};             ///< centre of mass in the tip's frame [m]
 };
 
 /// Given parameters, and how far they may be off.
@@ -23,31 +23,31 @@ struct BoomBasis {
   BoomParameters parameters;
   Eigen::Vector3d g_B{0.0, 0.0, -kStandardGravity};  ///< gravity in the root's axes [m/s2]
   double mass_std{0.25};            ///< standard, of each link's mass, relative: drawings lack hoses, oil, valves [-]
-  double com_std{0.10};             ///< of each link's centre of mass in x and z each [m]
-  double inertia_std{0.30};         ///< of each link's inertia, relative [-]
-  double zero_std{0.005};           ///< of each joint's zero: 0.3 deg [rad]
-  double offset_std{5e4};           ///< of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
+  double com_std{0.10};             ///< standard, of each link's centre of mass in x and z each [m]
+  double inertia_std{0.30};         ///< standard, of each link's inertia, relative [-]
+  double zero_std{0.005};           ///< standard, of each joint's zero: 0.3 deg [rad]
+  double offset_std{5e4};           ///< standard, of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
   double recording_std{5e4};        ///< by which a bore's pressure differs from one recording to the next [Pa]
-  double gain_std{0.005};           ///< of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
-  double friction_std{0.05};        ///< of the part of friction that goes with the force [-]
-  double friction_force_std{0.02};  ///< of the part that does not, over the greatest push [-]
-  double viscous_std{0.02};         ///< of friction per speed, over the greatest push: 0.2 % at 0.1 m/s [s/m]
+  double gain_std{0.005};           ///< standard, of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
+  double friction_std{0.05};        ///< standard, of the part of friction that goes with the force [-]
+  double friction_force_std{0.02};  ///< standard, of the constant part, over the greatest push [-]
+  double viscous_std{0.02};         ///< standard, of friction per speed, over the greatest push: 0.2 % at 0.1 m/s [s/m]
 };
 
 /// Meaning of one entry of the vector of unknowns.
 enum class BoomUnknown {
-  kMass,           ///< of a link, logarithm of it over the description's [-]
-  kComX,           ///< of a link, less the description's [m]
-  kComZ,           ///< as above
-  kInertia,        ///< of a link about its centre of mass, as above [-]
-  kFrictionForce,  ///< of a cylinder [N]
-  kFriction,       ///< of a cylinder, over its force [-]
-  kViscous,        ///< of a cylinder [N s/m]
-  kOffset,         ///< of a cylinder's bore pressure [Pa]
-  kGain,           ///< of a cylinder's measured force, less one [-]
-  kZero,           ///< of a cylinder's joint [rad]
-  kTipWeight,      ///< of a recording [kg]
-  kRecording,      ///< of a cylinder's bore pressure in one recording, beside kOffset [Pa]
+  kMass,           ///< mass of a link, logarithm of it over the description's [-]
+  kComX,           ///< x of a link's centre of mass, less the description's [m]
+  kComZ,           ///< z of a link's centre of mass, less the description's [m]
+  kInertia,        ///< inertia of a link about its centre of mass, logarithm of it over the description's [-]
+  kFrictionForce,  ///< constant friction of a cylinder [N]
+  kFriction,       ///< friction of a cylinder, over its force [-]
+  kViscous,        ///< viscous friction of a cylinder [N s/m]
+  kOffset,         ///< offset of a cylinder's bore pressure [Pa]
+  kGain,           ///< gain of a cylinder's measured force, less one [-]
+  kZero,           ///< zero of a cylinder's joint [rad]
+  kTipWeight,      ///< weight on the tip in a recording [kg]
+  kRecording,      ///< offset of a cylinder's bore pressure in one recording, beside kOffset [Pa]
 };
 
 struct Unknown {
@@ -55,7 +55,7 @@ struct Unknown {
   std::size_t of;           ///< index of cylinder (links: of the cylinder whose joint they hang on) or recording
   double given{};           ///< the value at which its entry is zero
   double deviation{};       ///< standard, before the recording
-  std::size_t recording{};  ///< of kRecording
+  std::size_t recording{};  ///< recording of a kRecording
 };
 
 /// A boom with the unknowns at some values. Entries of the vector are in their standard deviations, zero as given.
@@ -78,7 +78,7 @@ class BoomModel {
 
   /// Without weights on the tip; nothing where such values make no boom, as a mass below zero.
   std::optional<Boom> boomAt(const Eigen::VectorXd& x) const;
-  /// Of a recording.
+  /// Boom with the weight of a recording on its tip; none where such values make no boom.
   std::optional<Boom> boomAt(const Eigen::VectorXd& x, std::size_t recording) const;
   /// Boom file with these values, weights left out; deviations as in the basis. Parts beyond sections are as much
   /// heavier as their links.
@@ -92,7 +92,7 @@ class BoomModel {
                     const BoomPoint& point) const;
   /// The rod's speed [m/s]: positive as it comes out.
   static double rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoint& point);
-  /// What pressures show as given, without what the unknowns do to it [N].
+  /// Force by the measured pressures as given, without the effect of the unknowns on it [N].
   double measuredForce(std::size_t cylinder, const BoomPoint& point) const;
 
   const BoomBasis& basis() const { return basis_; }
@@ -101,7 +101,7 @@ class BoomModel {
  private:
   BoomParameters withLinksAt(const Eigen::VectorXd& x) const;
   double recordingOffset(const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording) const;  ///< [Pa]
-  double massOf(const std::string& link) const;  ///< as given [kg]
+  double massOf(const std::string& link) const;  ///< mass of a link as given [kg]
   std::vector<WeighedLink> linksAt(const Eigen::VectorXd& x) const;
 
   BoomBasis basis_;

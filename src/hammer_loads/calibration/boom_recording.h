@@ -32,10 +32,10 @@ double endOf(const BoomRecording& recording);
 /// are smoothed alike, so that the one fits the other.
 struct BoomPoint {
   double time{};                                             ///< [s]
-  JointMotion motion;                                        ///< as read
+  JointMotion motion;                                        ///< motion of the joints as read
   JointVector rate_std;                                      ///< standard, of motion.velocity [rad/s]
   std::array<std::array<double, 2>, kMaxJoints> pressure{};  ///< per cylinder: bore, rod [Pa]
-  double half_width{};                                       ///< of the readings around it [s]
+  double half_width{};                                       ///< half the duration of the readings around it [s]
 };
 
 struct BoomPoints {

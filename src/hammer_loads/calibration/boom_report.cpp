@@ -64,7 +64,7 @@ void putLink(const WeighedLink& link, KeyLines& lines) {
 
 struct Panel {
   double left{}, top{}, width{}, height{};
-  double low{}, high{}, most{};  ///< of the angle [rad], of the force [N]
+  double low{}, high{}, most{};  ///< range of the angle [rad]; largest force [N]
   double x(double angle) const { return left + width * (angle - low) / (high - low); }
   double y(double force) const { return top + 0.5 * height * (1.0 - std::clamp(force / most, -1.0, 1.0)); }
 };

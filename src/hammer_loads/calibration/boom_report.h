@@ -7,7 +7,7 @@
 
 namespace hammer_loads::calibration {
 
-/// How the files begin: by that their writer knows them again.
+/// First line of the files, by which their writer recognises them.
 constexpr const char* kBoomYamlBegins = "# Boom of one machine, weighed by calibrate --boom from";
 constexpr const char* kBoomSvgBegins = "<svg id=\"hammer_loads_boom_calibration\"";
 

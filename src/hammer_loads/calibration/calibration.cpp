@@ -58,7 +58,7 @@ double systematic(const ResidualCurve& curve) {
   return n > 0.0 ? sum / n : 1.0;
 }
 
-/// Why, as far as the readings show it with the sensor as it was given.
+/// Reports that the fit does not settle, with the cause as far as the readings show it with the sensor as it was given.
 void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double log_inertia, JointFit fit,
                   Calibration& result) {
   result.problem =

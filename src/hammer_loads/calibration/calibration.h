@@ -1,4 +1,4 @@
-/// Where the crank's sensor sits and what the drive weighs, from a recording at work.
+/// Calibration of the crank's sensor and of the drive's inertia, from a recording at work.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct CalibrationBasis {
   double ratio{1.0};                  ///< encoder turns per crank turn [-]
   double rocker_inertia_std{0.02};    ///< relative, of the given rocker inertia [-]
   double torque_walk{};               ///< random walk of the net torque [N m/sqrt(s)]
-  double torque_std{};                ///< of the net torque [N m]
+  double torque_std{};                ///< standard deviation of the net torque [N m]
   Globals in_force{Globals::Zero()};  ///< to compare with: zero and eccentricities of the parameters in force
 };
 
@@ -25,7 +25,7 @@ struct Estimate {
   double value{}, deviation{};
   double limit{};  ///< a larger deviation costs more than some 0.8 % of the wrench's peak, or of what the key is for
   std::string meaning;
-  double by_blows{};  ///< what of the deviation more blows would lessen; the rest comes from what is given
+  double by_blows{};  ///< part of the deviation that more blows would reduce; the rest comes from the given parameters
   std::string
       hidden_by{};  ///< constant of the hammer file, or level, that makes most of the deviation; empty: blows do
   bool determined() const { return deviation <= limit; }
@@ -43,7 +43,7 @@ struct ResidualCurve {
 };
 
 struct Calibration {
-  std::string problem;  ///< why there is nothing; then only `facts`, seconds and blows hold
+  std::string problem;  ///< reason why there is no result; then only `facts`, seconds and blows hold
   SensorFacts facts;
   int direction{1};
   double seconds{};
@@ -58,8 +58,7 @@ struct Calibration {
   ResidualCurve before, after;  ///< with the parameters in force, with those found
   double more_blows{};          ///< needed for every key that is not determined; infinity: more do not help
 
-  /// Of the key that is known least: what more blows would lessen of its deviation, over its limit. Infinity with a
-  /// problem.
+  /// Ratio of by_blows to limit of the key that is known least; infinity with a problem.
   double worstByBlows() const;
   /// More of the recording would not serve: every key is known to half of its limit or better, as far as blows can show
   /// it. Then it adds 12 % to an error that is at the limit for another reason.

@@ -30,7 +30,8 @@ double commonPart(double a, double b) {
   return large;
 }
 
-/// Of all steps between readings, as a whole part of the turn; 0 when there is none above the finest.
+/// Number of counts per revolution by the common divisor of all steps between readings; 0 when there is none above the
+/// finest.
 double commonCount(const std::vector<RecordedSample>& samples) {
   double common = 0.0, most = 1.0;  // multiples: the more of them a step has, the better it shows the count
   for (std::size_t i = 1; i < samples.size(); ++i) {

@@ -13,7 +13,7 @@ namespace hammer_loads::calibration {
 struct RecordedSample {
   double time{};                ///< header stamp since any instant [s]
   double reading{};             ///< any winding [rad]
-  std::optional<double> speed;  ///< as measured [rad/s]
+  std::optional<double> speed;  ///< measured speed [rad/s]
   Gravity gravity;              ///< in hull axes [m/s2]
 };
 
@@ -29,7 +29,7 @@ struct SensorFacts {
 struct CrankPoint {
   double time{};                ///< [s]
   double seen{};                ///< reading at mid-count, unwrapped and divided by direction and ratio [rad]
-  std::optional<double> speed;  ///< as above [rad/s]
+  std::optional<double> speed;  ///< measured speed [rad/s]
   Gravity gravity;
 };
 

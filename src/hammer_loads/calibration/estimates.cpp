@@ -98,7 +98,7 @@ void addEstimates(const Found& found, Calibration& result) {
   }
   double samples = 0.0;
   for (const SegmentFit& one : fit.fits) samples += static_cast<double>(one.size());
-  // Where counts hide it, its square is known to theirs over the square root of the samples.
+  // Noise hidden by the counts: its square is known to the square of theirs over the square root of the samples.
   const double counts_hide = fit.noise.angle / 30.0, timing = fit.noise.timing;
   const double timing_std =
       std::sqrt(2.0 / samples) * (timing > 0.0 ? timing + 0.5 * counts_hide * counts_hide / timing : counts_hide);
@@ -108,7 +108,8 @@ void addEstimates(const Found& found, Calibration& result) {
                               timing_std});
   const double inertia = std::exp(fit.globals[kLogInertia]);
   const double rocker = basis.mechanism.parameters().rocker_inertia_about_pivot;
-  // Only the ratio to the rocker's inertia shows; where the hammer file says how well that is known, it is in already.
+  // The readings show only the ratio to the rocker's inertia. A deviation of that in the hammer file is included
+  // already.
   const bool rocker_in_it = found.hammer.has("rocker_inertia_about_pivot_kg_m2");
   const double by_rocker = rocker_in_it ? 0.0 : basis.rocker_inertia_std;
   const double relative = std::hypot(deviation(kLogInertia), by_rocker);

@@ -6,7 +6,7 @@
 
 namespace hammer_loads::calibration {
 
-/// What was found.
+/// Results of the fits.
 struct Found {
   const JointFit& fit;           ///< with the hammer's constants
   const GlobalMatrix& by_blows;  ///< covariance of the same, the constants as given

@@ -33,7 +33,7 @@ std::vector<SpeedAt> speedsOf(const CrankTrack& track) {
   return speeds;
 }
 
-/// Of straight lines through the energy over the angle, one per turn: what they leave over what there is.
+/// Residual variance over total variance of straight lines through the energy over the angle, one per revolution.
 double unsteadiness(const std::vector<SpeedAt>& speeds, const std::vector<double>& inertia, double zero,
                     double drive_inertia) {
   double left = 0.0, total = 0.0, n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, last = -1.0;

@@ -1,4 +1,4 @@
-/// Where the blow is and what the drive weighs, roughly: from the crank's energy over the turn.
+/// Rough estimate of the blow's place and of the drive's inertia, from the crank's energy over the revolution.
 #pragma once
 
 #include <optional>

@@ -19,12 +19,13 @@ constexpr double kUnsaid = 1.2;  // of a variance, true over what apart deviatio
 /// A constant that a hammer file should have from here: one number and its deviation, with the other constants as the
 /// file has them.
 struct Improved {
-  std::size_t column;       ///< of HammerPart::names
-  std::size_t constant;     ///< of kHammerConstants
+  std::size_t column;       ///< index in HammerPart::names
+  std::size_t constant;     ///< index in kHammerConstants
   double error, deviation;  ///< [its standard deviations in the file]
 };
 
-/// What hangs together with the error of one that stays is not improved: a file's deviations do not say so.
+/// Constants that the recording improves. One whose error is correlated with that of an unimproved constant is left
+/// out, as a file cannot state correlations.
 std::vector<Improved> improved(const HammerPart& hammer) {
   const auto count = static_cast<Eigen::Index>(hammer.names.size());
   const Eigen::MatrixXd P = hammer.covariance.bottomRightCorner(count, count);

@@ -1,4 +1,4 @@
-/// What a calibration says of the hammer's constants: keys to write, notes on what others hide.
+/// Results of a calibration for the hammer's constants: keys to write, notes on those that hide each other.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ std::vector<Estimate> estimatesOf(const HammerPart& hammer, const HammerParamete
 /// covariance of the shared parameters with the constants as given.
 std::string hiddenBy(const HammerPart& hammer, const GlobalMatrix& by_blows, Eigen::Index parameter);
 
-/// What a user should know of it: shared parameters that the constants hide, constants that show with others only.
-/// by_blows: covariance of the shared parameters with the constants as given.
+/// Notes for the user: shared parameters that the constants hide, and constants that show only in combination with
+/// others. by_blows: covariance of the shared parameters with the constants as given.
 std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,
                                    const HammerParameters& file);
 

@@ -150,7 +150,7 @@ void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, 
   joint.covariance += kBiasDoubt * kBiasDoubt * bias * bias.transpose();
   hammer.globals -= of_hammer.head<kGlobals>();
   hammer.errors -= of_hammer.tail(size - kGlobals);
-  // What the replicas' mean is off by noise; what is known before any reading has none.
+  // Noise of the replicas' mean; the part that was known before any reading has none.
   const Eigen::MatrixXd P = hammer.covariance;
   hammer.covariance += (P - P * hammer.prior.asDiagonal() * P) / kReplicas;
   hammer.covariance += kBiasDoubt * kBiasDoubt * of_hammer * of_hammer.transpose();

@@ -1,4 +1,4 @@
-/// What the hammer's constants may have of what was found: a drawing that is off looks like a sensor that is.
+/// Joint estimate of sensor and hammer constants: an error in the data sheet looks like one of the sensor.
 #pragma once
 
 #include <string>
@@ -13,20 +13,21 @@ namespace hammer_loads::calibration {
 struct HammerPart {
   Globals globals;
   std::vector<std::string> names;  ///< keys of the constants; a level for what that leaves out
-  Eigen::VectorXd errors;  ///< of the constants, true less file's [their standard deviations], as MachineColumns has
-                           ///< their signs
-  Eigen::MatrixXd covariance;  ///< of shared parameters, then constants [rad, ..., as above], by the noise alone
-  Eigen::VectorXd prior;       ///< inverse variances of the same before any reading
+  Eigen::VectorXd errors;  ///< errors of the constants, true less file's [their standard deviations], with the signs of
+                           ///< MachineColumns
+  Eigen::MatrixXd
+      covariance;         ///< covariance of shared parameters, then constants [rad, ..., as above], by the noise alone
+  Eigen::VectorXd prior;  ///< inverse variances of the same before any reading
 
   bool has(const std::string& constant) const;
-  /// Of a row of the covariance.
+  /// Name of a row of the covariance.
   std::string nameOf(Eigen::Index row) const;
-  /// Of the constants, the part of its standard deviation that is left.
+  /// Standard deviation of a constant over that before the recording.
   double left(std::size_t constant) const {
     const auto at = kGlobals + static_cast<Eigen::Index>(constant);
     return std::sqrt(covariance(at, at));
   }
-  /// What blows differ by beyond the noise is in the shared parameters of a fit; here as well.
+  /// Adds the differences between blows beyond the noise, which the covariance of a fit's shared parameters contains.
   void widen(const JointFit& fit);
 };
 

@@ -9,16 +9,16 @@
 
 namespace hammer_loads::calibration {
 
-using Free = Eigen::Matrix<bool, kGlobals, 1>;  ///< which parameters are to be found
+using Free = Eigen::Matrix<bool, kGlobals, 1>;  ///< true for each parameter to be estimated
 
-/// Of parameters that stay nothing is in doubt; a matrix's first rows are the shared parameters'.
+/// Clears the rows and columns of fixed parameters; a matrix's first rows are the shared parameters'.
 template <typename Matrix>
 void clearHeld(const Free& free, Matrix& covariance) {
   for (Eigen::Index k = 0; k < kGlobals; ++k)
     if (!free[k]) covariance.row(k).setZero(), covariance.col(k).setZero();
 }
 
-/// As above: they are left out of a system.
+/// Fixes parameters by removing them from a system.
 template <typename Matrix, typename Vector>
 void hold(const Free& free, Matrix& matrix, Vector& score) {
   clearHeld(free, matrix);
@@ -28,11 +28,11 @@ void hold(const Free& free, Matrix& matrix, Vector& score) {
 
 struct JointFit {
   Globals globals;
-  Globals centre;                 ///< of their prior
-  GlobalMatrix covariance;        ///< of globals, by how much the blows differ from each other
-  GlobalMatrix plain_covariance;  ///< as it were if nothing but the noise disturbed
-  Noise noise;                    ///< as found
-  std::vector<SegmentFit> fits;   ///< of the blows in use
+  Globals centre;                 ///< centre of the prior of globals
+  GlobalMatrix covariance;        ///< covariance of globals, by the differences between the blows
+  GlobalMatrix plain_covariance;  ///< covariance by the noise alone
+  Noise noise;                    ///< estimated noise
+  std::vector<SegmentFit> fits;   ///< fits of the blows in use
   std::size_t left_out{};         ///< blows that the model does not explain (no tool, a stop)
   double mean_square{};           ///< residuals over their deviations, squared, per degree of freedom
   bool converged{};

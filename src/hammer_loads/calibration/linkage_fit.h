@@ -14,8 +14,8 @@ namespace hammer_loads::calibration {
 
 /// Strokes and angles of one joint, in any order.
 struct StrokeTable {
-  std::vector<double> stroke;  ///< of the rod from its closed end [m]
-  std::vector<double> angle;   ///< of the joint [rad]
+  std::vector<double> stroke;  ///< way of the rod from its closed end [m]
+  std::vector<double> angle;   ///< angle of the joint [rad]
 };
 
 /// Reads CSV with the columns stroke_m and angle_rad. problem: one line that names the line of the file, its value and
@@ -39,7 +39,7 @@ struct LinkageBasis {
 };
 
 struct LinkageFit {
-  std::string problem;            ///< why there is nothing
+  std::string problem;            ///< reason why there is no result
   LinkageUnknowns::Vector value;  ///< [m]
   double branch{};                ///< BucketLinkageParameters::branch
   std::size_t rows{};

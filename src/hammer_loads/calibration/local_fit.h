@@ -1,4 +1,4 @@
-/// What each blow has of its own (instant, speeds, ...), the parameters that all share given.
+/// Fit of each blow's own parameters (instant, speeds, ...) with the shared parameters given.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,10 +31,10 @@ struct Reduced {
 
 Reduced reduce(const NormalEquations& e);
 
-/// Of `given` residuals those that are free where the locals decide `decided` of them.
+/// Number of free residuals among `given` ones, of which the locals determine `decided`.
 inline double freeOf(double given, double decided) { return std::max(given - decided, 0.3 * given); }
 
-/// Of the angles' residuals over their deviations.
+/// Mean square of the angles' residuals over their deviations.
 double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise);
 
 /// Blows of a larger mean square are not of this model. mean_squares: of all blows, not empty.
@@ -44,8 +44,8 @@ double mostExplained(std::vector<double> mean_squares);
 std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
                                     const Globals& globals, const Noise& noise, const Progress& progress = {});
 
-/// The same; residuals over their deviations, squared, per degree of freedom, without the blows that are far off the
-/// others.
+/// Mean square over blows that are each fitted alone: residuals over their deviations, per degree of freedom, without
+/// the blows that are far off the others.
 double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
                     const Noise& noise, const Progress& progress = {});
 

@@ -7,7 +7,7 @@
 
 namespace hammer_loads::calibration {
 
-/// How the files begin: by that their writer knows them again.
+/// First line of the files, by which their writer recognises them.
 constexpr const char* kYamlBegins = "# Crank sensor and drive of one machine, found by calibrate from";
 constexpr const char* kSvgBegins = "<svg id=\"hammer_loads_calibration\"";
 

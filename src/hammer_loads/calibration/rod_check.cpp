@@ -10,10 +10,10 @@
 namespace hammer_loads::calibration {
 namespace {
 
-// As pipeline.yaml has them.
+// Values of pipeline.yaml.
 constexpr double kSpeedWalk = 0.3, kInertiaWalk = 5e-4, kInertiaDeviation = 0.3, kMostSpeed = 300.0, kLeastNoise = 0.3;
-/// What rods of 2e8 to 1e10 N/m with play up to 0.5 mm do to a zero at most, to the eccentricity, to the drive's
-/// inertia (relative).
+/// Largest effect of rods of 2e8 to 1e10 N/m with joint clearance up to 0.5 mm on the zero, the eccentricity and the
+/// drive's inertia (relative).
 constexpr double kOfZero = 3.0 * kDegree, kOfEccentricity = 1.5 * kDegree, kOfInertia = 0.3;
 
 CrankSensor sensorOf(const Globals& globals) {

@@ -1,4 +1,4 @@
-/// Whether a recording is of a machine whose rod gives: what a rigid one explains is then no zero.
+/// Check whether the machine of a recording has an elastic rod: a zero fitted with a rigid one is then wrong.
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace hammer_loads::calibration {
 
-/// What the crank's filter finds with the sensor and the drive of a fit.
+/// Evidence of the crank's filter, run with the sensor and the drive of a fit.
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
 
 /// By how much, just after the blow and later.
 std::string whereReadingsDiffer(const RodEvidence& rod);
 
-/// That it gives, and what to do. settled: a fit by the hammer file's links did; else they may be other ones.
+/// Text that the rod is elastic, and the action. settled: a fit by the hammer file's links converged; else they may be
+/// other ones.
 std::string whatARodDoes(const RodEvidence& rod, bool settled);
 
 /// Keys that a rigid rod's fit would get wrong are not determined: how far they may be off, and what to do instead.

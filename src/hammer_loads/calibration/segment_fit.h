@@ -15,17 +15,17 @@ namespace hammer_loads::calibration {
 /// c_n + i s_n is the eccentricity a_n e^(i phase_n).
 enum GlobalIndex : Eigen::Index { kZero, kSine1, kCosine1, kSine2, kCosine2, kLogInertia, kStiffness, kDrag, kGlobals };
 using Globals = Eigen::Matrix<double, kGlobals, 1>;
-/// Those from kLogInertia on change the motion itself.
+/// Number of shared parameters, from kLogInertia on, that change the motion itself.
 constexpr int kShaping = kGlobals - kLogInertia;
 
 /// Deviations of what is measured, and of what the drive does.
 struct Noise {
-  double angle{};        ///< of a reading [rad]
+  double angle{};        ///< standard deviation of a reading [rad]
   bool angle_known{};    ///< by the counts; else it is learned
-  double timing{};       ///< of a stamp [s]
-  double speed{};        ///< of a measured speed [rad/s]
+  double timing{};       ///< standard deviation of a stamp [s]
+  double speed{};        ///< standard deviation of a measured speed [rad/s]
   double torque_walk{};  ///< random walk of the net torque [N m/sqrt(s)]
-  double torque{};       ///< of the net torque, before anything is known [N m]
+  double torque{};       ///< standard deviation of the net torque, before any reading [N m]
 };
 
 struct SegmentModel {
@@ -39,7 +39,7 @@ using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals>;
 /// Least squares of one segment at the present parameters, weighted.
 struct NormalEquations {
   LocalMatrix ll;                    ///< locals, with the prior of the torque
-  LocalMatrix ll_angles, ll_speeds;  ///< what the angles, the speeds say of them
+  LocalMatrix ll_angles, ll_speeds;  ///< information of the angles and of the speeds on the locals
   Eigen::Matrix<double, kLocals, kGlobals> lg;
   GlobalMatrix gg;
   Locals l;  ///< right-hand sides
@@ -47,17 +47,17 @@ struct NormalEquations {
   double cost{};  ///< robust, half the sum of squares
 };
 
-/// How a sample's residuals weigh. A stamp that is off moves angle and speed together: `share` of the angle's residual
-/// is taken off the speed's, then they are independent.
+/// Weights of a sample's residuals. An error of the stamp moves angle and speed together: `share` of the angle's
+/// residual is subtracted from the speed's, after which they are independent.
 struct Weighing {
   double angle{};  ///< deviation [rad]
-  double speed{};  ///< of the speed's, then [rad/s]
+  double speed{};  ///< standard deviation of the speed's residual after that [rad/s]
   double share{};  ///< [1/s]
 };
 
 /// A reading's residual where the model stands.
 struct ResidualAt {
-  double offset{}, speed{};  ///< of the encoder
+  double offset{}, speed{};  ///< offset and speed of the encoder
   double angle{};            ///< seen less predicted [rad]
   double speed_error{};      ///< measured less predicted, less its share of the angle's [rad/s]; NaN: not measured
   Weighing deviation;
@@ -65,16 +65,16 @@ struct ResidualAt {
 
 /// A residual with its derivatives, negative: of what the model predicts.
 struct ResidualRow {
-  std::size_t point{};  ///< of the segment
+  std::size_t point{};  ///< index of the point in the segment
   ShotPoint at;         ///< the encoder there
   bool of_speed{};
   double residual{}, deviation{};
   Locals by_local;
   Globals by_global;
-  double by_offset{}, by_speed{};  ///< of the encoder's motion there
+  double by_offset{}, by_speed{};  ///< derivatives by the encoder's motion there
 };
 
-/// Of a row in the sum of squares: Huber's, over the variance.
+/// Weight of a row in the sum of squares: Huber's, over the variance.
 double weightOf(const ResidualRow& row);
 
 class SegmentFit {
@@ -95,7 +95,7 @@ class SegmentFit {
   std::vector<ResidualRow> rows(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
   /// The encoder at the segment's points by another hammer, all else the same.
   std::vector<ShotPoint> motion(const SegmentModel& model, const Globals& globals) const;
-  /// The same motion seen once more, with other noise: at instants that are off their stamps.
+  /// Replica of the segment: the fitted motion with new noise, read at instants that differ from their stamps.
   BlowSegment replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count,
                       std::mt19937_64& random) const;
   /// With the same parameters on another recording of it.
@@ -109,7 +109,7 @@ class SegmentFit {
  private:
   /// d(offset, speed)/d(locals, shaping globals).
   using MotionSlopes = Eigen::Matrix<double, 2, kLocals + kShaping>;
-  using MotionSlope = Eigen::Matrix<double, 1, kLocals + kShaping>;  ///< of one of them
+  using MotionSlope = Eigen::Matrix<double, 1, kLocals + kShaping>;  ///< one row of MotionSlopes
   void run(const SegmentModel& model, const Globals& globals, std::vector<ShotPoint>& points,
            std::vector<MotionSlopes>* slopes = nullptr) const;
   Weighing weighing(const Noise& noise, double time, const ShotPoint& at) const;

@@ -78,7 +78,7 @@ class ShotWay {
   }
   double sign() const { return half_.before ? -1.0 : 1.0; }
   Side side() const { return half_.before ? Side::kBeforeBlow : Side::kAfterBlow; }
-  /// How far the mean speed would be ahead of what stands at `offset`.
+  /// Lead of the mean speed over the state at `offset`.
   double ahead(double time, double offset) const { return half_.law.mean_speed * sign() * time - offset; }
   double torqueAt(double time, double offset, double speed) const {
     const NodePlace place = nodePlace(time);

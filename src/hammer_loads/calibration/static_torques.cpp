@@ -34,7 +34,7 @@ double deviationOf(const BoomFit& fit, const Eigen::VectorXd& gradient) {
   return std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
 }
 
-/// Of weight on the joints of all cylinders, one row a pose; joints as read.
+/// Weight's torques on the joints of all cylinders, one row a pose; joints as read.
 Eigen::MatrixXd weightTorques(const BoomModel& model, const Eigen::VectorXd& x, const std::vector<JointVector>& poses) {
   const std::vector<Cylinder>& cylinders = model.given().cylinders();
   Eigen::MatrixXd torques(static_cast<Eigen::Index>(poses.size()), static_cast<Eigen::Index>(cylinders.size()));

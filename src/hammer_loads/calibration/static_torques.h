@@ -11,7 +11,7 @@ namespace hammer_loads::calibration {
 /// Standard deviation of a function of the unknowns with that gradient.
 double deviationOf(const BoomFit& fit, const Eigen::VectorXd& gradient);
 
-/// Of weight on the joints of all cylinders [N m], one row a pose, joints as read; NaN where x makes no boom.
+/// Weight's torques on the joints of all cylinders [N m], one row a pose, joints as read; NaN where x makes no boom.
 Eigen::MatrixXd weightTorques(const BoomModel& model, const Eigen::VectorXd& x, const std::vector<JointVector>& poses);
 
 /// Standard deviations of WeighedLink's first moment [kg m]: x, z.
@@ -21,7 +21,7 @@ Eigen::Vector2d firstMomentDeviation(const BoomModel& model, const BoomFit& fit,
 struct StaticTorque {
   double value{}, deviation{};  ///< standard
 };
-/// How well they are known at poses, as joints are read: per pose, one for each cylinder.
+/// Static torques at poses with their uncertainty, joints as read: per pose, one for each cylinder.
 std::vector<std::vector<StaticTorque>> staticTorques(const BoomModel& model, const BoomFit& fit,
                                                      const std::vector<JointVector>& poses);
 
