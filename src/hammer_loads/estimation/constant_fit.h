@@ -35,7 +35,7 @@ class ConstantFit {
 
   const Matrix& information() const noexcept { return information_; }
   const Vector& score() const noexcept { return score_; }
-  /// Of the first `count` constants, as if the others were right: together they may hardly be separable.
+  /// Covariance of the first `count` constants, as if the others were exact: together they may hardly be separable.
   template <int count>
   Eigen::Matrix<double, count, count> covarianceOfFirst() const noexcept {
     return information_.template topLeftCorner<count, count>().inverse();

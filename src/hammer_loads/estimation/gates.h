@@ -25,11 +25,11 @@ constexpr double kLikely = 2.0;  ///< 7 to 1
 /// wrong is said where they are used.
 namespace mismatch {
 constexpr double kSeen = 2.0;         ///< something else shows
-constexpr double kUnexplained = 3.0;  ///< it is to be said
+constexpr double kUnexplained = 3.0;  ///< level for a warning
 constexpr double kContradicts = 4.0;  ///< the model is wrong
 }  // namespace mismatch
 
-/// Whether an innovation of that variance is beyond this many deviations. One that is no number is not.
+/// Returns true if an innovation of that variance is beyond this many deviations; false for NaN.
 constexpr bool exceeds(double innovation, double variance, double deviations) noexcept {
   return square(innovation) > square(deviations) * variance;
 }
@@ -43,7 +43,7 @@ inline double weightWithin(double deviations, double innovation, double variance
 /// A value that hovers about one level does not make it flicker. Where the level is no number it is released.
 class Latch {
  public:
-  static constexpr double kReleased = 0.5;  ///< of the level at which it engages
+  static constexpr double kReleased = 0.5;  ///< part of the level at which it engages
 
   explicit Latch(double engages) noexcept : Latch(engages, kReleased * engages) {}
   /// releases <= engages.

@@ -63,19 +63,20 @@ struct GaussianBelief {
   Vector correct(Eigen::Index row, double variance, const ConstantRow& measured_by_constant) noexcept {
     const Vector column = covariance.col(row), gain = column / (covariance(row, row) + variance);
     take(gain, column, variance, measured_by_constant - by_constant.row(row));
-    // What was measured has K R, which the difference of large numbers loses.
+    // K R is the covariance with a measured variable; the difference of large numbers would lose it.
     covariance.row(row) = variance * gain.transpose();
     covariance.col(row) = variance * gain;
     return gain;
   }
-  /// The same of a measurement that depends on several variables by `seen`, which is H.
+  /// Corrects by a measurement that depends on several variables by `seen`, which is H.
   Vector correct(const Row& seen, double variance, const ConstantRow& measured_by_constant) noexcept {
     const Vector column = covariance * seen.transpose(), gain = column / (seen.dot(column) + variance);
     take(gain, column, variance, measured_by_constant - seen * by_constant);
     return gain;
   }
-  /// The same of one variable where the constants have these variances, independent of each other: Schmidt's gain, the
-  /// least error of all where they are not corrected. 0, or none at all: as if the constant were right.
+  /// Corrects by a measurement of one variable where the constants have these variances, independent of each other. The
+  /// gain is Schmidt's: the least total error if they are not corrected. 0, or none at all: as if the constant were
+  /// right.
   Vector correct(Eigen::Index row, double variance, const ConstantRow& measured_by_constant,
                  const std::optional<ConstantRow>& of_constants) noexcept {
     if (!of_constants) return correct(row, variance, measured_by_constant);
@@ -96,7 +97,7 @@ struct GaussianBelief {
     covariance.col(i).setZero();
     covariance(i, i) = variance;
   }
-  /// The same of a mean that the owner has drawn anew; effect: what the constants made of that.
+  /// Replaces a mean that the owner has drawn anew; effect: of the constants on it.
   void draw(Eigen::Index i, double variance, const ConstantRow& effect = ConstantRow::Zero()) noexcept {
     forget(i, variance);
     by_constant.row(i) = effect;

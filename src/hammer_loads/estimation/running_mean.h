@@ -6,12 +6,12 @@
 
 namespace hammer_loads {
 
-/// Of all that came at first, later with weights that fall by 1 - weight/length from one value to the next. Weights are
-/// a count or a time, length is in their unit.
+/// Mean of all values at first, later with weights that fall by 1 - weight/length from one value to the next. Weights
+/// are a count or a time, length is in their unit.
 template <typename Value = double>
 class RunningMean {
  public:
-  /// Of all that comes, each alike.
+  /// Mean of all values with equal weights.
   RunningMean() noexcept : RunningMean(std::numeric_limits<double>::infinity()) {}
   /// length > 0; first: counts as this many values, in [0, length].
   explicit RunningMean(double length, const Value& first = Value(), double first_counts = 0.0) noexcept
@@ -23,8 +23,8 @@ class RunningMean {
     mean_ += std::min(1.0, weight / count_) * (value - mean_);
   }
   const Value& mean() const noexcept { return mean_; }
-  double count() const noexcept { return count_; }  ///< of the weights in the mean, <= length
-  /// As many as there are to be.
+  double count() const noexcept { return count_; }  ///< sum of the weights in the mean, <= length
+  /// Returns true if the mean has its full length.
   bool isFull() const noexcept { return count_ == length_; }
 
  private:

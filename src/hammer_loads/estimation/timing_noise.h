@@ -1,4 +1,4 @@
-/// How much the samples' stamps jitter, learned from what the angles leave unexplained.
+/// Jitter of the samples' stamps, learned from residuals of the angles.
 #pragma once
 
 #include <algorithm>
