@@ -81,7 +81,8 @@ struct CycleCount {
 
   /// The count of this series followed by the other one; the grids must be equal.
   void append(const CycleCount& later);
-  /// The same series some time on: `since` holds what closed since then and the residue of the whole.
+  /// Extends the count by a later one of the same series: `since` contains the cycles closed since then and the residue
+  /// of the whole.
   void advance(const CycleCount& since);
 };
 
@@ -93,17 +94,18 @@ void joinResidues(std::vector<std::uint32_t>& residue, const std::vector<std::ui
 /// Sorts and adds up what has the same range and mean.
 void sortClosed(std::vector<ClosedCycles>& closed);
 
-/// Whether a series can have this count: classes on the grid, closed cycles sorted, no cycle left in the residue.
+/// Returns true if a series can have this count: classes on the grid, closed cycles sorted, no cycle left in the
+/// residue.
 bool isPossible(const CycleCount& count);
 
 /// Mean standard deviation of a sample [channel's unit]; NaN where none was given.
 double meanDeviation(const CycleCount& count);
 
-/// How far ranges may be off: standard deviations.
+/// Standard deviations of ranges.
 struct RangeDeviation {
   double absolute{};  ///< alike for all ranges, in the channel's unit: where turns say nothing
-  double own{};       ///< of turns, over the range [-]
-  double common{};    ///< of constants, the same in all turns, over the range [-]; NaN: not known apart
+  double own{};       ///< part of single revolutions, over the range [-]
+  double common{};    ///< part of constants, equal in all revolutions, over the range [-]; NaN: not known separately
 };
 /// By the ranges of turns; where there are none by the samples, whose errors at a range's two ends are independent.
 RangeDeviation rangeDeviation(const CycleCount& count);

@@ -32,7 +32,7 @@ class SnCurve {
   double slope() const { return slope_; }
   double slopeBelow() const { return slope_below_; }
 
-  /// Of one cycle of this range [MPa], the part of the life that it takes.
+  /// Damage of one cycle of this range [MPa], as a part of the life.
   double damage(double range) const;
   /// Slope at this range.
   double slopeAt(double range) const { return range >= knee_range_ ? slope_ : slope_below_; }

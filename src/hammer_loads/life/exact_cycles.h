@@ -13,7 +13,7 @@ namespace hammer_loads::life {
 
 class ExactCycles {
  public:
-  /// What is no load (CycleCounter::isLoad) is skipped and counted.
+  /// Adds a value; one that is no load (CycleCounter::isLoad) is skipped and counted.
   void add(double value);
 
   /// Closed cycles by lower and upper extreme.

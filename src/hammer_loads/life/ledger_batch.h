@@ -23,7 +23,7 @@ class LedgerBatch final : public PieceSink {
   void refuse(const std::string& reason) override { runs_.back().refuse(reason); }
   void end(const LifePiece& last) override { runs_.back().keep(last); }
 
-  /// Why the file cannot be written as a ledger, one line; empty when it can. Changes nothing in it.
+  /// Reason why the file cannot be written as a ledger, one line; empty when it can. Changes nothing in it.
   std::string check() const;
   /// Puts every run into the ledger; it shows with commit(). One line if it could not or a run is refused; runs that
   /// were in the ledger before are named in `known`.

@@ -24,7 +24,7 @@ struct LedgerChannel {
 /// The machine of the counts. Another identity or other channels or grids begin a new epoch: counts of different
 /// machines never mix. Curves and equivalent cycles only judge them: those of the last run hold.
 struct LedgerMachine {
-  std::string identity;  ///< of hammer and boom, such as a hash of their parameters; no path, host or time
+  std::string identity;  ///< identity of hammer and boom, such as a hash of their parameters; no path, host or time
   std::vector<LedgerChannel> channels;
   double equivalent_cycles_per_hour{};
 };
@@ -34,9 +34,9 @@ LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& ide
 
 /// One recording of one machine with one set of sensor parameters.
 struct RunId {
-  std::string name;          ///< the same whenever this recording is counted, with whatever sensor parameters
+  std::string name;          ///< equal whenever this recording is counted, with whatever sensor parameters
   std::string parameters{};  ///< a digest of those of sensors; empty: not known
-  std::string refusal{};     ///< why it is not to be counted, one line; empty: it is
+  std::string refusal{};     ///< reason why it is not to be counted, one line; empty: it is
 
   RunId(const char* of) : name(of) {}
   RunId(std::string of) : name(std::move(of)) {}

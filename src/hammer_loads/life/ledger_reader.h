@@ -16,7 +16,7 @@ namespace hammer_loads::life {
 /// Days follow each other as they were written: a clock that ran back gives a date a second time or out of order.
 struct LedgerDay {
   std::vector<std::int64_t> ids;  ///< one for each run that worked on it
-  std::string date;               ///< of the samples' stamps, UTC
+  std::string date;               ///< date of the samples' stamps, UTC
   std::uint64_t duration{};       ///< [ns]
   std::uint64_t turns{};
 };
@@ -32,7 +32,7 @@ struct LedgerEpoch {
 struct LedgerRunInfo {
   std::string name;
   std::int64_t epoch{};
-  std::uint64_t messages{};  ///< of the crank
+  std::uint64_t messages{};  ///< messages of the crank
   std::uint64_t turns{};
 };
 
@@ -56,7 +56,7 @@ class LedgerReader {
   std::string problem() const;
 
  private:
-  /// What the residues of a channel's runs give, one after another.
+  /// Cycles that the residues of a channel's runs close, one after another.
   struct Seams {
     std::int64_t channel{-1};
     std::map<std::int64_t, std::vector<ClosedCycles>> closed;  ///< by the last day of the run that closed them
@@ -70,7 +70,7 @@ class LedgerReader {
 
   std::string path_;
   std::unique_ptr<Database> database_;  ///< stays where it is: statements refer to it
-  Seams seams_;                         ///< of the channel read last
+  Seams seams_;                         ///< seams of the channel read last
 };
 
 }  // namespace hammer_loads::life

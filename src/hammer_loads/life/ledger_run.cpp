@@ -53,7 +53,7 @@ void LedgerRun::compact(std::size_t from) {
   }
 }
 
-/// Why the run is refused, in view of what the ledger has of its samples; `like` is what it takes the place of.
+/// Reason to refuse the run, in view of its samples in the ledger; `like` receives the runs that it replaces.
 std::optional<std::string> LedgerRun::judge(Database& database, std::vector<RunRow>& like, bool end, bool replace) {
   like = runsLike(database, machine_, id_.name, marks_);
   for (const RunRow& row : like) {
@@ -74,7 +74,7 @@ std::optional<std::string> LedgerRun::judge(Database& database, std::vector<RunR
   return std::nullopt;
 }
 
-/// Why a run at work is refused: another one has come to have its samples.
+/// Reason to refuse a running run: another one has come to have its samples.
 std::optional<std::string> LedgerRun::newlyShared(Database& database, const RunRow& own) const {
   const std::vector<std::int64_t> fresh(marks_.begin() + static_cast<std::ptrdiff_t>(marks_written_), marks_.end());
   for (const RunRow& other : runsLike(database, machine_, id_.name, fresh)) {
@@ -90,8 +90,8 @@ void LedgerRun::noteWritten(const Commit& commit) {
   ++commits_;
 }
 
-/// Whether the ledger has the run as this object left it. A commit that reported an error may be in the file all the
-/// same: what it would have made of the row shows it.
+/// Returns true if the ledger has the run as this object left it. A commit that reported an error may be in the file
+/// all the same; the row then has the values which that commit would have written.
 bool LedgerRun::isOurs(const std::optional<RunRow>& row) {
   const std::optional<Commit> failed = std::exchange(failed_, std::nullopt);
   if (row && failed && row->pieces == commits_ + 1 && row->messages == failed->messages) noteWritten(*failed);

@@ -43,10 +43,11 @@ class LedgerRun {
   /// Adds the last piece and what waits, and ends the run. After a problem it may be called again, with no piece.
   std::optional<std::string> end(std::optional<LifePiece> last);
 
-  /// Why the run is not counted, one line; empty: it is. Until its end that can change: the ledger may have less.
+  /// Reason why the run is not counted, one line; empty: it is. Until its end that can change: the ledger may have
+  /// less.
   const std::string& refusal() const { return refusal_; }
   bool refused() const { return !refusal_.empty(); }
-  /// Whether it is refused because all of it is in the ledger.
+  /// Returns true if it is refused because all of it is in the ledger.
   bool known() const { return known_; }
   /// The refusal that refuse() gives; empty: none.
   std::string contradiction() const;
@@ -56,7 +57,7 @@ class LedgerRun {
   std::size_t waiting() const { return waiting_.size(); }
 
  private:
-  /// What a commit writes, the first pieces that wait.
+  /// Contents of a commit, the first of the waiting pieces.
   struct Commit {
     std::size_t pieces{}, marks{};
     std::uint64_t messages{};
@@ -74,8 +75,8 @@ class LedgerRun {
   LedgerMachine machine_;
   RunId id_;
   std::vector<LifePiece> waiting_;
-  std::uint64_t messages_{}, messages_written_{};  ///< of all pieces given; of those in the ledger
-  std::vector<std::int64_t> marks_;                ///< of all pieces given
+  std::uint64_t messages_{}, messages_written_{};  ///< messages of all pieces given; of those in the ledger
+  std::vector<std::int64_t> marks_;                ///< marks of all pieces given
   std::size_t marks_written_{};
   std::int64_t commits_{};        ///< known to be in the ledger
   std::optional<Commit> failed_;  ///< reported an error, and may be in the file all the same
@@ -83,8 +84,8 @@ class LedgerRun {
   std::string refusal_;
 };
 
-/// Why the file cannot be written as a ledger, one line; empty when it can. Changes nothing. Waits up to `patience`
-/// [ms] for others to release it.
+/// Reason why the file cannot be written as a ledger, one line; empty when it can. Changes nothing. Waits up to
+/// `patience` [ms] for others to release it.
 std::string ledgerProblem(const std::string& path, int patience = LedgerRun::kPatience);
 
 /// Takes a run out of the ledger. Nothing when it is done, else one line.

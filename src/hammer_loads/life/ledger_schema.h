@@ -12,7 +12,8 @@ namespace hammer_loads::life {
 
 constexpr int kLedgerVersion = 1;
 
-/// Why the path cannot be that of a ledger, one line; empty: it can, or nothing is there yet. Does not open the file.
+/// Reason why the path cannot be that of a ledger, one line; empty: it can, or there is no file yet. Does not open the
+/// file.
 std::string pathProblem(const std::string& path);
 
 /// False for an empty database; a problem for anything but that and a ledger of this version.

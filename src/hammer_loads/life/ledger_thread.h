@@ -43,7 +43,7 @@ class LedgerThread final : public LiveLedger {
   using Job = std::function<void(std::deque<Run>&)>;
   struct Waiting {
     Job job;
-    std::shared_ptr<LifePiece> piece;  ///< that the job adds; null: it does something else
+    std::shared_ptr<LifePiece> piece;  ///< piece that the job adds; null: it does something else
   };
 
   void put(Job job, std::shared_ptr<LifePiece> piece = nullptr);
@@ -52,10 +52,10 @@ class LedgerThread final : public LiveLedger {
 
   const std::string path_;
   std::deque<Run> runs_;  ///< the thread's own
-  std::string refusal_;   ///< as above: of runs that ended; it stays, for what they counted is in no ledger
+  std::string refusal_;   ///< refusals of ended runs; kept, as their counts are in no ledger
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::vector<Waiting> jobs_;  ///< this and the rest under the mutex
+  std::vector<Waiting> jobs_;  ///< jobs; this and the following members are under the mutex
   State state_;
   bool closing_{};
   std::thread thread_;

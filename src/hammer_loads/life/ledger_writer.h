@@ -15,8 +15,8 @@ struct RunRow {
   std::int64_t run{}, epoch{};
   std::int64_t pieces{};  ///< commits of its writer
   std::string name;
-  std::string parameters{};  ///< as RunId::parameters
-  std::uint64_t messages{};  ///< as LifePiece::messages, of all its pieces
+  std::string parameters{};  ///< parameters as in RunId
+  std::uint64_t messages{};  ///< messages as in LifePiece, of all its pieces
 };
 
 std::optional<RunRow> findRun(Database& database, const std::string& name);
@@ -24,7 +24,7 @@ std::optional<RunRow> findRun(Database& database, const std::string& name);
 /// Runs that have the name, or samples that have one of these marks and the same machine; in their order.
 std::vector<RunRow> runsLike(Database& database, const LedgerMachine& machine, const std::string& name,
                              const std::vector<std::int64_t>& marks);
-/// Whether all marks of the run are among these.
+/// Returns true if all marks of the run are among these.
 bool holdsMarksOf(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks);
 
 /// Takes the `replaced` runs out and begins the run: at the place of the first of them where its epoch is of the same

@@ -14,18 +14,18 @@ namespace hammer_loads::life {
 
 /// The piece of a period: of each channel what closed since the last piece, and the residue since the count began.
 struct LifePiece {
-  std::int64_t stamp{};             ///< of the last sample [ns]; of the first piece without one: 0
+  std::int64_t stamp{};             ///< stamp of the last sample [ns]; 0 for a first piece without one
   std::uint64_t duration{};         ///< time between its samples, gaps left out [ns]
   std::uint64_t turns{};            ///< blows
-  std::uint64_t messages{};         ///< of the crank, refused ones included
-  std::vector<std::int64_t> marks;  ///< of some of them, by which a part of a recording is known again
+  std::uint64_t messages{};         ///< messages of the crank, refused ones included
+  std::vector<std::int64_t> marks;  ///< marks of some of them, by which a part of a recording is recognised
   std::vector<CycleCount> counts;   ///< counted channels, then hot spots, in the order of channels()
 
-  /// The same run some time on.
+  /// Extends the piece by a later one of the same run.
   void advance(const LifePiece& since);
 };
 
-/// How the caller's loop looks:
+/// Counter of load cycles. The loop of the caller:
 ///
 ///     if (recorder.due(stamp)) use(recorder.take());   // before the sample: pieces end at whole periods and days
 ///     recorder.between(instant, values, deviations, common);  // each extreme since the last sample, in time order
@@ -49,8 +49,8 @@ class LifeRecorder {
   void gap() noexcept;
   void turn() noexcept;
 
-  /// Whether a piece ends before a sample of this stamp: a period or a day (UTC) is over, or time ran back. A piece of
-  /// one period at most and of one day makes the trend by day the same live and from bags.
+  /// Returns true if a piece ends before a sample of this stamp: a period or a day (UTC) is over, or time ran back.
+  /// Pieces of at most one period and one day make the trend by day equal live and from bags.
   bool due(std::int64_t stamp) const noexcept;
   /// Ends the piece. Allocates, and takes some ms for many cycles: not for the hot path.
   LifePiece take();
@@ -79,7 +79,7 @@ class LifeRecorder {
 
   std::vector<std::string> names_;
   std::vector<CycleCounter> counters_;
-  std::vector<TurnExtremes> extremes_;  ///< of the present turn, of each counter
+  std::vector<TurnExtremes> extremes_;  ///< extremes of the present revolution, of each counter
   std::vector<Sum> sums_;
   std::vector<Term> terms_;
   std::int64_t period_{};

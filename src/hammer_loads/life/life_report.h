@@ -13,7 +13,7 @@ struct DayFigures {
   std::string date;
   double hours{};
   std::uint64_t blows{};
-  ChannelFigures figures;  ///< of the cycles that closed on the day
+  ChannelFigures figures;  ///< figures of the cycles that closed on the day
 };
 
 struct ChannelReport {

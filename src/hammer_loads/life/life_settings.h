@@ -15,7 +15,7 @@ namespace hammer_loads::life {
 struct CountedChannel {
   std::string name;  ///< such as section_loads/NAME/torque_y
   LoadGrid grid;
-  std::string key{};  ///< its short name in the parameter file
+  std::string key{};  ///< short name in the parameter file
 };
 
 /// One load's part in a stress.
@@ -36,8 +36,8 @@ struct HotSpot {
 struct LifeSettings {
   std::vector<CountedChannel> channels;
   std::vector<HotSpot> hot_spots;
-  std::int64_t period{};                ///< of ~load_cycles and the ledger [ns], > 0
-  double equivalent_cycles_per_hour{};  ///< of damage-equivalent loads, > 0
+  std::int64_t period{};                ///< period of ~load_cycles and the ledger [ns], > 0
+  double equivalent_cycles_per_hour{};  ///< reference for damage-equivalent loads, > 0
   std::string ledger;                   ///< file; empty: none is kept
 };
 

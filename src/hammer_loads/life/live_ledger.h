@@ -14,7 +14,8 @@ namespace hammer_loads::life {
 class LiveLedger : public PieceSink {
  public:
   struct State {
-    /// Of the last attempt, else why the last run that was refused is not in the ledger; one line, empty: all is well.
+    /// Problem of the last attempt, else the reason why the last refused run is not in the ledger; one line, empty: all
+    /// is well.
     std::string problem;
     std::size_t waiting{};  ///< pieces given but not written, those of one day added up
   };

@@ -1,4 +1,4 @@
-/// How far a load may be off, and the range between a turn's extremes.
+/// Uncertainty of a load, and of the range between a revolution's extremes.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct LoadError {
   static LoadError of(double deviation, double common) noexcept {
     return {std::sqrt(std::max(0.0, deviation * deviation - common * common)), common};
   }
-  /// Of one of a row of loads; deviations null: not known, common null: none.
+  /// Error of the i-th load; deviations null: not known, common null: none.
   static LoadError at(std::size_t i, const double* deviations, const double* common) noexcept {
     return deviations == nullptr ? LoadError{} : of(deviations[i], common == nullptr ? 0.0 : common[i]);
   }

@@ -22,7 +22,7 @@ class LoadGrid {
   std::uint32_t classes() const { return classes_; }
   double width() const { return width_; }  ///< [channel's unit]
 
-  /// Of a value within the full scale; values beyond it fall into the outer classes.
+  /// Class of a value within the full scale; values beyond it fall into the outer classes.
   std::uint32_t classOf(double value) const noexcept {
     const double place = (value - least_) * per_width_;
     if (!(place > 0.0)) return 0;

@@ -1,4 +1,4 @@
-/// Where the pieces of runs go.
+/// Receiver of the pieces of runs.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ class PieceSink {
   /// The run begun last is not to be counted, for this reason of one line; what is in the ledger of it goes. Before
   /// end().
   virtual void refuse(const std::string& reason) = 0;
-  /// Of the run begun last, and its last piece.
+  /// Ends the run begun last, with its last piece.
   virtual void end(const LifePiece& last) = 0;
 };
 

@@ -11,9 +11,9 @@ namespace hammer_loads::life {
 
 /// One value per channel each; NaN where the channel had no value in the turn.
 struct TurnLoads {
-  std::int64_t start{}, end{};                                 ///< instants of the blows [ns]
-  bool whole{};                                                ///< it began with a blow; else with the first sample
-  std::vector<double> minimum, maximum;                        ///< of samples and the extremes between them
+  std::int64_t start{}, end{};           ///< instants of the blows [ns]
+  bool whole{};                          ///< true if it began with a blow; else with the first sample
+  std::vector<double> minimum, maximum;  ///< extremes of samples and of the instants between them
   std::vector<std::int64_t> minimum_instant, maximum_instant;  ///< the first time that it was reached [ns]
   std::vector<LoadError> of_minimum, of_maximum;               ///< by the sample or that beside it
   std::vector<double> mean;                                    ///< over time
@@ -35,7 +35,7 @@ class TurnLoadsRecorder {
            const double* common = nullptr) noexcept {
     take(instant, values, deviations, common, true);
   }
-  /// The same for an instant between samples; NaN: not known there, which is no number left out.
+  /// Takes values at an instant between samples; NaN: not known there, which does not count as a missing number.
   void between(std::int64_t instant, const double* values, const double* deviations = nullptr,
                const double* common = nullptr) noexcept {
     take(instant, values, deviations, common, false);
