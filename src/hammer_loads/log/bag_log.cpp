@@ -111,7 +111,7 @@ std::vector<std::string> BagLog::start() {
 }
 
 bool BagLog::hasRoomAgain() const {
-  // So that a disk at its limit does not begin a bag every second.
+  // Minimum of new room, so that a disk at its limit does not begin a bag every second.
   constexpr std::uint64_t kMoreRoom = 16'000'000;  // [byte]
   if (!is_wanted_ || isRecording() || writer_.status().state != LogState::kDiskFull) return false;
   const Checked<std::string> directory = findLogDirectory(settings_.directory);

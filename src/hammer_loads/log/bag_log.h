@@ -29,8 +29,8 @@ class BagLog {
   /// Writes what is queued and closes the bag: waits for the disk.
   ~BagLog() { stop(); }
 
-  /// Why these settings can never work, one line each (key, value, rule): a reason not to start the node. Makes the
-  /// directory where findLogDirectory may.
+  /// Reasons why these settings can never work, one line each (key, value, rule): the node must not start with them.
+  /// Makes the directory where findLogDirectory may.
   std::vector<std::string> settingProblems() const;
   /// Begins a bag. Empty, or one line per reason why not: a problem of the settings, or the state of disk and memory,
   /// which health() then reports as well; it is no reason not to start the node.
@@ -46,24 +46,24 @@ class BagLog {
   template <typename Message>
   void write(const std::string& topic, const ros::Time& time, const Message& message);
 
-  /// As write, but also remembered, recording or not, and repeated at the start of every bag.
-  /// caller: node that published it, where several latch on one topic (/tf_static): one message of each is kept.
+  /// Writes like write(), and keeps the message, recording or not, to repeat it at the start of every bag. caller: node
+  /// that published it, where several latch on one topic (/tf_static): one message of each is kept.
   template <typename Message>
   void writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
                     const std::string& caller = {});
   /// Messages latched there hold no longer: later bags begin without it.
   void forgetLatched(const std::string& topic, const std::string& caller = {});
 
-  /// Whether a log that a full disk stopped, or kept from starting, may start() again: some room is there beyond
-  /// log_min_free_mb. False after stop().
+  /// Returns true if a log that a full disk stopped, or kept from starting, may start() again: some room is there
+  /// beyond log_min_free_mb. False after stop().
   bool hasRoomAgain() const;
 
   /// Bags of earlier runs with this prefix that were not closed: `rosbag reindex` recovers them (recoveryHint).
   std::vector<std::string> unfinishedBags() const;
-  /// How to recover such a bag, one line.
+  /// Text how to recover such a bag, one line.
   static std::string recoveryHint(const std::string& path);
 
-  /// Whether the settings log the outputs of that class, or the inputs. The caller obeys.
+  /// Returns true if the settings log the outputs of that class, or the inputs. The caller obeys.
   bool logs(LoggedOutputs outputs) const noexcept { return outputs <= settings_.outputs; }
   bool logsInputs() const noexcept { return settings_.inputs; }
 

@@ -1,4 +1,4 @@
-/// Where the bags of a log lie, and which are there already.
+/// Directory of a log's bags, and the bags that it contains.
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,7 @@
 
 namespace hammer_loads {
 
-/// Why a log stopped by itself.
+/// Cause of a log that stopped by itself.
 struct LogFault {
   LogState state{LogState::kFailed};  ///< kDiskFull or kFailed
   std::string reason;                 ///< one line
@@ -59,7 +59,7 @@ class LogFile {
     return bag_ ? bag_->size() : size_;
   }                                                                ///< on disk without the open chunk [byte]
   std::uint64_t allocated() const noexcept { return allocated_; }  ///< taken on the disk, ahead of the data too [byte]
-  /// As it is called now.
+  /// Current path of the file.
   const std::string& path() const noexcept { return is_complete_ ? name_.final() : name_.active(); }
   bool isOpen() const noexcept { return bag_.has_value(); }
   bool isComplete() const noexcept { return is_complete_; }  ///< closed with its index, under its final name

@@ -22,7 +22,7 @@ class LogName {
 
   const std::string& active() const noexcept { return active_; }  ///< path while it is written
   const std::string& final() const noexcept { return final_; }    ///< path afterwards
-  int descriptor() const noexcept { return descriptor_; }         ///< of the active file
+  int descriptor() const noexcept { return descriptor_; }         ///< descriptor of the active file
   bool isDeleted() const noexcept;
 
   /// Renames active to final; if the final name was taken meanwhile, to another one. Empty or what went wrong.

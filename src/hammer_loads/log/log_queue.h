@@ -25,7 +25,7 @@ class LogQueue {
     LogTopic* topic;     ///< null: skip to the start of the ring
     ros::Time time;      ///< record time
     std::uint64_t step;  ///< bytes to the next record
-    std::uint32_t size;  ///< of the message [bytes]
+    std::uint32_t size;  ///< size of the message [bytes]
 
     std::uint8_t* bytes() noexcept { return reinterpret_cast<std::uint8_t*>(this) + sizeof(Record); }
   };

@@ -1,4 +1,4 @@
-/// Where and how a node logs: what config/log.yaml sets.
+/// Settings of a node's log: the content of config/log.yaml.
 #pragma once
 
 #include <algorithm>
@@ -18,11 +18,12 @@ struct LogSettings {
   bool inputs{true};                           ///< the node's inputs are logged
   LoggedOutputs outputs{LoggedOutputs::kAll};  ///< run_info is logged with any value
   LogCompression compression{LogCompression::kLz4};
-  std::string directory;           ///< as given; a leading ~/ means the home directory of the node's user
-  std::string prefix;              ///< file names begin with it; without /; empty: name of the node
-  std::string node;                ///< name of the node that logs, not from a file: see forNode()
-  std::uint64_t split_size{};      ///< a bag larger than this is closed and a new one begun [byte], > 0
-  std::uint64_t total_size{};      ///< of the bags of this process; beyond it the oldest is deleted [byte], 0: no limit
+  std::string directory;       ///< directory as given; a leading ~/ means the home directory of the node's user
+  std::string prefix;          ///< file names begin with it; without /; empty: name of the node
+  std::string node;            ///< name of the node that logs, not from a file: see forNode()
+  std::uint64_t split_size{};  ///< a bag larger than this is closed and a new one begun [byte], > 0
+  std::uint64_t
+      total_size{};  ///< total size of the bags of this process; beyond it the oldest is deleted [byte], 0: no limit
   std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
   /// Messages waiting for the disk; beyond it they are dropped and counted [byte], > 0.
   std::uint64_t queue_size{};

@@ -34,7 +34,8 @@ struct LogOrder {
   std::vector<std::uint8_t> bytes;  ///< serialised message
 };
 
-/// Only the constructor, the destructor, post(), status() and faultySession() are for other threads.
+/// Thread that writes a log. Other threads use only the constructor, the destructor, post(), status() and
+/// faultySession().
 class LogWriter {
  public:
   LogWriter(LogSettings settings, LogDisk disk, LogQueue& queue);

@@ -23,7 +23,7 @@ class RecordClock {
     last_ = BagLog::nextRecordTime(arrival, ran_back ? ros::Time() : last_);
     return {last_, ran_back};
   }
-  /// Of the last input.
+  /// Time of the last input.
   const ros::Time& last() const { return last_; }
 
  private:
