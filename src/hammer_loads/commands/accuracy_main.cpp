@@ -23,7 +23,7 @@ constexpr char kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ", k
 
 constexpr int kDrawings = 50;
 
-/// Why an existing file must stay; empty: this command wrote it.
+/// Reason why an existing file must stay; empty: this command wrote it.
 std::string whyFileMustStay(const std::string& name) {
   std::string line;
   std::getline(std::ifstream(name), line);

@@ -62,7 +62,7 @@ class BoomReader {
   const std::string& crank_joint_;
   calibration::BoomRecording& recording_;
   std::optional<ros::Time> first_;
-  std::optional<double> crank_;  ///< where it was when it last moved [rad]
+  std::optional<double> crank_;  ///< crank angle when it last moved [rad]
 };
 
 /// Joints of cylinders and pressures that were never heard are a problem; other joints may rest at zero.

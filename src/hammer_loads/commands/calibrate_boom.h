@@ -16,7 +16,7 @@ struct BoomCalibrationJob {
   std::vector<double> at;            ///< x and z of its centre of mass in the tip's frame [m]
 };
 
-/// What a calibration leaves: texts of the files; empty ones with a problem or where nothing is determined.
+/// Results of a calibration: texts of the files; empty ones with a problem or where nothing is determined.
 struct CalibrationTexts {
   std::vector<std::string> problems;  ///< one line each
   std::string words, yaml, picture;

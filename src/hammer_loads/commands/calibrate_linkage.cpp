@@ -29,7 +29,7 @@ struct LinkageArguments {
   bool force{};
 };
 
-/// Where the joint stands in the link before, and how the link beyond stands to it.
+/// Place of the joint in the link before, and place of the link beyond relative to it.
 struct Frames {
   Eigen::Vector2d origin{0.0, 0.0};
   Eigen::Matrix3d at_zero = Eigen::Matrix3d::Identity();

@@ -3,10 +3,10 @@
 
 namespace hammer_loads {
 
-/// How its file begins: by that the command knows it again.
+/// First line of its file, by which the command recognises it.
 constexpr const char* kLinkageYamlBegins = "# Bucket linkage fitted by calibrate --linkage to";
 
-/// Whether the command line asks for it.
+/// Returns true if the command line asks for it.
 bool asksForLinkage(int argc, const char* const* argv);
 /// Exit code.
 int calibrateLinkage(int argc, const char* const* argv);

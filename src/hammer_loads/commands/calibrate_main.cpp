@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 /// With another ending in place of the last one.
 std::string pictureBeside(const std::string& file) { return fs::path(file).replace_extension(".svg").string(); }
 
-/// Why an existing file must stay; empty: this command wrote it.
+/// Reason why an existing file must stay; empty: this command wrote it.
 std::string whyFileMustStay(const std::string& name) {
   std::string line;
   std::getline(std::ifstream(name), line);
@@ -110,7 +110,7 @@ int fail(const std::vector<std::string>& problems) {
   return kExitFailure;
 }
 
-/// Of the last run in the recording, whose sensor is the one that will be used on.
+/// Settings of the last run in the recording, whose sensor is the one that stays in use.
 Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
   Checked<Settings> result;
   Checked<std::vector<BagRun>> runs;

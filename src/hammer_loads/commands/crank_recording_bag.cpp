@@ -56,7 +56,7 @@ class Pieces {
 
   /// With gaps of less than half a piece between them nothing is saved.
   bool areWhole() const { return part_ < 1.5 * pieces_.length; }
-  /// Whether they have something of a time from `from` to `to`, each begun this much earlier [s].
+  /// Returns true if a piece, begun this much earlier [s], has a part of the time from `from` to `to`.
   bool touch(const ros::Time& from, const ros::Time& to, double earlier) const {
     if (areWhole()) return true;
     const double begin = (from - first_).toSec(), end = (to - first_).toSec();

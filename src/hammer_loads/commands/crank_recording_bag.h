@@ -12,7 +12,7 @@
 
 namespace hammer_loads {
 
-/// How much of a recording is read: pieces of `length`, evenly spread over it, or all of it.
+/// Part of a recording that is read: pieces of `length`, evenly spread over it, or all of it.
 struct ReadPieces {
   std::size_t count{6};
   double length{20.0};  ///< [s]: some eighty blows, so that neighbours are neighbours

@@ -14,7 +14,7 @@ std::string lifeText(const std::vector<life::EpochReport>& epochs);
 /// One line per epoch, channel and day, the totals with day `all`; a figure that does not exist is an empty cell.
 std::string lifeCsv(const std::vector<life::EpochReport>& epochs);
 
-/// The same as one JSON object; a figure that does not exist is null.
+/// Report as one JSON object; a figure that does not exist is null.
 std::string lifeJson(const std::vector<life::EpochReport>& epochs);
 
 }  // namespace hammer_loads

@@ -21,11 +21,11 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
 
   Option required();
-  Option type(const std::string& name);                               ///< of its value, in the help
+  Option type(const std::string& name);                               ///< type of its value, in the help
   Option description(const std::string& text);                        ///< instead of the first one
   Option showDefault();                                               ///< the value that the variable has now
   Option showDefault(const std::string& text);                        ///< in these words
-  Option values(int least, int most);                                 ///< how many
+  Option values(int least, int most);                                 ///< number of values
   Option oneEachTime();                                               ///< may be repeated, with one value each time
   Option within(double least, double most, const std::string& unit);  ///< finite; least is excluded when it is 0
   Option withinIntegers(std::int64_t least, std::int64_t most);

@@ -47,7 +47,7 @@ const char* kindOf(fs::file_type type) {
   return "a device";
 }
 
-/// Why the name cannot be that of the output; empty: it can.
+/// Reason why the name cannot be that of the output; empty: it can.
 std::string problemOf(const OutputRequest& request, bool exists, fs::file_type type) {
   std::error_code error;
   if (request.name.empty()) return "an empty name, must be that of a new file";

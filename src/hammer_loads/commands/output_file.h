@@ -14,7 +14,7 @@ struct OutputRequest {
   std::string name;
   std::vector<std::string> inputs;  ///< files that are never replaced, by whatever name or link
   bool force{};                     ///< an existing regular file may be replaced, if `keep` allows it
-  /// Of an existing file: why it must stay, one line without its name; empty: it may be replaced.
+  /// Reason why an existing file must stay, one line without its name; empty: it may be replaced.
   std::function<std::string(const std::string& name)> keep;
 };
 
@@ -32,7 +32,7 @@ class OutputFile {
   const std::string& path() const { return *part_; }
   /// Writes the file to the disk. Returns the reason of a failure, one line; else empty.
   std::string sync() const;
-  /// The same, and gives it its name.
+  /// Completes the file and gives it its name.
   std::string publish();
 
  private:

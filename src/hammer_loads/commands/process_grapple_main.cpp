@@ -37,7 +37,7 @@ std::string refusalReport(const GrappleFlow& flow) {
   return report;
 }
 
-/// Why the topic cannot be read, one line; empty: it can.
+/// Reason why the topic cannot be read, one line; empty: it can.
 std::string topicProblem(const BagInputs& inputs, const std::string& topic) {
   if (!inputs.has(topic)) return "no topic " + topic + ", is required; topics there: " + inputs.topicList();
   for (const std::string& type : inputs.topics().at(topic).types)
@@ -46,7 +46,7 @@ std::string topicProblem(const BagInputs& inputs, const std::string& topic) {
   return {};
 }
 
-/// What went wrong, one line; empty: all is well.
+/// Processes the bag. Returns the error, one line; empty: none.
 std::string process(const BagInputs& inputs, const Arguments& given, const std::string& output, GrappleFlow& flow) {
   try {
     BagWriter bag(output);

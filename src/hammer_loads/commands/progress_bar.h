@@ -9,7 +9,7 @@
 
 namespace hammer_loads {
 
-/// As 1:23:45 or 2:07; rounded up, so that it is not over before 0:00.
+/// Time as 1:23:45 or 2:07; rounded up, so that it is not over before 0:00.
 inline std::string timeText(double seconds) {
   const auto whole = static_cast<long>(seconds) + (seconds > static_cast<double>(static_cast<long>(seconds)) ? 1 : 0);
   char text[48];

@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kLibrary[] = "hammer_loads to_mcap";
 
-/// Why an existing file must stay; empty: this command wrote it.
+/// Reason why an existing file must stay; empty: this command wrote it.
 std::string whyMcapMustStay(const std::string& name) {
   std::string begin(64, '\0');
   std::ifstream(name, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
