@@ -68,7 +68,7 @@ class BagWriter {
     ros::Time first, last;
     std::map<std::uint32_t, std::uint32_t> counts;  ///< messages by connection
   };
-  using Places = std::vector<std::pair<ros::Time, std::uint32_t>>;  ///< of messages in their chunk
+  using Places = std::vector<std::pair<ros::Time, std::uint32_t>>;  ///< times and places of messages in their chunk
 
   template <typename Message>
   std::uint32_t connectionOf(const std::string& topic, bool latched) {
@@ -92,10 +92,10 @@ class BagWriter {
   int descriptor_;
   std::uint64_t position_{};  ///< end of the file
   std::vector<Connection> connections_;
-  std::map<std::string, std::uint32_t> numbers_;  ///< of the connections, by topic
+  std::map<std::string, std::uint32_t> numbers_;  ///< numbers of the connections, by topic
   std::vector<ChunkInfo> chunks_;                 ///< the last one is being filled
   std::string chunk_, packed_;                    ///< bytes of that one
-  std::map<std::uint32_t, Places> index_;         ///< as above, by connection
+  std::map<std::uint32_t, Places> index_;         ///< places by connection
   std::uint64_t index_size_{};                    ///< largest possible size of the file's index [byte]
 };
 

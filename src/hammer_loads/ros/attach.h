@@ -1,4 +1,4 @@
-/// Where a table of outputs goes: to a node's topics and its log, or to a bag.
+/// Destinations of a table of outputs: a node's topics and its log, or a bag.
 #pragma once
 
 #include <ros/node_handle.h>

@@ -25,7 +25,7 @@ struct BagConnection {
 
 /// A message where it lies in a chunk that was read.
 struct BagMessage {
-  ros::Time time;  ///< of its record
+  ros::Time time;  ///< time of its record
   const BagConnection* connection;
   const std::uint8_t* data;
   std::uint32_t size;

@@ -20,7 +20,7 @@ bool beginsAsBag(const std::string& file) {
   return std::memcmp(read, kMagic, sizeof read) == 0;
 }
 
-/// Why it cannot be opened; empty if it was.
+/// Opens a bag. Returns the reason why it cannot be opened; empty if it was.
 std::string openProblem(std::unique_ptr<BagFile>& bag, const std::string& file) {
   struct stat found {};
   if (stat(file.c_str(), &found) != 0) return file + ": cannot be read: " + std::strerror(errno);
@@ -36,7 +36,7 @@ std::string openProblem(std::unique_ptr<BagFile>& bag, const std::string& file) 
   }
 }
 
-/// Whether a file was opened before, by whatever name.
+/// Returns true if a file was opened before, by whatever name.
 bool isAmong(const std::vector<std::string>& files, std::size_t count, const std::string& file) {
   struct stat one {
   }, other{};

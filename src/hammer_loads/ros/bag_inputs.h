@@ -15,7 +15,7 @@ namespace hammer_loads {
 
 /// A topic of the bags.
 struct BagTopic {
-  std::set<std::string> types;        ///< as `sensor_msgs/JointState`
+  std::set<std::string> types;        ///< types such as `sensor_msgs/JointState`
   std::set<std::string> definitions;  ///< MD5 sums of the types
   std::set<std::string> publishers;   ///< names of the nodes; empty where the bag does not say
 };

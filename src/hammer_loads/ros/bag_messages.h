@@ -9,9 +9,9 @@
 
 namespace hammer_loads {
 
-/// Which connections are wanted.
+/// Filter of the wanted connections.
 using BagQuery = std::function<bool(const BagConnection&)>;
-/// Which chunks are: those that may hold what is wanted, by their times. Empty: all.
+/// Filter of the chunks that may contain wanted messages, by their times. Empty: all.
 using ChunkQuery = std::function<bool(const BagChunk&)>;
 
 /// Holds the chunks whose times overlap at the present place, no more. Messages of one time come in the order of the
@@ -47,7 +47,7 @@ class BagMessages {
 
   std::vector<Source> sources_;
   std::vector<Place> places_;                      ///< chunks with wanted messages, by their first time
-  std::size_t next_place_{};                       ///< of the next chunk to be opened
+  std::size_t next_place_{};                       ///< place of the next chunk to be opened
   std::vector<std::unique_ptr<OpenChunk>> open_;   ///< a heap: the earliest message is the first one's
   std::vector<std::unique_ptr<OpenChunk>> spare_;  ///< memory to be used again
   bool given_{};                                   ///< the first one's message was given to the caller

@@ -18,7 +18,7 @@ namespace {
 /// Topics to read, and their types.
 using Wanted = std::map<std::string, std::string>;
 
-/// Where results go; null: not wanted.
+/// Destinations of the results; null: not wanted.
 struct Sinks {
   BagWriter* bag;
   BagTables* tables;
@@ -78,7 +78,7 @@ class HammerRuns {
   BagReport& report_;
   std::size_t next_{};
   std::optional<HammerBridge> flow_;
-  std::optional<HammerInputs> inputs_;                       ///< of this run
+  std::optional<HammerInputs> inputs_;                       ///< inputs of this run
   std::vector<std::function<void(HammerBridge&)>> latched_;  ///< messages that are the same in every run
 };
 
@@ -93,7 +93,7 @@ Wanted wantedTopics(const std::vector<BagRun>& runs) {
   return wanted;
 }
 
-/// Why a wanted topic cannot be read, or cannot be what is meant; empty: none of that.
+/// Reason why a wanted topic cannot be read, or cannot be the one meant; empty: none.
 std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   for (const auto& [name, type] : wanted) {
     const auto found = inputs.topics().find(name);

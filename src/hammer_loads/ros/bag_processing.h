@@ -16,7 +16,7 @@ struct BagJob {
   std::vector<std::string> inputs;  ///< bags of one recording
   std::string output;               ///< bag to write; what it holds is lost; empty: none
   std::string tables;               ///< empty file, to get the results as tables (doc/tables.md); "": none
-  life::PieceSink* pieces{};        ///< where the counts of its runs go; null: nowhere
+  life::PieceSink* pieces{};        ///< receiver of the counts of its runs; null: none
   /// Parameters over the shipped ones; nothing: those of the recording's run_info, if it has one.
   std::optional<ParameterMap> parameters;
   /// Text of a URDF; nothing: that of the recording's run_info, if it has one.

@@ -10,19 +10,19 @@
 namespace hammer_loads {
 
 struct BagWarning {
-  std::string key;     ///< the same for the same cause
+  std::string key;     ///< equal for equal causes
   std::string text;    ///< one line: what is missing or suspicious
   std::int64_t run{};  ///< 1 for the first; 0: of the recording
 };
 
 struct BagReport {
-  SampleCounts crank;        ///< of all runs
+  SampleCounts crank;        ///< counts of all runs
   std::uint64_t samples{};   ///< messages with crank samples
   std::uint64_t wrenches{};  ///< written
   std::uint64_t turns{};     ///< blows written
   std::uint64_t runs{};
-  std::string prefix;                ///< of the topics written; empty: no bag
-  std::vector<std::string> notes;    ///< what was used, one line each
+  std::string prefix;                ///< prefix of the topics written; empty: no bag
+  std::vector<std::string> notes;    ///< notes on what was used, one line each
   std::vector<BagWarning> warnings;  ///< none twice for the same run
 };
 

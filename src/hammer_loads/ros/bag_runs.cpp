@@ -16,12 +16,12 @@ namespace hammer_loads {
 namespace {
 
 struct RecordedRun {
-  ros::Time time;  ///< of its record
+  ros::Time time;  ///< time of its record
   RunInfo info;
 };
 
 struct RunInfos {
-  std::set<std::string> topics;  ///< of hammers; more than one: several nodes
+  std::set<std::string> topics;  ///< topics of hammers; more than one: several nodes
   std::vector<RecordedRun> runs;
 };
 

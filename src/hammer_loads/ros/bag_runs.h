@@ -12,7 +12,7 @@
 
 namespace hammer_loads {
 
-/// What comes at this record time or later, until the next run begins, is computed from a state that knows nothing.
+/// Run of a node: messages from this record time until the next run begins are processed from an initial state.
 struct BagRun {
   ros::Time from;
   Settings settings;  ///< with the names of the topics read

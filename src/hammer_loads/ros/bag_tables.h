@@ -20,12 +20,12 @@ class BagTables {
 
   /// A run begins; the bridge must outlive it.
   void begin(HammerBridge& bridge);
-  /// It has ended after this many messages with crank samples.
+  /// Ends a run after this many messages with crank samples.
   void end(const HammerBridge& bridge, std::uint64_t samples);
   /// After the last run; warnings: of all runs and of the recording.
   void finish(const std::vector<BagWarning>& warnings);
 
-  /// Why the file cannot be written, one line without its name; empty while all is well.
+  /// Reason why the file cannot be written, one line without its name; empty while all is well.
   const std::string& problem() const { return writer_.problem(); }
 
  private:

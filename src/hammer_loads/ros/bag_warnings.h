@@ -33,10 +33,10 @@ void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, con
 /// No wrench came out; or no whole turn did, and most samples contradict the parameters.
 bool isUseless(const BagReport& report);
 
-/// Those that say that the crank's readings are not those of such a machine, in one line.
+/// Warnings that the crank's readings are not those of such a machine, in one line.
 std::string contradictionsOf(const std::vector<BagWarning>& warnings);
 
-/// Why a run gave no wrench of use, in one line.
+/// Reason why a run gave no wrench of use, in one line.
 std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report);
 
 }  // namespace hammer_loads

@@ -26,7 +26,7 @@ class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
         // The name space is the node's own, a nodelet's in a manager as well.
         name_(private_node.getNamespace().substr(1)) {}
 
-  double period() const { return period_; }  ///< of wall time, between two reports [s]
+  double period() const { return period_; }  ///< wall time between two reports [s]
 
   void publish() {
     diagnostic_msgs::DiagnosticArray message;

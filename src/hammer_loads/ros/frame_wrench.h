@@ -42,7 +42,7 @@ class FrameWrenches {
   const std::vector<std::string>& frames() const { return frames_; }
   FrameWrenchCounts counts(std::size_t frame) const;
   std::uint64_t refusedTransforms() const { return refused_transforms_; }
-  /// Why the last wrench of a frame that was not published could not be, in one line; empty if one was since.
+  /// Reason why the last unpublished wrench of a frame could not be published, in one line; empty if one was since.
   std::string complaint(std::size_t frame) const;
 
  private:

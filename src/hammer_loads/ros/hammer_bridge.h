@@ -44,11 +44,11 @@ class HammerBridge {
   /// A new run begins with the next input, in the state of a bridge just made; counts go on. For a time that jumped and
   /// for a log that is to be reproduced from its own inputs. Static transforms stay.
   void reset() { begin(Settings(settings_)); }
-  /// The same with other settings.
+  /// Begins a run with other settings.
   void begin(const Settings& settings);
 
-  /// What each run counts goes there as well, piece by piece; to be called before the first input. It must outlive
-  /// this.
+  /// Passes the counts of each run to `pieces` as well, piece by piece; to be called before the first input. It must
+  /// outlive this.
   void keepPieces(life::PieceSink& pieces);
   /// Called after each crank message and at the end of a run, before its turns are sent; replaced with each call.
   void watch(std::function<void()> sample) { watch_ = std::move(sample); }
@@ -85,19 +85,19 @@ class HammerBridge {
   Settings settings_;
   std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
   HammerOutputs outputs_;
-  std::optional<CylinderJoints> cylinder_joints_;  ///< of the boom's cylinders, in the mechanism's message
-  std::optional<LifeFlow> life_;                   ///< of the pipeline, replaced with each count
+  std::optional<CylinderJoints> cylinder_joints_;  ///< joints of the boom's cylinders, in the mechanism's message
+  std::optional<LifeFlow> life_;                   ///< life of the pipeline, replaced with each count
   life::PieceSink* pieces_{};                      ///< null: none
-  std::optional<LimitWatch> limits_;               ///< of the run
-  ReferenceComparison reference_;                  ///< of the run
+  std::optional<LimitWatch> limits_;               ///< limits of the run
+  ReferenceComparison reference_;                  ///< comparison of the run
   bool goes_on_{};                                 ///< the last crank sample was published
   std::vector<ChainLink> chain_links_;
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
   std::optional<FrameWrenches> frame_wrenches_;
   std::function<void()> watch_;
   bool run_begun_{};
-  ros::Time last_record_time_;         ///< of a crank message
-  std::int64_t mechanism_period_{-1};  ///< of the last ~mechanism message, counted from the epoch
+  ros::Time last_record_time_;         ///< record time of a crank message
+  std::int64_t mechanism_period_{-1};  ///< index of the last ~mechanism message's period, counted from the epoch
 };
 
 }  // namespace hammer_loads

@@ -26,14 +26,14 @@ struct Input {
   /// record_time: of the message, passed on to the outputs that it causes.
   using Take = std::function<void(HammerBridge&, const Message&, const ros::Time& record_time)>;
 
-  std::string topic;  ///< as the settings name it
+  std::string topic;  ///< topic name in the settings
   Take take;
   bool wanted{true};  ///< the settings make use of it
   bool latched{};     ///< sent once: every run and every file of a log begins with it
 
   Message message{};                                ///< memory of a reader of bags
   std::uint64_t count{};                            ///< messages that a reader has taken
-  ros::Subscriber subscriber{};                     ///< of a node
+  ros::Subscriber subscriber{};                     ///< subscriber of a node
   MissingMessages missing{};                        ///< at a node
   std::chrono::steady_clock::time_point arrived{};  ///< the last one, at a node
 };
@@ -48,8 +48,8 @@ struct HammerInputs {
   Input<tf2_msgs::TFMessage> tf_static, tf;
   Input<sensor_msgs::JointState> crank;
 
-  /// Those of sensors. Joint states first: where both are on one topic, a sample's own pitch counts for it. The crank
-  /// last: a player of bags that waits for its subscriber then finds all others.
+  /// Visits the inputs of sensors. Joint states come first: where both are on one topic, a sample's own pitch counts
+  /// for it. The crank comes last: a player of bags that waits for its subscriber then finds all others.
   template <typename Visit>
   void forEachSensor(const Visit& visit) {
     visitSensors(*this, visit);

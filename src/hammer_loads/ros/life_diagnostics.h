@@ -23,7 +23,7 @@ void describeLimits(const LimitWatch& watch, diagnostic_updater::DiagnosticStatu
 /// Agreement of the computed loads with the measured ones.
 void describeReference(const ReferenceComparison& reference, diagnostic_updater::DiagnosticStatusWrapper& status);
 
-/// What the ledger cannot take at present, if it is so.
+/// Warning of pieces that the ledger cannot accept at present, if there are any.
 std::optional<Warning> ledgerWarning(const life::LiveLedger* ledger);
 
 }  // namespace hammer_loads

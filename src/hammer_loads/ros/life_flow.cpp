@@ -107,7 +107,7 @@ void LifeFlow::keep(life::LifePiece piece) {
   pieces_->add(piece);
 }
 
-/// Why most of the readings cannot be those of this machine with these parameters; empty: they can.
+/// Reason why most of the readings cannot be those of this machine with these parameters; empty: they can.
 std::string LifeFlow::contradiction() const {
   if (!pipeline_.counts().contradictSince(counts_before_)) return {};
   for (const Warning& warning : warningsOf(pipeline_))

@@ -25,15 +25,15 @@ class LifeFlow {
   void follow(const sensor_msgs::JointState& message, const ros::Time& record_time);
   /// Takes the ends of Pipeline::end().
   void end() { follower_.end(); }
-  /// Of one of the ends of the result just followed.
+  /// Sends the loads of a revolution, one of the ends of the result just followed.
   void sendTurn(const TurnEnd& end, const ros::Time& record_time);
   /// Sends what has been counted, at the record time of the last message; nothing may follow.
   void finish();
 
   bool begun() const { return begun_; }
   const LifeFollower& follower() const { return follower_; }
-  const life::LedgerMachine& machine() const { return machine_; }  ///< of the counts
-  std::int64_t period() const { return period_; }                  ///< of ~load_cycles and pieces [ns]
+  const life::LedgerMachine& machine() const { return machine_; }  ///< machine of the counts
+  std::int64_t period() const { return period_; }                  ///< period of ~load_cycles and pieces [ns]
   /// Samples of each channel since the count began.
   std::vector<life::SampleTally> tallies() const;
   /// Loads beyond their full scale, with the keys that set it. Not for the hot path.
@@ -53,7 +53,7 @@ class LifeFlow {
   life::LedgerMachine machine_;
   std::string parameters_;      ///< digest of those of the sensors
   SampleCounts counts_before_;  ///< counts go on from run to run
-  /// Of one channel's full scale.
+  /// Keys of one channel's full scale.
   struct ScaleKeys {
     std::string least, greatest;
   };
@@ -61,14 +61,14 @@ class LifeFlow {
 
   std::vector<ScaleKeys> scale_keys_;
   std::int64_t period_;
-  ros::Time record_time_;  ///< of the last message
+  ros::Time record_time_;  ///< record time of the last message
   bool begun_{};
   StampNs first_{};                ///< header stamp of the first message
-  std::uint64_t digest_{};         ///< of the first messages
+  std::uint64_t digest_{};         ///< digest of the first messages
   std::uint64_t messages_{};       ///< since the count began
-  std::uint64_t messages_kept_{};  ///< of them, those in pieces
+  std::uint64_t messages_kept_{};  ///< messages in pieces
   bool named_{};
-  std::optional<StampNs> slot_;           ///< of the message before, for marks
+  std::optional<StampNs> slot_;           ///< slot of the message before, for marks
   std::vector<std::int64_t> marks_;       ///< since the last piece
   std::vector<life::LifePiece> unnamed_;  ///< pieces of a run that has no name yet
 };

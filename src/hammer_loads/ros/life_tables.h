@@ -20,7 +20,7 @@ class LifeTables {
 
   /// A run of this number begins; the bridge must outlive it.
   void begin(HammerBridge& bridge, std::int64_t run);
-  /// It has ended.
+  /// Writes the end of a run.
   void end(const HammerBridge& bridge);
 
  private:

@@ -45,7 +45,7 @@ class McapWriter {
   std::map<std::uint16_t, std::uint64_t> counts_;                ///< messages by channel
   std::string chunk_;
   Span chunk_span_, span_;
-  std::map<std::uint16_t, Places> places_;  ///< of the chunk's messages, by channel
+  std::map<std::uint16_t, Places> places_;  ///< places of the chunk's messages, by channel
 };
 
 }  // namespace hammer_loads

@@ -189,7 +189,7 @@ void NodeDiagnostics::describeModel(Status& status) {
   for (const std::string& note : bridge_.settings().notes) status.add("note", note);
 }
 
-/// What nothing measures is said to be unknown: none of it is another answer.
+/// Describes the misuse counts. A count that nothing measures is reported as unknown, which differs from zero.
 void NodeDiagnostics::describeMisuse(Status& status) {
   const MisuseCounts counts = bridge_.pipeline().counts().misuse;
   const double hours = counts.work_time / 3600.0;

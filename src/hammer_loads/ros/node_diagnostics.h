@@ -52,7 +52,7 @@ class NodeDiagnostics {
   SampleCounts last_counts_;
   ImuCounts last_imu_counts_;
   std::set<std::string> said_;     ///< keys of warnings on the console already
-  std::set<std::string> awaited_;  ///< of inputs that had not come at the last report
+  std::set<std::string> awaited_;  ///< inputs that had not come at the last report
   LogState log_state_{LogState::kOff};
   DiagnosticsPublisher publisher_;
   ros::WallTimer timer_;

@@ -12,7 +12,7 @@
 
 namespace hammer_loads {
 
-/// Of a message that consists of a header and single numbers.
+/// Fields of a message that consists of a header and single numbers.
 class NumberFields {
  public:
   /// definition: of the message. Throws std::invalid_argument for another kind of message.

@@ -35,7 +35,7 @@ class Output {
                   Delivery delivery = Delivery::kEach)
       : name_(std::move(name)), logged_from_(logged_from), delivery_(delivery) {}
 
-  Message message;  ///< what does not change from one to the next is filled once
+  Message message;  ///< reused message; its constant parts are filled once
 
   const std::string& name() const { return name_; }
   Delivery delivery() const { return delivery_; }

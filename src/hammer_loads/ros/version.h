@@ -4,6 +4,6 @@
 namespace hammer_loads {
 
 const char* packageVersion();   ///< e.g. 0.1.0
-const char* packageRevision();  ///< of the source, as git describes it
+const char* packageRevision();  ///< revision of the source, as git describes it
 
 }  // namespace hammer_loads
