@@ -39,7 +39,7 @@ void name(const std::string& key, double deviation, std::string& usual) {
   usual += format("%s%s %.3g", usual.empty() ? "" : ", ", key.c_str(), deviation);
 }
 
-/// Those that the file gives; of the others what is usual, which is named.
+/// Reads the deviations of the file; the others get their default, which `usual` names.
 void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::string& usual) {
   parameters.deviations = usualDeviations(parameters);
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {

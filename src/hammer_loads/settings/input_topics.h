@@ -1,4 +1,4 @@
-/// Which topics a run was computed from. A node adds their resolved names to its parameters in `run_info`, so that
+/// Topics from which a run was computed. A node adds their resolved names to its parameters in `run_info`, so that
 /// process_bag finds them in the node's log.
 #pragma once
 
@@ -20,10 +20,10 @@ struct InputTopics {
 /// The names of an input.
 struct InputName {
   std::string InputTopics::*topic;
-  const char* name;      ///< of a node's topic, to be remapped
-  const char* key;       ///< of the parameters in a run_info
+  const char* name;      ///< name of a node's topic, to be remapped
+  const char* key;       ///< key of the parameters in a run_info
   const char* recorded;  ///< topic of a bag that says nothing else
-  const char* option;    ///< of the commands that read bags
+  const char* option;    ///< option of the commands that read bags
   const char* holds;     ///< type of its messages, and what is in them; lines of a usage text
 };
 
@@ -54,7 +54,7 @@ InputTopics inputTopics(const NameOf& nameOf) {
 /// Takes the keys of kInputs, none of them required, out of the parameters.
 InputTopics takeInputTopics(ParameterMap& parameters, std::vector<std::string>& problems);
 
-/// The same keys as YAML, one a line; none for a topic that is not known.
+/// Keys of the topics as YAML, one a line; none for a topic that is not known.
 std::string yamlOf(const InputTopics& topics);
 
 }  // namespace hammer_loads

@@ -17,12 +17,12 @@ struct Limit {
   LimitedQuantity quantity{};
   bool is_least{};                 ///< else values above the limits exceed them
   double warn{kNaN}, error{kNaN};  ///< in the unit; NaN: none
-  std::string channel{};           ///< of kDamage: stress/NAME
+  std::string channel{};           ///< channel of kDamage: stress/NAME
 
   bool exceeds(double value, double limit) const noexcept { return is_least ? value < limit : value > limit; }
 };
 
-/// Those that are given, each by a key `limit_NAME_warn_UNIT` or `limit_NAME_error_UNIT` (config/limits.yaml). Usable
+/// Reads the given limits, each by a key `limit_NAME_warn_UNIT` or `limit_NAME_error_UNIT` (config/limits.yaml). Usable
 /// only if the reader got no problem.
 std::vector<Limit> readLimits(ParameterReader& reader, const life::LifeSettings& life);
 

@@ -47,17 +47,17 @@ struct Settings {
 Checked<Settings> load(const std::string& config_directory, ParameterMap given,
                        const std::string& robot_description = {});
 
-/// The same from files; a later file's key replaces an earlier one's.
+/// Settings from files; a later file's key replaces an earlier one's.
 Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
                             const std::string& robot_description = {});
 
 /// Settings in force with some numbers changed, or what forbids them. The keys must be among those in force.
 Checked<Settings> withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
 
-/// The same settings, which say from which topics the input comes.
+/// Settings with the names of the topics from which the input comes.
 Settings withInputTopics(Settings settings, const InputTopics& topics);
 
-/// Where the shipped files are: beside the installed program or library, else in the source tree it was built from.
+/// Directory of the shipped files: beside the installed program or library, else in the source tree it was built from.
 std::string configDirectory();
 
 }  // namespace hammer_loads

@@ -11,7 +11,7 @@
 
 namespace hammer_loads {
 
-/// Of a file or a recorded text: the longest shipped one has 8 kB, and this many take some 1 s.
+/// Largest file or recorded text: the longest shipped one has 8 kB, and this many take some 1 s.
 constexpr std::size_t kMostParameterBytes = 1000 * 1000;
 
 struct Parameter {

@@ -37,7 +37,7 @@ class ParameterReader {
  public:
   explicit ParameterReader(ParameterMap parameters) : parameters_(std::move(parameters)) {}
 
-  /// Whether an optional parameter is given; the key is then known.
+  /// Returns true if an optional parameter is given; the key is then known.
   bool given(const std::string& key);
   /// In the parameter's unit, which is only for the report; "" for none. An integer literal will do.
   double number(const std::string& key, const std::string& unit, NumberRule rule);

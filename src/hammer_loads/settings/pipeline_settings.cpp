@@ -15,8 +15,8 @@ constexpr NumberRule kTurned = NumberRule::within(-6.3, 6.3);     // [rad] a tur
 constexpr NumberRule kPlace = NumberRule::within(-100.0, 100.0);  // [m] on a machine
 constexpr NumberRule kAge = NumberRule::within(1e-3, 10.0);       // [s] some samples at 1 kHz; a rest between two blows
 constexpr NumberRule kPart = NumberRule::within(1e-9, 10.0);      // [-] of a peak; as cfg/HammerLoads.cfg
-// [Hz] as cfg/HammerLoads.cfg: one core computes and sends some 30000 wrenches a second, and a sample after a gap of
-// stale_after has 1e5 outputs at most, 30 MB.
+// Output rate [Hz], as in cfg/HammerLoads.cfg: one core computes and sends some 30000 wrenches a second, and a sample
+// after a gap of stale_after has 1e5 outputs at most, 30 MB.
 constexpr NumberRule kOutputRate = NumberRule::zeroOrWithin(1e-3, 1e4);
 
 /// Fit to be a part of a topic's name.

@@ -1,4 +1,4 @@
-/// How samples become loads: what config/pipeline.yaml sets. Keys there carry the units.
+/// Settings by which samples become loads: the content of config/pipeline.yaml. Keys there carry the units.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ constexpr std::array<std::pair<const char*, std::optional<Level>>, 5> kLevelChoi
                                                                                      {"linkage", Level::kLinkage},
                                                                                      {"elastic", Level::kElastic},
                                                                                      {"auto", std::nullopt}}};
-/// Of rigid links, for a machine without a rod's spring.
+/// Names of the levels with rigid links, for a machine without a rod's spring.
 constexpr std::array<std::pair<const char*, Level>, 3> kRigidLevelNames{
     {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
 constexpr const char* nameOf(Level level) noexcept {
@@ -43,21 +43,21 @@ constexpr std::array<std::pair<const char*, CrankStamps>, 3> kCrankStampsNames{
 
 constexpr std::array<std::pair<const char*, OutputKind>, 2> kOutputNames{
     {{"instantaneous", OutputKind::kInstantaneous}, {"mean", OutputKind::kMean}}};
-/// How the boom answers the hammer.
+/// Models of the boom's response to the hammer.
 enum class BoomModel {
   kNone,       ///< nothing of it is computed
-  kRigid,      ///< it follows its joint states alone
-  kCompliant,  ///< it also vibrates on the oil of its cylinders
+  kRigid,      ///< the boom follows its joint states alone
+  kCompliant,  ///< the boom also vibrates on the oil of its cylinders
   kAuto,       ///< compliant unless rigid is within rigid_tolerance for the last turn's pulse
 };
 
 /// Source of the boom's own acceleration.
 enum class BoomAcceleration {
   kNone,        ///< zero
-  kDifference,  ///< of the joints' velocities
+  kDifference,  ///< difference of the joints' velocities
 };
 
-/// How the modes' frequencies and damping are known.
+/// Sources of the modes' frequencies and damping.
 enum class BoomStiffness {
   kGiven,       ///< by the boom file
   kIdentified,  ///< followed from hull IMU, joint states above 100 Hz and cylinder pressures, whichever come
@@ -74,10 +74,10 @@ constexpr std::array<std::pair<const char*, BoomAcceleration>, 2> kBoomAccelerat
 
 /// Source of the hull's own motion.
 enum class HullMotionSource {
-  kFixed,       ///< it is held; weight by pitch
+  kFixed,       ///< the hull is held; weight by pitch
   kUnmeasured,  ///< weight by pitch; what its own motion adds is in the standard deviation
-  kImu,         ///< as its IMU reports
-  kModel,       ///< it vibrates as the compliant boom does
+  kImu,         ///< motion that its IMU reports
+  kModel,       ///< vibration of the compliant boom
 };
 
 constexpr std::array<std::pair<const char*, HullMotionSource>, 4> kHullMotionNames{
@@ -89,35 +89,35 @@ constexpr std::array<std::pair<const char*, HullMotionSource>, 4> kHullMotionNam
 struct PipelineSettings {
   Level level{};        ///< in force; where it was `auto`, the one chosen
   bool choose_level{};  ///< the file says `auto`
-  double tolerance{};   ///< of what the hammer leaves open, for `auto` [-], > 0
-  double turn_rate{};   ///< of the working turn by which `auto` judges [Hz], > 0
+  double tolerance{};   ///< tolerance on the uncertainty by the hammer's constants, for `auto` [-], > 0
+  double turn_rate{};   ///< rate of the working revolution by which `auto` judges [Hz], > 0
   OutputKind output{};
-  double output_rate{};                   ///< of hull_wrench [Hz]; 0: one per crank sample
+  double output_rate{};                   ///< rate of hull_wrench [Hz]; 0: one per crank sample
   std::string hull_frame{"hammer_hull"};  ///< frame of the wrench where no boom file names its tip
   std::string crank_joint;                ///< joint whose position is the crank angle
   std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
-  std::vector<int> pitch_signs;           ///< of each of them, 1 or -1: how it turns about +y; empty: all 1
+  std::vector<int> pitch_signs;           ///< sign of each of them, 1 or -1: direction about +y; empty: all 1
   double pitch_offset{};                  ///< hull's pitch where all of them are at zero [rad]
   std::optional<Chain> pitch_chain;       ///< up to the hull or the last pitch joint's link, where a robot description
                                           ///< has them and there is no boom: its axes and zeros count for the weight
   double hull_pitch{};                    ///< until every pitch joint has been heard [rad]
   HullMotionSource hull_motion{};
-  HullImuSettings imu;              ///< where the IMU sits
+  HullImuSettings imu;              ///< place of the IMU
   double gravity{};                 ///< [m/s2], >= 0
-  BaseTilt base;                    ///< of the ground that the machine stands on
-  CrankSensor crank_sensor;         ///< where it sits
+  BaseTilt base;                    ///< inclination of the ground that the machine stands on
+  CrankSensor crank_sensor;         ///< mounting of the crank's sensor
   double crank_latency{};           ///< header stamp less the instant of the measurement [s], >= 0
   double crank_angle_resolution{};  ///< encoder count [rad], >= 0; 0: read off the readings
   double crank_angle_noise{};       ///< standard deviation beside the count [rad], >= 0
-  CrankStamps crank_stamps{};       ///< which instants the samples get
+  CrankStamps crank_stamps{};       ///< instants that the samples get
   double crank_timing_noise{};      ///< standard deviation of a sample's stamp, first guess [s], >= 0
   double crank_speed_noise{};       ///< standard deviation of a measured speed [rad/s], > 0
-  double torque_walk{};             ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
+  double torque_walk{};             ///< random walk of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
   double speed_walk{};              ///< [rad/s/sqrt(s)], >= 0
   double inertia_walk{};            ///< relative to the drive inertia [1/sqrt(s)], >= 0
-  double initial_torque_std{};      ///< of the net torque per rocker inertia about D [rad/s2], > 0
+  double initial_torque_std{};      ///< standard deviation of the net torque per rocker inertia about D [rad/s2], > 0
   double initial_inertia_std{};     ///< relative to the drive inertia [-], >= 0
-  double torque_std_part{};         ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
+  double torque_std_part{};         ///< part of the torque's deviation that enters the wrench's [-], in [0, 1]
   double near_blow{};               ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
   double stale_after{};             ///< no crank sample for longer: nothing is published [s], > 0
   double max_crank_speed{};         ///< a faster sample is implausible [rad/s], > 0
@@ -127,10 +127,10 @@ struct PipelineSettings {
   BoomStiffness boom_stiffness{};
   double joint_max_age{};                      ///< between a crank sample and a joint's nearest state [s], > 0
   std::vector<std::string> boom_wrench_links;  ///< links and TF frames at which the hull wrench is published as well
-  double tf_max_wait{};                        ///< of a wrench for the transform to its frame [s], > 0
+  double tf_max_wait{};                        ///< longest wait of a wrench for the transform to its frame [s], > 0
 };
 
-/// Whether readings of the hull's IMU count.
+/// Returns true if readings of the hull's IMU count.
 inline bool needsImu(const PipelineSettings& settings) {
   return settings.hull_motion == HullMotionSource::kImu || settings.boom_stiffness == BoomStiffness::kIdentified;
 }

@@ -19,7 +19,7 @@ class ParameterReader;
 /// problem; what values demand of each other and of the chain is Boom::make()'s to judge.
 BoomParameters readBoomParameters(ParameterReader& reader);
 
-/// Whether any key of a boom file is there that is not a cylinder's own.
+/// Returns true if any key of a boom file is there that is not a cylinder's own.
 bool hasBoomKey(const ParameterMap& parameters);
 
 /// The boom file's keys of parameters in force, as Settings::yaml has them; one `key: value` a line.

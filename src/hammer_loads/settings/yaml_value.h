@@ -29,7 +29,7 @@ YAML::Node textNode(const std::string& text);
 std::string numberText(double value);
 /// In double quotes, escaped: valid YAML on one line.
 std::string quotedText(const std::string& text);
-/// How a report shows a value: on one line, shortened when long.
+/// Text of a value in a report: on one line, shortened when long.
 std::string describe(const YAML::Node& value);
 /// Without line breaks and other control characters.
 std::string onOneLine(const std::string& text);
