@@ -25,7 +25,7 @@ class Hammer {
   const Mechanism& mechanism() const { return *mechanism_; }
   const std::map<std::string, double>& parameters() const { return parameters_; }  ///< in force, by the file's keys
   const std::vector<std::string>& notes() const { return notes_; }
-  Level level() const { return level_; }       ///< of the parameters
+  Level level() const { return level_; }       ///< level of the parameters
   double gravity() const { return gravity_; }  ///< [m/s2]
 
  private:
