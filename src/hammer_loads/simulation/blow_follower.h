@@ -16,7 +16,7 @@ class BlowFollower {
   struct Instant {
     double time{};
     double crank_speed{}, rocker_speed{};                      ///< [rad/s]
-    double approach{};                                         ///< of the striking point, down [m/s]
+    double approach{};                                         ///< speed of the striking point, down [m/s]
     double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
     bool touches{};
   };

@@ -10,14 +10,14 @@ class ChamberOil {
  public:
   ChamberOil(double bulk_modulus, double air) noexcept : bulk_modulus_(bulk_modulus), air_(air) {}
 
-  /// Of oil and air together at a gauge pressure [Pa].
+  /// Bulk modulus of oil and air together at a gauge pressure [Pa].
   double bulkModulus(double pressure) const noexcept;
   /// Gauge [Pa], of a volume that was at `pressure` and is compressed by a part of itself; never below a vacuum.
   double compressed(double pressure, double part) const noexcept;
 
  private:
   double volume(double absolute) const noexcept;  ///< over that at ambient pressure
-  double slope(double absolute) const noexcept;   ///< of that, by the pressure, negative [1/Pa]
+  double slope(double absolute) const noexcept;   ///< derivative of the volume by the pressure, negative [1/Pa]
   double bulk_modulus_, air_;
 };
 

@@ -30,7 +30,7 @@ class RodSpring {
  public:
   explicit RodSpring(const RodSettings& rod) noexcept;
 
-  /// That pulls the pins together, at a stretch [m] and its rate [m/s]; negative: pushes them apart [N].
+  /// Force that pulls the pins together, at a stretch [m] and its rate [m/s]; negative: pushes them apart [N].
   double tension(double stretch, double rate) const noexcept;
   double energy(double stretch) const noexcept;   ///< [J]
   double pressed(double stretch) const noexcept;  ///< part of a stretch beyond the play, with its sign [m]
@@ -47,9 +47,9 @@ class ElasticLinks {
   struct Body {
     double mass{}, inertia{};        ///< [kg], about the centre of mass [kg m2]
     std::complex<double> place;      ///< centre of mass [m]
-    std::complex<double> slope[2];   ///< of it by crank and rocker angle [m/rad]
-    double turn[2]{};                ///< of its angle by them [-]
-    std::complex<double> by_speeds;  ///< its acceleration at constant speeds of both [m/s2]
+    std::complex<double> slope[2];   ///< derivatives of the place by crank and rocker angle [m/rad]
+    double turn[2]{};                ///< derivatives of the body's angle by them [-]
+    std::complex<double> by_speeds;  ///< acceleration of the place at constant speeds of both [m/s2]
     double turn_by_speeds{};         ///< [rad/s2]
   };
   struct View {
@@ -63,7 +63,7 @@ class ElasticLinks {
 
   View at(const TwoBodies& angle, const TwoBodies& speed) const noexcept;
   RodStretch rod(const TwoBodies& angle) const noexcept;
-  /// What moves both: inertia[0] of the crank, [1] between them, [2] of the rocker [kg m2].
+  /// Inertia matrix of both coordinates: [0] of the crank, [1] between them, [2] of the rocker [kg m2].
   std::array<double, 3> inertia(const View& view) const noexcept;
   /// On crank and rocker by weight [N m].
   TwoBodies weight(const View& view, Gravity gravity) const noexcept;
@@ -76,11 +76,12 @@ class ElasticLinks {
   /// Depth of the striking point below its place at the dead centre [m] and what the rocker's angle does to it.
   double depth(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.imag(); }
   double depthSlope(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.real(); }
-  /// Of a rod that is as long as drawn, on the branch of the working turn, crank angle in [0, 2 pi] [rad].
+  /// Rocker angle with a rod of nominal length, on the branch of the working revolution, crank angle in [0, 2 pi]
+  /// [rad].
   double rockerAngle(double crank_angle) const noexcept;
 
  private:
-  /// Of pins at these places from A and from D.
+  /// Stretch of the rod between pins at these places, from A and from D.
   RodStretch rodBetween(std::complex<double> b, std::complex<double> c) const noexcept;
   std::complex<double> inMechanism(Gravity gravity) const noexcept;
   HammerParameters p_;

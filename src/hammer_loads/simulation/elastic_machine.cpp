@@ -93,7 +93,7 @@ void ElasticMachine::rate(const State& y, State& r, double time) const noexcept 
   r[kRetainerImpulse] = a.struck.retainer;
 }
 
-/// Of tool, retainer, rock and the sides of the rod's play.
+/// Contacts of tool, retainer, rock and the sides of the joint clearance.
 int ElasticMachine::contacts(const State& y) const noexcept {
   const int ground = struck_.contacts(striker(y), tool(y));
   if (settings_.rod.play == 0.0) return ground;

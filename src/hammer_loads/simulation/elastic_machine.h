@@ -11,13 +11,13 @@
 
 namespace hammer_loads::simulation {
 
-/// Where the energy of an elastic machine went since the start [J]. The balance is tested:
-/// kinetic + elastic + rod + blow = motor - friction + weight.
+/// Energy balance of an elastic machine since the start [J]. It is tested: kinetic + elastic + rod + blow = motor -
+/// friction + weight.
 struct ElasticEnergy {
   double motor{};     ///< work of the pressure on the shaft
   double friction{};  ///< lost in it
   double weight{};    ///< work of the weight of links and tool
-  double kinetic{};   ///< of links and drive now
+  double kinetic{};   ///< present energy of links and drive
   double elastic{};   ///< in the rod now
   double tool{};      ///< kinetic of the tool, elastic in contacts and rock now
   double rod{};       ///< lost in its damper
@@ -104,7 +104,7 @@ class ElasticMachine {
   State before_{}, before_slope_{};  ///< at its begin
   double time_{}, before_time_{}, longest_step_, next_step_;
   double asked_{};  ///< within the last step
-  State view_{};    ///< then
+  State view_{};    ///< state at that time
   std::int64_t view_turn_{};
   int contacts_{};
   std::int64_t turn_{};

@@ -47,7 +47,7 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
   standOnRock();
 }
 
-/// As stiff as gives each bend alone its frequency where the boom is held at first.
+/// Sets the stiffnesses of the links such that each bend alone has its frequency at the initial pose.
 void HammerOnBoom::stiffenLinks() {
   if (!bends()) return;
   const double omega = kTwoPi * machine_.on_boom.bending_frequency;
@@ -56,8 +56,8 @@ void HammerOnBoom::stiffenLinks() {
   link_damping_ = 2.0 * machine_.on_boom.bending_damping * omega * inertia;
 }
 
-/// What the hull keeps of its mass is that of the description less rotor and rocker, whose mass the description smears
-/// over the places of a turn.
+/// Subtracts rotor and rocker from the hull's mass of the description, which averages the rocker over the places of a
+/// revolution.
 void HammerOnBoom::takeMovingPartsOffTheHull() {
   constexpr int kPlaces = 360;
   State held = heldAt(0.0);
@@ -99,7 +99,7 @@ Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
   return modesOf(holdAt(time).stiffness, M).eigenvalues().cwiseSqrt() / kTwoPi;
 }
 
-/// Where the operator holds the joints, crank a quarter of a turn from the blow.
+/// State in which the operator holds the joints, crank a quarter of a revolution from the blow.
 HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
   State s;
   s.time = time;
@@ -183,7 +183,7 @@ void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) 
   }
 }
 
-/// Of the rotor; links that do not bend have a one, so that the matrix has an inverse.
+/// Inertia of the rotor; links that do not bend have a one, so that the matrix has an inverse.
 HammerOnBoom::Inertia HammerOnBoom::rotorInertia() const {
   Coordinates rotor;
   const double bent = bends() ? ratio_ : 0.0;
@@ -222,7 +222,8 @@ HammerOnBoom::Coordinates HammerOnBoom::force(const State& s, const Bodies& all,
   return Q;
 }
 
-/// Of the bodies by the coordinates' speeds alone: towards the joints, and of the rocker within a hull that turns.
+/// Inertia forces of the bodies by the coordinates' speeds alone: centripetal ones, and those of the rocker within a
+/// turning hull.
 HammerOnBoom::Coordinates HammerOnBoom::inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const {
   Coordinates Q = Coordinates::Zero();
   PlanePoint of_joint = 0.0;  // acceleration

@@ -18,7 +18,7 @@ namespace hammer_loads::simulation {
 
 /// Readings of the boom's sensors, without their errors.
 struct OnBoomSensors {
-  Eigen::Vector3d angles{Eigen::Vector3d::Zero()};        ///< of the joints [rad]
+  Eigen::Vector3d angles{Eigen::Vector3d::Zero()};        ///< angles of the joints [rad]
   Eigen::Vector3d rates{Eigen::Vector3d::Zero()};         ///< [rad/s]
   double imu_x{}, imu_z{};                                ///< specific force at the unit, in its axes [m/s2]
   double imu_rate{};                                      ///< about +y [rad/s]
@@ -27,8 +27,9 @@ struct OnBoomSensors {
 
 /// The truth at one instant.
 struct OnBoomTruth : CrankTruth, OnBoomSensors {
-  Eigen::Vector3d displacement{Eigen::Vector3d::Zero()};  ///< of the joints from where the operator holds them [rad]
-  Eigen::Vector3d hold{Eigen::Vector3d::Zero()};          ///< BY the cylinders ON the joints [N m]
+  Eigen::Vector3d displacement{
+      Eigen::Vector3d::Zero()};  ///< displacement of the joints from where the operator holds them [rad]
+  Eigen::Vector3d hold{Eigen::Vector3d::Zero()};  ///< BY the cylinders ON the joints [N m]
   Load rock;                ///< BY the rock ON the hull's foot, blows aside, about D, axes of the hull
   std::array<Load, 3> cut;  ///< BY the steel beyond each cut ON that before it, about it, axes of the link
 };
@@ -74,8 +75,8 @@ class HammerOnBoom {
     bool resting{};     ///< the crank turned back onto the tool: held at the dead centre, as by a brake
     Coordinates x, v;   ///< angles of the joints, crank's offset from its nearest dead centre, rocker
     double pressure{};  ///< at the motor [Pa]
-    Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};           ///< of each cylinder, from bore to rod side [m3]
-    ToolState tool;                                            ///< of an elastic machine, as what follows
+    Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};  ///< oil leaked in each cylinder, from bore to rod side [m3]
+    ToolState tool;                                   ///< tool of an elastic machine; the members below likewise
     double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
   };
   /// A moving body: its place, and what each coordinate does to place and angle.
@@ -87,17 +88,17 @@ class HammerOnBoom {
   /// Links, then the rocker, which the crank moves within the hull.
   struct Bodies {
     std::array<Body, 4> body;
-    std::array<PlanePoint, 4> joint;   ///< of the links, then the rocker's pivot D
-    std::array<PlanePoint, 2> middle;  ///< of boom and arm, where they bend
-    std::array<double, 3> angle;       ///< of the links
+    std::array<PlanePoint, 4> joint;   ///< joints of the links, then the rocker's pivot D
+    std::array<PlanePoint, 2> middle;  ///< middles of boom and arm, where they bend
+    std::array<double, 3> angle;       ///< angles of the links
     PlanePoint hull_turned;
   };
 
-  /// Where the operator holds the joints, and what holds them there.
+  /// Pose in which the operator holds the joints, and the torques and stiffnesses that hold them there.
   struct Hold {
     State state;
-    Eigen::Vector3d weight;     ///< of everything, on the joints [N m]
-    Eigen::Vector3d stiffness;  ///< of the oil about the joints [N m/rad]
+    Eigen::Vector3d weight;     ///< torque of all weights on the joints [N m]
+    Eigen::Vector3d stiffness;  ///< stiffness of the oil about the joints [N m/rad]
     Eigen::Vector2d bent;       ///< weight of what bends boom and arm [N m]: their rest is straight under it
   };
   /// A rod that gives, and what the rocker then strikes.
@@ -113,7 +114,7 @@ class HammerOnBoom {
   State heldAt(double time) const;
   Hold holdAt(double time) const;
 
-  int rockerIndex() const { return elastic_ ? 4 : 3; }  ///< of the coordinate that moves it
+  int rockerIndex() const { return elastic_ ? 4 : 3; }  ///< index of the coordinate that moves it
   Rocker rockerAt(const State& s) const;
   double rockerOf(double crank_angle) const { return elastic_ ? elastic_->links.rockerAngle(crank_angle) : 0.0; }
   Bodies bodies(const State& s, const Links& links, const Rocker& rocker) const;
@@ -132,7 +133,7 @@ class HammerOnBoom {
   Chambers heldChambers(std::size_t k, const State& held, double weight) const;
   Chambers chambersAt(std::size_t k, double way, double leaked, const Hold& hold) const;
   Chambers chambers(std::size_t k, const State& s, const Hold& hold) const;
-  double push(std::size_t k, const Chambers& at) const;  ///< of the rod, out [N]
+  double push(std::size_t k, const Chambers& at) const;  ///< outward push of the rod [N]
   Eigen::Vector3d leak(const State& s, const Hold& hold) const;
   void followOperator();
   Eigen::Vector3d oil(const State& s, const Hold& hold) const;
@@ -170,12 +171,12 @@ class HammerOnBoom {
 
   bool bends() const { return machine_.on_boom.bending_frequency > 0.0; }
   void stiffenLinks();
-  /// What turns all that is beyond it: joints, then the middles of boom and arm.
+  /// Number of turning places, joints and then the middles of boom and arm; each turns everything beyond it.
   std::size_t turns() const { return bends() ? 5 : 3; }
   static int turnIndex(std::size_t turn) { return static_cast<int>(turn < 3 ? turn : turn + 2); }
   PlanePoint turnPlace(const State& s, std::size_t turn) const;
   static double hullTurning(const Coordinates& c) { return c.head<3>().sum() + c.tail<2>().sum(); }
-  /// Of the link that ends in a joint, before its middle; of what is beyond that.
+  /// Angle of the link that ends in a joint, before its middle; bentAngle: of the part beyond the middle.
   static double angleBefore(const State& s, std::size_t joint);
   static double bentAngle(const State& s, std::size_t link) {
     return angleBefore(s, link + 1) + (link < 2 ? s.x[5 + static_cast<int>(link)] : 0.0);
@@ -191,7 +192,7 @@ class HammerOnBoom {
     Rocker rocker[3];
   };
   Moments momentsAbout(const Coordinates& a) const;
-  /// Of the bodies from `first` on, without what holds them, about a place in axes turned by an angle.
+  /// Load of the bodies from `first` on, without what holds them, about a place in axes turned by an angle.
   Load loadOf(const Coordinates& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
               double axes) const;
   Load cutLoad(const OnBoomTruth& t, const Coordinates& a, const Moments& m, const OilBoomCut& cut) const;
@@ -202,7 +203,7 @@ class HammerOnBoom {
   OilBoom boom_;
   MovingLinks links_;
   double rotor_{}, ratio_{};  ///< Jc [kg m2], drive_reaction_ratio
-  Rocker held_rocker_{};      ///< of every heldAt()
+  Rocker held_rocker_{};      ///< rocker of every heldAt()
   Hold hold_;                 ///< at the beginning of the step in hand
   Hold hold_later_;           ///< settings.on_boom.step after it; of an elastic machine, which steps between the two
   Eigen::Matrix3d damping_;

@@ -1,4 +1,4 @@
-// How it moves on in time: steps, the dead centre between them, what stops and lets go.
+// Integration in time: steps, the dead centre between them, stops and releases.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -93,7 +93,7 @@ StrikeSettings readStrike(ParameterReader& reader) {
   return s;
 }
 
-/// Where the encoder sits on the crank.
+/// Reads the mounting of the encoder on the crank.
 void readEncoder(ParameterReader& reader, CrankSensorSettings& s) {
   s.zero = reader.number("encoder_zero_rad", "rad", kAny);
   s.direction = static_cast<int>(reader.integer("encoder_direction", "", -1, 1));
@@ -167,7 +167,7 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   return s;
 }
 
-/// What a hull on its boom does not go with.
+/// Reports settings that a hull on its boom excludes.
 void checkOnBoom(ParameterReader& reader, const MachineSettings& machine) {
   if (!machine.on_boom.on) return;
   if (machine.level != Level::kRocker) reader.addProblem("level: must be rocker with hull_on_boom: true");
@@ -180,7 +180,7 @@ void checkOnBoom(ParameterReader& reader, const MachineSettings& machine) {
   mustBeZero("blank_share", machine.blow.blank_share);
 }
 
-/// What follows from an elastic rod and the tool's contact, and is not to be given.
+/// Reports settings that follow from an elastic rod and the tool's contact, and must not be given.
 void checkElastic(ParameterReader& reader, const MachineSettings& machine) {
   if (machine.rod.stiffness == 0.0) return;
   const auto mustBeZero = [&](const char* key, double value) {

@@ -9,12 +9,12 @@
 
 namespace hammer_loads::simulation {
 
-/// How the machine's time follows other clocks.
+/// Settings by which the machine's time follows other clocks.
 struct PlaySettings {
   bool publish_clock{};
   double clock_factor{};         ///< simulated seconds per second, with publish_clock [-], > 0
   double wait_for_subscriber{};  ///< at most, before time 0 [s]
-  std::string truth_prefix;      ///< of TruthFiles; empty: none
+  std::string truth_prefix;      ///< prefix of TruthFiles; empty: none
 };
 
 struct SimulatorSettings {

@@ -14,7 +14,7 @@ namespace hammer_loads::simulation {
 /// Hydraulic drive: pump flow into a line with compliance, relief valve and leakage, motor on the crank's shaft.
 struct DriveSettings {
   double motor_displacement{};  ///< [m3/rad], > 0
-  double compliance{};          ///< of line and accumulator: volume per pressure [m3/Pa], > 0
+  double compliance{};          ///< compliance of line and accumulator: volume per pressure [m3/Pa], > 0
   double leakage{};             ///< [m3/(s Pa)]
   double relief_pressure{};     ///< relief valve opens [Pa]
   double relief_slope{};        ///< relief flow per pressure above it [m3/(s Pa)]
@@ -34,44 +34,46 @@ struct DriveSettings {
   double stop_ramp{};              ///< [s], > 0
   double bypass{};                 ///< open bypass: flow per pressure [m3/(s Pa)]
 
-  double coupling_frequency{};  ///< of the flexible coupling between motor and crank, both free [Hz]; 0: rigid
-  double motor_share{0.5};      ///< of the inertia, on the motor's side of the coupling [-], in (0, 1)
-  double coupling_damping{};    ///< of critical, of the same mode [-]
+  double coupling_frequency{};  ///< natural frequency of the flexible coupling between motor and crank, both free [Hz];
+                                ///< 0: rigid
+  double motor_share{0.5};      ///< part of the inertia on the motor's side of the coupling [-], in (0, 1)
+  double coupling_damping{};    ///< damping ratio of that mode [-]
 };
 
-/// How the rocker meets the tool. As constructed: at the dead centre, and the crank keeps its speed.
+/// Contact of rocker and tool. By default it is at the dead centre, and the crank keeps its speed.
 struct BlowSettings {
   bool restitution_drawn{};      ///< else the one at which the crank keeps its speed
   double restitution_low{};      ///< drawn anew for each blow, uniform between these [-]
   double restitution_high{};     ///< [-]
   double crank_loss{};           ///< part of the crank's speed lost beside that at each blow [-], in [0, 1)
   double tool_early{};           ///< the tool is met this much before the dead centre [rad], in [0, 1]
-  double early_tool_mass{50.0};  ///< that the rocker then takes along, at the striking point [kg], > 0
-  double blank_share{};          ///< of the blows that find no tool [-], in [0, 1]
+  double early_tool_mass{50.0};  ///< mass that the rocker then takes along, at the striking point [kg], > 0
+  double blank_share{};          ///< part of the blows that find no tool [-], in [0, 1]
 };
 
 /// Rod, pins and bearings in series, along the line of the pins.
 struct RodSettings {
   double stiffness{};      ///< [N/m]; 0: rigid
-  double damping_ratio{};  ///< of an oscillator of 200 Hz on this spring [-]: damping = ratio stiffness/(200 pi Hz)
+  double damping_ratio{};  ///< damping ratio of an oscillator of 200 Hz on this spring [-]: damping = ratio
+                           ///< stiffness/(200 pi Hz)
   double play{};           ///< free way of both pins together [m]
 };
 
-/// What an elastic machine's rocker strikes: a tool with mass that stands on rock, or the hull's retainer. As
-/// constructed a blow lasts 0.34 ms and the rocker leaves with 0.16 of its speed, near what the linkage then asks for
-/// (model.md 2).
+/// Targets of an elastic machine's rocker: a tool with mass that stands on rock, or the hull's retainer. By default a
+/// blow lasts 0.34 ms and the rocker leaves with 0.16 of its speed, near that of the linkage there (model.md 2).
 struct StrikeSettings {
-  double tool_mass{40.0};               ///< [kg], > 0
-  double contact_stiffness{1.2e9};      ///< between rocker and tool [N/m], > 0
-  double contact_damping{0.07};         ///< that force counts 1 + this times the speed of approach [s/m]
-  double rock_stiffness{5e8};           ///< [N/m], > 0
-  double rock_damping{0.05};            ///< as above [s/m]
-  double rock_strength{2e5};            ///< the rock yields above this force [N], > 0
-  double tool_late{};                   ///< the tool stands so far below the dead centre's place; < 0: early [m]
-  double tool_spread{};                 ///< drawn anew for each turn, uniform within plus and minus this [m]
-  double retainer_stiffness{};          ///< of the hull's retainer [N/m]; 0: none
+  double tool_mass{40.0};           ///< [kg], > 0
+  double contact_stiffness{1.2e9};  ///< between rocker and tool [N/m], > 0
+  double contact_damping{
+      0.07};                   ///< loss: the spring's force is multiplied by 1 + this times the speed of approach [s/m]
+  double rock_stiffness{5e8};  ///< [N/m], > 0
+  double rock_damping{0.05};   ///< loss, likewise [s/m]
+  double rock_strength{2e5};   ///< the rock yields above this force [N], > 0
+  double tool_late{};          ///< the tool stands so far below the dead centre's place; < 0: early [m]
+  double tool_spread{};        ///< drawn anew for each turn, uniform within plus and minus this [m]
+  double retainer_stiffness{};          ///< stiffness of the hull's retainer [N/m]; 0: none
   double retainer_gap{0.005};           ///< below the dead centre's place [m]
-  double retainer_damping{0.05};        ///< as of the contact [s/m]
+  double retainer_damping{0.05};        ///< loss, likewise [s/m]
   double no_tool_from{}, no_tool_to{};  ///< between them a turn that begins finds no tool [s]
 };
 
@@ -84,26 +86,26 @@ constexpr double kNever = std::numeric_limits<double>::infinity();  ///< [s]
 
 /// Crank encoder and the message that carries it.
 struct CrankSensorSettings {
-  double rate{};                 ///< [Hz], > 0
-  double jitter{};               ///< standard deviation of the instants of sampling [s]; at most 0.45 periods each
-  double stamp_noise{};          ///< standard deviation of stamp against instant [s]; order may break if large
-  bool stamps_late{};            ///< that noise only ever delays: its size counts
-  double stamp_step{};           ///< stamps are whole multiples of it, rounded down [s]; 0: nanoseconds
-  double latency{};              ///< constant part of stamp less instant [s]
-  int burst{1};                  ///< this many samples carry the stamp of their last one, >= 1
-  bool stamps_ordered{};         ///< none is before the one before: a late one holds up those behind it
-  double duplicate_share{};      ///< of the messages that come twice [-], in [0, 1]
-  double loss_share{};           ///< of the samples that never come [-], in [0, 1)
-  int counts{};                  ///< per turn; angle = whole counts passed; 0: continuous
-  bool unwound{};                ///< angle grows over the turns instead of staying in [0, 2 pi)
-  bool speed{true};              ///< speed is measured too
-  double speed_noise{};          ///< standard deviation [rad/s]
-  double speed_lag{};            ///< of a low-pass of first order on the measured speed [s]
-  double speed_scale{1.0};       ///< measured over true speed [-], > 0
-  double angle_lag{};            ///< of a low-pass of first order on the encoder's angle, before it is counted [s]
-  double zero{};                 ///< reading at the blow [rad]
-  int direction{1};              ///< 1 or -1
-  double ratio{1.0};             ///< encoder turns per crank turn [-], > 0
+  double rate{};             ///< [Hz], > 0
+  double jitter{};           ///< standard deviation of the instants of sampling [s]; at most 0.45 periods each
+  double stamp_noise{};      ///< standard deviation of stamp against instant [s]; order may break if large
+  bool stamps_late{};        ///< true if that noise only ever delays: its magnitude counts
+  double stamp_step{};       ///< stamps are whole multiples of it, rounded down [s]; 0: nanoseconds
+  double latency{};          ///< constant part of stamp less instant [s]
+  int burst{1};              ///< number of samples that carry the stamp of their last one, >= 1
+  bool stamps_ordered{};     ///< none is before the one before: a late one holds up those behind it
+  double duplicate_share{};  ///< part of the messages that come twice [-], in [0, 1]
+  double loss_share{};       ///< part of the samples that never come [-], in [0, 1)
+  int counts{};              ///< per turn; angle = whole counts passed; 0: continuous
+  bool unwound{};            ///< angle grows over the turns instead of staying in [0, 2 pi)
+  bool speed{true};          ///< speed is measured too
+  double speed_noise{};      ///< standard deviation [rad/s]
+  double speed_lag{};        ///< time constant of a low-pass of first order on the measured speed [s]
+  double speed_scale{1.0};   ///< measured over true speed [-], > 0
+  double angle_lag{};  ///< time constant of a low-pass of first order on the encoder's angle, before it is counted [s]
+  double zero{};       ///< reading at the blow [rad]
+  int direction{1};    ///< 1 or -1
+  double ratio{1.0};   ///< encoder turns per crank turn [-], > 0
   Eccentricity eccentricity[2];  ///< once and twice a turn
   struct Interval {
     double from{}, to{};  ///< [s]
@@ -111,7 +113,7 @@ struct CrankSensorSettings {
   std::vector<Interval> drop_outs;  ///< instants in [from, to) give no sample
   /// The encoder has slipped on its shaft, or its counter has lost its reference, until it is found again.
   struct Slip {
-    double amount{};               ///< of the encoder's angle [rad]
+    double amount{};               ///< offset of the encoder's angle [rad]
     Interval during{0.0, kNever};  ///< [s]
   } slip;
 };
@@ -140,16 +142,16 @@ struct PressureSensors {
   double rate{};      ///< [Hz]; 0: none
   double noise{};     ///< standard deviation [Pa]
   double preload{};   ///< in the unloaded chamber at rest [Pa]
-  double hose_lag{};  ///< of the low-pass of first order that is the sensor's hose [s]; 0: none
-  double count{};     ///< of the sensor's number [Pa]; 0: any
+  double hose_lag{};  ///< time constant of the low-pass of first order that is the sensor's hose [s]; 0: none
+  double count{};     ///< resolution of the sensor's number [Pa]; 0: any
 };
 
 /// The ground under the tool. It holds the hull up at its foot and lets go of it: a spring with a loss, along the tool.
 /// It gives way as fast as the operator moves the hull on.
 struct RockSettings {
-  double stiffness{};        ///< of rock and tool [N/m]; 0: no rock, the hull hangs free
+  double stiffness{};        ///< stiffness of rock and tool [N/m]; 0: no rock, the hull hangs free
   double damping{};          ///< the spring's force counts 1 + this times the speed of going down [s/m]
-  double hold_down_force{};  ///< of the operator on the hull before it works [N], >= 0
+  double hold_down_force{};  ///< force of the operator on the hull before it works [N], >= 0
 };
 
 /// Seals of the boom's cylinders: against the rod's speed v, force = (constant P + friction |F|) (1 + breakaway
@@ -171,10 +173,11 @@ struct OnBoomSettings {
   double oil_stiffness{1.0};                          ///< over that of a bulk modulus of 1e9 Pa [-], > 0
   std::array<double, 3> cylinder_oil{1.0, 1.0, 1.0};  ///< each cylinder's over that [-], > 0
   double air{};                                       ///< in the oil, its share of the volume at ambient pressure [-]
-  double leak{};                 ///< past each piston [m3/(Pa s)]; the operator makes up for the steady part
-  double pin_play{};             ///< of each cylinder's pins together, along its rod [m]
-  double bending_frequency{};    ///< of boom and arm, each alone with what it carries, cylinders stiff [Hz]; 0: rigid
-  double bending_damping{0.02};  ///< its ratio [-]
+  double leak{};               ///< past each piston [m3/(Pa s)]; the operator makes up for the steady part
+  double pin_play{};           ///< joint clearance of each cylinder's pins together, along its rod [m]
+  double bending_frequency{};  ///< natural frequency of boom and arm, each alone with what it carries, cylinders stiff
+                               ///< [Hz]; 0: rigid
+  double bending_damping{0.02};  ///< damping ratio of the bending [-]
   double damping{0.05};          ///< ratio of every mode [-], in [0, 1)
   double step{4e-4};             ///< longest integration step [s], > 0
   SealSettings seals;
@@ -194,16 +197,16 @@ constexpr std::uint64_t kBlowSeed = 0x9e3779b97f4a7c15;
 
 struct MachineSettings {
   HammerParameters hammer;      ///< drive_inertia in it is not used: see drive.inertia
-  Level level{Level::kRocker};  ///< which links have mass
+  Level level{Level::kRocker};  ///< level that decides which links have mass
   DriveSettings drive;
   BlowSettings blow;
   RodSettings rod;        ///< elastic: `strike` holds, and of `blow` blank_share alone
-  StrikeSettings strike;  ///< of an elastic rod
+  StrikeSettings strike;  ///< contacts of a machine with an elastic rod
   CrankSensorSettings crank;
   std::array<JointMotion, 4> boom;
   OnBoomSettings on_boom;
-  double joint_rate{};         ///< of the boom joints' samples [Hz], > 0
-  double joint_count{};        ///< of the number that their sensors give [rad]; 0: any
+  double joint_rate{};         ///< rate of the boom joints' samples [Hz], > 0
+  double joint_count{};        ///< resolution of their sensors' numbers [rad]; 0: any
   double joint_noise{};        ///< standard deviation of their angles [rad]
   double joint_speed_noise{};  ///< and of their speeds [rad/s]
   double gravity{};            ///< [m/s2]
@@ -211,7 +214,7 @@ struct MachineSettings {
   double duration{};           ///< [s]
   double step{};               ///< longest integration step [s], > 0
   std::int64_t start_stamp{};  ///< header stamp of t = 0 [ns]
-  std::uint64_t seed{};        ///< of all noise
+  std::uint64_t seed{};        ///< seed of all noise
 };
 
 /// A hammer MO-100 at 1000 J on an excavator's boom: works from about 2 s until 2 s before the end of 20 s.

@@ -7,10 +7,11 @@
 namespace hammer_loads::simulation {
 namespace {
 
-/// Of phi, by phi.
+/// Cosine and sine of the crank angle phi as jets by phi.
 struct CrankPlace {
   Jet cos, sin;
-  Jet sin_half;  ///< of phi/2 within the turn, phi in [0, 2 pi]: from the offset, so that it is exact at both ends
+  Jet sin_half;  ///< sine of phi/2 within the revolution, phi in [0, 2 pi]: from the offset, so that it is exact at
+                 ///< both ends
 };
 
 CrankPlace placeOf(TurnAngle angle) noexcept {

@@ -15,11 +15,11 @@ struct TurnAngle {
   bool mirrored{};  ///< rocker on the other side of the line A-D: it passed the dead centre without meeting a tool
 };
 
-/// What the links are to the crank's shaft at one angle.
+/// Load of the links on the crank's shaft at one angle.
 struct ShaftView {
   double inertia{};        ///< J: kinetic energy of the links = J/2 w^2 [kg m2]
   double inertia_slope{};  ///< dJ/dphi [kg m2/rad]
-  double weight_torque{};  ///< of the links' weight on the crank [N m]
+  double weight_torque{};  ///< torque of the links' weight on the crank [N m]
 };
 
 /// Load BY the links ON the hull, about the rocker pivot D, axes of hammer_hull (model.md 1).
@@ -29,7 +29,7 @@ struct Load {
   double torque_y{};  ///< [N m]
 };
 
-/// What one passage of the blow gives away at crank speed w.
+/// Energy, impulse and speeds of one passage of the blow at crank speed w.
 struct Strike {
   double rocker_speed_before{};  ///< psi' [rad/s]
   double rocker_speed_after{};   ///< psi' [rad/s]
@@ -60,7 +60,7 @@ class MovingLinks {
  public:
   MovingLinks(const Mechanism& mechanism, Level level);
 
-  /// Where the links are at a crank angle.
+  /// Places of the links at a crank angle.
   LinkBodies at(TurnAngle angle) const noexcept;
   ShaftView shaft(const LinkBodies& links, Gravity gravity) const noexcept;
   /// At crank speed w [rad/s] and acceleration e [rad/s2]. Newton-Euler in the mechanism frame.

@@ -37,8 +37,8 @@ struct OilCylinder {
   double closed_length{}, stroke{}, bore_hose{}, rod_hose{};  ///< [m], [m], [m3], [m3]
   OilLinkage linkage{};
 
-  /// Where the cylinder's rod ends, and the forces on the chain's pins for each N of its push; from the joint, axes of
-  /// the link before.
+  /// Place of the rod's end, and the forces on the chain's pins for each N of the cylinder's push; from the joint, axes
+  /// of the link before.
   struct Pins {
     PlanePoint rod;                           ///< [m]
     PlanePoint on_base, on_pivot, on_driven;  ///< [-]
@@ -46,7 +46,7 @@ struct OilCylinder {
   Pins pins(double angle) const;
 
   double length(double angle) const;  ///< [m]
-  double arm(double angle) const;     ///< what the joint's angle does to it [m/rad]
+  double arm(double angle) const;     ///< derivative of the length by the joint's angle [m/rad]
   /// Pressure in a chamber over the rod's way out at a place of the joint, per bulk modulus [1/m].
   double boreShare(double angle) const;
   double rodShare(double angle) const;
@@ -64,7 +64,7 @@ struct OilBoom {
   std::array<OilBoomLink, 3> links;
   std::array<OilCylinder, 3> cylinders;
   std::array<OilBoomCut, 3> cuts;
-  PlanePoint foot;        ///< where the hull bears on the tool's shoulder, from D in the hull's axes
+  PlanePoint foot;        ///< contact of hull and tool's shoulder, from D in the hull's axes
   double bulk_modulus{};  ///< [Pa]
 };
 

@@ -41,7 +41,7 @@ PlanePoint HammerOnBoom::strikingPlace(const State& s) const {
   return jointPlace(s, 3) + turnedBy(hullAngle(s)) * PlanePoint(-lk * std::cos(s.x[4]), lk * std::sin(s.x[4]));
 }
 
-/// What each coordinate does to the striking point's height along the tool.
+/// Derivatives of the striking point's height along the tool by the coordinates.
 HammerOnBoom::Coordinates HammerOnBoom::toolLift(const State& s) const {
   const PlanePoint place = strikingPlace(s), down = std::conj(turnedBy(hullAngle(s)));
   Coordinates lift = Coordinates::Zero();

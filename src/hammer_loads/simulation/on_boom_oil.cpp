@@ -1,4 +1,4 @@
-// What holds the joints: oil in two chambers a cylinder, what leaks between them, loose pins, seals.
+// Forces that hold the joints: oil in two chambers a cylinder, leakage between them, joint clearance, seals.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ HammerOnBoom::Chambers HammerOnBoom::heldChambers(std::size_t k, const State& he
   return {bore_push / c.bore_area, (bore_push - steady) / c.rod_area};
 }
 
-/// Of the oil about the joints [N m/rad].
+/// Stiffness of the oil about the joints [N m/rad].
 Eigen::Vector3d HammerOnBoom::stiffness(const State& held, const Eigen::Vector3d& weight) const {
   Eigen::Vector3d K;
   for (int j = 0; j < 3; ++j) {
@@ -37,7 +37,7 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held, const Eigen::Vector3d
   return K;
 }
 
-/// Of the rod's way out [m] and of what has leaked from bore to rod side [m3].
+/// Pressures by the rod's way out [m] and the volume leaked from bore to rod side [m3].
 HammerOnBoom::Chambers HammerOnBoom::chambersAt(std::size_t k, double way, double leaked, const Hold& hold) const {
   const OilCylinder& c = boom_.cylinders[k];
   const int j = static_cast<int>(k);
@@ -115,7 +115,7 @@ Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
   return by_oil + seals(s, by_oil);
 }
 
-/// What holds beside the steady push is shared by both chambers, as the rod's way would.
+/// Reads the pressures. Both chambers share the force beyond the steady push, as they would share the rod's way.
 void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
   const Eigen::Vector3d torque = oil(now_, hold);
   for (std::size_t k = 0; k < 3; ++k) {

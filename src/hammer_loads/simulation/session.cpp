@@ -38,7 +38,7 @@ bool stampsAreInstants(const CrankSensorSettings& sensor) noexcept {
   return sensor.stamp_noise == 0.0 && sensor.stamp_step == 0.0 && sensor.burst <= 1;
 }
 
-/// What the encoder shows of its own and the crank's angle, over many turns (contract, "Crank sensor").
+/// Reading of the encoder by its own and the crank's angle, over many revolutions.
 struct Encoded {
   double angle, speed;
 };

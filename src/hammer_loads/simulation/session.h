@@ -51,7 +51,7 @@ struct Session {
   std::vector<HullImuReading> imu;
   std::vector<PressureReading> pressures;
   std::vector<BlowTruth> blows;
-  std::vector<OnBoomTruth> on_boom;  ///< of a hull on its boom: at the instants `taken`
+  std::vector<OnBoomTruth> on_boom;  ///< truth of a hull on its boom: at the instants `taken`
 };
 
 /// Runs the machine, with its hull at rest or on its boom, and reads its sensors. Same settings, same readings, however
@@ -85,21 +85,21 @@ class SessionStream {
   void takeCrank(Session& session);
   void take(Session& session);
   CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) noexcept;
-  double measuredSpeed(double shown, double error) const noexcept;  ///< both [rad/s]
-  OnBoomSensors onBoomAt(double time);                              ///< of a hull on its boom, moved there
+  double measuredSpeed(double shown, double error) const noexcept;  ///< both arguments in [rad]
+  OnBoomSensors onBoomAt(double time);                              ///< sensors of a hull on its boom, moved there
   JointReading readJoints(double time);
   HullImuReading readImu(double time);
   PressureReading readPressures(double time);
   std::int64_t stampAt(double time) const noexcept;
-  std::int64_t busStamp(double time, std::int64_t& last) noexcept;  ///< of a message that waited for its bus
+  std::int64_t busStamp(double time, std::int64_t& last) noexcept;  ///< stamp of a message that waited for its bus
 
   MachineSettings settings_;
   std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machine_;
   NormalNoise noise_;
   NormalNoise message_draws_, loss_draws_, joint_noise_, imu_noise_, pressure_noise_;
   NormalNoise bus_draws_;
-  LowPass angle_, speed_;         ///< of the encoder
-  std::array<LowPass, 6> hoses_;  ///< of bore and rod sides
+  LowPass angle_, speed_;         ///< low-passes of the encoder
+  std::array<LowPass, 6> hoses_;  ///< low-passes of bore and rod sides
   double sensor_time_{};          ///< up to which they have followed [s]
   std::int64_t last_stamp_{}, last_joints_{}, last_imu_{}, last_pressures_{};
   std::vector<Taken> burst_;

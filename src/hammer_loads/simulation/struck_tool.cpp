@@ -11,7 +11,7 @@ struct Contact {
   double force, loss;  // [N], [W]
 };
 
-/// Of a spring that is pressed by a depth [m] at a speed [m/s].
+/// Force of a spring that is pressed by a depth [m] at a speed [m/s], and its loss.
 Contact press(double stiffness, double damping, double depth, double speed) noexcept {
   if (!(depth > 0.0)) return {0.0, 0.0};
   const double spring = stiffness * depth, force = std::max(0.0, spring * (1.0 + damping * speed));

@@ -10,7 +10,7 @@ namespace hammer_loads::simulation {
 struct ToolState {
   double way{};      ///< [m]
   double speed{};    ///< [m/s]
-  double yielded{};  ///< how far the rock gave way for good [m]
+  double yielded{};  ///< permanent deformation of the rock [m]
 };
 
 /// Contact forces grow from zero with the depth of pressing, and with its speed (Hunt and Crossley 1975): a spring and
@@ -25,7 +25,7 @@ class StruckTool {
   };
   struct Answer {
     double tool{}, retainer{};                            ///< up, on the rocker [N]
-    ToolState rate;                                       ///< of the tool's state
+    ToolState rate;                                       ///< derivative of the tool's state
     double contact_loss{}, rock_loss{}, retainer_loss{};  ///< [W]
   };
 
@@ -33,7 +33,7 @@ class StruckTool {
 
   Answer answer(Striker striker, const ToolState& tool, double gravity_down) const noexcept;
   double energy(Striker striker, const ToolState& tool) const noexcept;  ///< kinetic and elastic [J]
-  /// Who touches whom, for a step that must not run over a change: equal means the same contacts.
+  /// Code of the contacts, for a step that must not run over a change: equal means the same contacts.
   int contacts(Striker striker, const ToolState& tool) const noexcept;
   static bool touches(int contacts) noexcept { return (contacts & 3) != 0; }
   /// For the turn that begins at a time [s]. Draws the same numbers whatever is asked for.
@@ -47,7 +47,7 @@ class StruckTool {
   StrikeSettings s_;
   double blank_share_;
   NormalNoise draws_;
-  double place_{};  ///< of the tool's top [m]
+  double place_{};  ///< place of the tool's top [m]
   bool there_{true};
 };
 

@@ -125,7 +125,7 @@ WorkingMachine::State WorkingMachine::step(double dt) const noexcept {
   return moved(dt, mean, end);
 }
 
-/// Where the step in hand must end: at the dead centre, or at a tool before it.
+/// Crank offset at which the step in hand must end: the dead centre, or a tool before it.
 double WorkingMachine::eventOffset() const noexcept {
   const double early = -settings_.blow.tool_early;
   const bool awaited = now_.before_blow && !now_.mirrored && !now_.met && !next_blow_.blank;

@@ -49,10 +49,10 @@ struct BlowTruth {
   bool whole_turn{};             ///< began with a blow and went forward all the way
   double contact{};              ///< time that all its touches lasted [s]; of an elastic machine alone, as what follows
   double retainer_impulse{};     ///< along +z BY the hull's retainer ON the rocker [N s]
-  int touches{};                 ///< of tool and retainer
+  int touches{};                 ///< number of touches of tool and retainer
 };
 
-/// Where the energy went since the start [J]. Balances are tested:
+/// Energy balance since the start [J]. It is tested:
 /// kinetic + blows + losses + stops = motor - friction + weight;  stored = supply - motor - valves.
 struct EnergyAccount {
   double motor{};     ///< work of the pressure on the shaft
@@ -63,7 +63,7 @@ struct EnergyAccount {
   double blows{};     ///< given to the tool
   double losses{};    ///< in linkage and crank at the blows
   double stops{};     ///< lost when the crank, turning back, comes to rest on the tool
-  double kinetic{};   ///< of links and drive now, with what twists the coupling
+  double kinetic{};   ///< present energy of links and drive, with the twist of the coupling
   double stored{};    ///< in the compliance now
 };
 
@@ -109,7 +109,7 @@ class WorkingMachine {
   struct Outside {
     double time{};  ///< [s]
     Gravity gravity;
-    double flow{};  ///< of the pump [m3/s]
+    double flow{};  ///< flow of the pump [m3/s]
   };
   struct State {
     Outside outside;
@@ -120,7 +120,7 @@ class WorkingMachine {
     Vector y{};
     TurnAngle angle() const noexcept { return {y[kOffset], before_blow, mirrored}; }
   };
-  /// How the next blow will be.
+  /// Properties of the next blow.
   struct NextBlow {
     double restitution{};
     bool blank{};
@@ -154,7 +154,7 @@ class WorkingMachine {
   double step_;                                                            ///< longest [s]
   NormalNoise draws_;
   NextBlow next_blow_;
-  std::optional<Strike> early_;  ///< of this turn, at early_time_
+  std::optional<Strike> early_;  ///< strike of this revolution, at early_time_
   double early_time_{}, early_crank_speed_{};
 
   struct Turn {
