@@ -19,7 +19,7 @@ struct ChannelCount {
   double sn_knee_range{RunRecord::kUnknown};  ///< [MPa]
   double sn_knee_cycles{RunRecord::kUnknown}, sn_slope{RunRecord::kUnknown}, sn_slope_below{RunRecord::kUnknown};
   double mean_stress_sensitivity{RunRecord::kUnknown};
-  std::vector<std::uint32_t> steps, low;  ///< of closed cycles
+  std::vector<std::uint32_t> steps, low;  ///< steps of closed cycles, and their lower class
   std::vector<std::uint64_t> count;
   std::vector<std::uint32_t> residue;  ///< classes of turning points in time order
 };
@@ -42,7 +42,7 @@ struct BudgetRow {
   std::string quantity;  ///< message/field, or equivalent_range_3/CHANNEL
   double value{}, deviation{};
   std::string source;
-  double share{};  ///< of the variance; those of a quantity sum to 1
+  double share{};  ///< part of the variance; the parts of a quantity sum to 1
 };
 
 }  // namespace hammer_loads

@@ -15,7 +15,7 @@ class Sha256 {
  public:
   Sha256();
   Sha256& add(std::string_view bytes);
-  /// Of all that was added; the last call.
+  /// Digest of all that was added, in hexadecimal digits; to be called last.
   std::string hex();
 
  private:
@@ -25,10 +25,10 @@ class Sha256 {
   std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
-/// Of texts, each with its length, so that no two lists give the same.
+/// Digest of texts, each with its length, so that different lists have different digests.
 std::string sha256Of(const std::vector<std::string>& texts);
 
-/// Of the bytes of the files, one behind the other. Throws std::runtime_error where one cannot be read.
+/// Digest of the bytes of the files, one behind the other. Throws std::runtime_error where one cannot be read.
 std::string sha256OfFiles(const std::vector<std::string>& files);
 
 }  // namespace hammer_loads

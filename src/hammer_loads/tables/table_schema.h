@@ -13,14 +13,14 @@ constexpr int kTablesVersion = 1;
 struct TableColumn {
   std::string name;
   bool is_integer{};
-  std::string unit, description;  ///< of the field's comment, "[unit] description"
+  std::string unit, description;  ///< unit and description of the field's comment, "[unit] description"
 };
 
 /// Everything up to the first row, with a comment for each column (life::columnTexts): one transaction is begun. The
 /// same rows give the same bytes.
 std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow);
 
-/// Why an existing file must stay; empty: it is a file of these tables.
+/// Reason why an existing file must stay; empty: it is a file of these tables.
 std::string whyTablesMustStay(const std::string& file);
 
 }  // namespace hammer_loads

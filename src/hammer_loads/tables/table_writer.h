@@ -21,7 +21,7 @@ struct TurnRow {
   const std::vector<double>& values;
 };
 
-/// Of a boom as its vibration shows it at a turn's end; cylinder: its name; mode: from 1.
+/// Oil of a boom's cylinder or vibration mode at the end of a revolution; cylinder: its name; mode: from 1.
 struct BoomCylinderRow {
   std::uint64_t turn{};
   std::string cylinder;

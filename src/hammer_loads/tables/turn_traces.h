@@ -32,7 +32,7 @@ class TurnTraces {
 
   /// The turn of the largest amplitude, the first of several; nothing before a whole turn.
   const std::optional<TurnTrace>& worst() const { return worst_; }
-  /// Of the turns kept, the one with their median amplitude; null before a whole turn.
+  /// Trace with the median amplitude of the kept ones; null before a whole revolution.
   const TurnTrace* typical() const;
 
  private:
