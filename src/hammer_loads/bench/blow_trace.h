@@ -15,7 +15,7 @@ struct ForceTrace {
 };
 
 struct BlowTrace {
-  std::string machine;  ///< as in elasticKinds()
+  std::string machine;  ///< name in elasticKinds()
   ForceTrace truth;     ///< each 0.1 ms, without deviation
   ForceTrace linkage, elastic;
 };
@@ -23,7 +23,7 @@ struct BlowTrace {
 /// The first blow once the rod is known, from 5 ms before it to 45 ms after it.
 BlowTrace blowTrace(const Settings& settings);
 
-/// As a JSON object.
+/// Trace as a JSON object.
 std::string json(const BlowTrace& trace);
 
 }  // namespace hammer_loads::accuracy

@@ -16,18 +16,19 @@ namespace hammer_loads::accuracy {
 /// The torques are those of hammer, motion, vibration and rock, without weight; the sections those of the shipped file.
 struct BoomErrors {
   SignalError force_x, force_z, moment, torque[3], section[3], contact;
-  LifeError life_force_z, life_torque[3], life_section[3];  ///< of torques with weight, as they are counted
+  LifeError life_force_z, life_torque[3],
+      life_section[3];  ///< errors of force and of torques with weight, as they are counted
   std::size_t samples{}, refused{}, within{}, blows{};
-  std::size_t wrench_within[3]{};         ///< of force x, force z, moment within two deviations
-  double worst_force{}, largest_force{};  ///< as a vector [N]
+  std::size_t wrench_within[3]{};         ///< number of force x, force z, moment within two standard deviations
+  double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]
   double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
   std::size_t sections_within{};          ///< bending moments within two deviations
   std::size_t lost_as_shown{};            ///< the flag of a press force that is lost is right
   bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_pressure_fit{}, warned_of_imu_stamps{},
       warned_of_damping{};
   std::size_t unknown{};  ///< the rock's force is said not to be known
-  double energy_sum{};    ///< of the blows, relative
-  double frequency{};     ///< of the lowest mode at the end [Hz]
+  double energy_sum{};    ///< sum of the blows' relative errors
+  double frequency{};     ///< frequency of the lowest mode at the end [Hz]
 
   bool warnedOfPressures() const { return warned_of_pressure_stamps || warned_of_pressure_fit; }
   double worstTorque() const { return std::max({torque[0].rms(), torque[1].rms(), torque[2].rms()}); }
@@ -37,7 +38,7 @@ struct BoomErrors {
   double leastCorrelation() const {
     return std::min({section[0].correlation(), section[1].correlation(), section[2].correlation()});
   }
-  double rmsForce() const {  ///< as a vector, of its largest size
+  double rmsForce() const {  ///< magnitude of the error vector, over the largest force
     return std::sqrt((force_x.square + force_z.square) / static_cast<double>(samples)) / largest_force;
   }
   double worstForce() const { return worst_force / largest_force; }
@@ -48,7 +49,7 @@ struct BoomErrors {
   double sectionsCovered() const { return part(sections_within) / 3.0; }
   double covered() const { return part(within) / 3.0; }
   double energy() const { return energy_sum / static_cast<double>(std::max<std::size_t>(1, blows)); }  ///< mean
-  /// How wide deviations are over the errors, as root mean squares: of the torque that is worst in that.
+  /// Largest ratio of the torques' deviations to their errors, as root mean squares.
   double widest() const {
     double widest = 0.0;
     for (int j = 0; j < 3; ++j) widest = std::max(widest, std::sqrt(torque_said[j] / torque[j].square));

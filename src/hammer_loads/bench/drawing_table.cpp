@@ -16,7 +16,7 @@
 namespace hammer_loads::accuracy {
 namespace {
 
-/// Of the drawing's hammer, one that it may be. Lengths keep the change point.
+/// Hammer drawn from the distribution of the nominal one. Lengths keep the change point.
 HammerParameters drawn(HammerParameters p, std::uint64_t seed, double off) {
   simulation::NormalNoise noise(seed);
   const HammerParameters drawing = p;

@@ -15,7 +15,7 @@ namespace hammer_loads::accuracy {
 struct DrawingRow {
   using Figure = FigureErrors::Result;
   std::uint64_t seed{};
-  std::array<Figure, 3> samples;      ///< of the peak of force_x, force_z, torque_y
+  std::array<Figure, 3> samples;      ///< errors over the peak of force_x, force_z, torque_y
   Figure energy, impulse, amplitude;  ///< relative: of the blow; of Fz over the turn; its peak
   Figure range;                       ///< relative: of Fz's damage-equivalent range at kLifeSlope
 };
@@ -29,7 +29,7 @@ std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings, std
 struct DrawingSummary {
   const char* quantity;
   FigureErrors::Result all;
-  double least{1.0};  ///< of the parts within two deviations, of all drawings
+  double least{1.0};  ///< smallest part within two standard deviations of any drawing
 };
 std::vector<DrawingSummary> summary(const std::vector<DrawingRow>& rows);
 

@@ -84,8 +84,8 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
   return errors;
 }
 
-/// What a ledger counts of Fz, by the truth ten times as often as the samples: impacts in worn pins last 0.3 ms. What
-/// is withheld is done to the hull all the same.
+/// Judges the ledger's count of Fz against the truth at ten times the sample rate, as impacts in worn pins last 0.3 ms.
+/// Withheld loads act on the hull all the same.
 void judgeLedger(const Settings& settings, const PipelineSettings& pipeline, const simulation::Session& session,
                  const MachineSettings& machine, ElasticErrors& errors) {
   SessionPlayer player(settings.mechanism, pipeline, {}, session);

@@ -14,20 +14,20 @@
 
 namespace hammer_loads::accuracy {
 
-/// Of Fx, Fz and the moment in one part of the turn.
+/// Errors of Fx, Fz and the moment in one part of the revolution.
 struct PartErrors {
-  std::array<double, 3> rms{};      ///< of the errors, over `scale` [-]
+  std::array<double, 3> rms{};      ///< root mean square of the errors, over `scale` [-]
   std::array<double, 3> covered{};  ///< part of the errors within two of their deviations [-]
   std::array<double, 3> scale{};    ///< [N, N, N m]
-  int count{};                      ///< of samples
+  int count{};                      ///< number of samples
 };
 
 struct ElasticErrors {
   PartErrors whole;   ///< over the largest of the truth
   PartErrors strike;  ///< crank from 180 to 360 deg; as above
   PartErrors after;   ///< 6 to 40 ms after the first touch; over the root mean square of the truth there
-  /// Of Fz: without the samples in which the rocker touches tool or retainer, whose impulse is the blow's and no
-  /// wrench; with them.
+  /// Errors of Fz's damage-equivalent range, without and with the samples in which the rocker touches tool or retainer;
+  /// their impulse belongs to the blow and not to the wrench.
   LifeFigure life, life_with_touch;
   double withheld{};  ///< part of the samples without a wrench, those beside the blow among them [-]
 };
@@ -49,14 +49,14 @@ struct ElasticKind {
 
 /// The given hammer with crank and rod as it has them, 1 kHz, 4096 counts and speeds unless the name says otherwise.
 std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer, std::uint64_t seed = MachineChoice::kSeed);
-/// Of one session through the pipeline at a level (seeded: the same on every run).
+/// Errors of one session through the pipeline at a level (seeded: equal on every run).
 ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, Level level);
 /// Every machine at levels rocker, linkage and elastic, some twenty seconds of computing.
 std::vector<ElasticRow> elasticTable(const Settings& settings, const MachineChoice& choice = {});
 
-/// As a table in Markdown.
+/// Rows as a table in Markdown.
 std::string markdown(const std::vector<ElasticRow>& rows);
-/// As a JSON array of objects, errors as parts of one.
+/// Rows as a JSON array of objects, errors as parts of one.
 std::string json(const std::vector<ElasticRow>& rows);
 
 }  // namespace hammer_loads::accuracy

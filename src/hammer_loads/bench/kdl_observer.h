@@ -16,7 +16,7 @@ struct OuterLoadErrors {
   SignalError force_x, force_z, moment;
 };
 
-/// What the observer needs beside the readings: how fast it follows [1/s]; it does not bear much more at 500 Hz.
+/// Gains of the observer [1/s], its only parameters; much larger ones are unstable at 500 Hz.
 constexpr double kObserverGains[] = {30.0, 100.0, 300.0, 1000.0};
 
 /// KDL::ChainExternalWrenchEstimator (orocos_kdl 1.5 or newer) at each reading of the pressures from a time to another

@@ -1,4 +1,4 @@
-/// How far the damage-equivalent range of an estimated load is from that of the true one.
+/// Error of the damage-equivalent range of an estimated load.
 #pragma once
 
 #include <string>
@@ -9,15 +9,16 @@
 
 namespace hammer_loads::accuracy {
 
-constexpr double kLifeSlope = 5.0;  ///< of the S-N line; damage errs about this many times as much
+constexpr double kLifeSlope =
+    5.0;  ///< slope of the S-N line; the error of the damage is about this many times as large
 
-/// Of the damage-equivalent range, over the true one: the error, > 0 too large, and the standard deviations that are
-/// said of it, of turns and of what is the same in all of them; NaN: none is.
+/// Error of the damage-equivalent range over the true one, > 0 too large, and its stated standard deviations, of single
+/// revolutions and of the part equal in all of them; NaN: none.
 struct LifeFigure {
   double error{}, own{}, common{};
 };
 
-/// Both series sample by sample; cycles counted by ASTM E1049, without a grid.
+/// Cycles of both series, sample by sample, counted by ASTM E1049, without a grid.
 struct LifeError {
   void add(double estimate, double truth, const life::LoadError& said = {}) {
     addEstimate(estimate, said), addTruth(truth);
@@ -37,10 +38,10 @@ struct LifeError {
   double square_{}, own_{}, common_{};
 };
 
-/// Of what a ledger has counted of a channel, its instants between samples among them, against the true load's cycles.
+/// Error of a ledger's count of a channel, which includes instants between samples, against the true load's cycles.
 LifeFigure figureOf(const life::CycleCount& counted, const life::ExactCycles& right);
 
-/// As a JSON object; what is not known is null.
+/// Figure as a JSON object; an unknown value is null.
 std::string json(const LifeFigure& figure);
 
 }  // namespace hammer_loads::accuracy

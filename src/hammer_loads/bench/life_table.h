@@ -9,8 +9,8 @@
 
 namespace hammer_loads::accuracy {
 
-/// As a table in Markdown: of hull force z, the worst joint's torque and bending at the worst cut, by the machine and
-/// its sensors; of machines whose rod gives, at levels linkage and elastic, hull force z alone.
+/// Errors as a table in Markdown: hull force z, the worst joint's torque and bending at the worst cut, by the machine
+/// and its sensors. For machines with an elastic connecting rod, at levels linkage and elastic, hull force z alone.
 std::string lifeMarkdown(const std::vector<BoomRow>& boom, const std::vector<ElasticRow>& elastic);
 
 }  // namespace hammer_loads::accuracy

@@ -64,8 +64,8 @@ std::vector<Kind> kinds() {
   };
 }
 
-/// Of a sensor that a drive filters, that moves, or whose clock is coarse. Stamps that jitter keep their order, so that
-/// they are taken as they are.
+/// Machines whose sensor is filtered by a drive, moves, or has a coarse clock. Stamps that jitter keep their order, so
+/// that they are used as they are.
 std::vector<Kind> sensorKinds() {
   const auto held = [](double jitter, double lag, double scale) {
     return [=](MachineSettings& s) {
@@ -111,7 +111,7 @@ MachineSettings machineOf(const Settings& settings, const Kind& kind, double rat
   return machine;
 }
 
-/// What `calibrate` would have from the recording; each key only where it is determined.
+/// Applies the result of `calibrate` for the recording; each key only where it is determined.
 void applyCalibration(const simulation::Session& session, const MachineSettings& machine, HammerParameters& hammer,
                       PipelineSettings& pipeline) {
   std::vector<calibration::RecordedSample> samples;

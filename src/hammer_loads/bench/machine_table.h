@@ -11,14 +11,13 @@
 
 namespace hammer_loads::accuracy {
 
-/// What a usual machine has of everything: zero half a degree off, 1024 counts, a PC's stamps, no speeds, blows that
-/// differ.
+/// Sets typical sensor errors: zero half a degree off, 1024 counts, a PC's stamps, no speeds, blows that differ.
 void makeTypical(simulation::MachineSettings& machine);
 
 /// Machines of a table.
 struct MachineChoice {
   std::string rows;           ///< regular expression that name and rate of a machine contain; empty: all of them
-  std::uint64_t seed{kSeed};  ///< of the machines' random numbers
+  std::uint64_t seed{kSeed};  ///< seed of the machines' random numbers
   static constexpr std::uint64_t kSeed = 77;
 
   bool has(const std::string& name) const;
@@ -26,7 +25,7 @@ struct MachineChoice {
 
 struct MachineRow {
   std::string machine;
-  double rate{};  ///< of crank samples [Hz]
+  double rate{};  ///< rate of crank samples [Hz]
   bool speed{};   ///< speeds are measured too
   SessionErrors errors;
 };
@@ -35,9 +34,9 @@ struct MachineRow {
 /// computing.
 std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoice& choice = {});
 
-/// As a table in Markdown.
+/// Rows as a table in Markdown.
 std::string markdown(const std::vector<MachineRow>& rows);
-/// As a JSON array of objects, errors as parts of one.
+/// Rows as a JSON array of objects, errors as parts of one.
 std::string json(const std::vector<MachineRow>& rows);
 
 }  // namespace hammer_loads::accuracy

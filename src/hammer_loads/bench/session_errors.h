@@ -20,17 +20,17 @@ struct BlowAt {
   double time{}, energy{}, tool_impulse{};
   double turn_peak{std::numeric_limits<double>::quiet_NaN()};
   double turn_impulse_z{std::numeric_limits<double>::quiet_NaN()};
-  double energy_std{}, tool_impulse_std{};  ///< of an estimate
+  double energy_std{}, tool_impulse_std{};  ///< standard deviations of an estimate
 };
 
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
 struct SessionErrors {
   double rms_x{}, rms_z{}, rms_torque{};
-  double worst_x{}, worst_z{}, worst_torque{};        ///< of one sample
+  double worst_x{}, worst_z{}, worst_torque{};        ///< errors of one sample
   double covered_x{}, covered_z{}, covered_torque{};  ///< part of the errors within two of their deviations
-  double rms_force{}, worst_force{};                  ///< of the force as a vector, of its largest size
+  double rms_force{}, worst_force{};                  ///< errors of the force as a vector, over its largest magnitude
   double turn_peak{};                                 ///< relative, worst turn
-  double turn_impulse{};                              ///< of the blow's tool impulse, worst turn
+  double turn_impulse{};                              ///< error over the blow's tool impulse, worst turn
   double blow_time{};                                 ///< [s], worst
   /// Relative, worst of those that are known; NaN where none is.
   double energy{std::numeric_limits<double>::quiet_NaN()};

@@ -26,8 +26,8 @@ std::string energyJson(const SessionErrors& errors);
 SessionErrors judge(const SessionRun& run, const simulation::Session& session,
                     const simulation::MachineSettings& machine);
 
-/// The same by the truth at the stamps that were published, for sessions whose stamps are refitted. shift: of all
-/// stamps against the instants, which no sequence shows [s].
+/// Judges by the truth at the published stamps, for sessions whose stamps are refitted. shift: of all stamps against
+/// the instants, which no sequence shows [s].
 SessionErrors judgeAtStamps(const SessionRun& run, const simulation::Session& session,
                             const simulation::MachineSettings& machine, double shift);
 

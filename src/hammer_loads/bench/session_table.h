@@ -10,8 +10,8 @@
 namespace hammer_loads::accuracy {
 
 struct SessionRow {
-  double rate{};  ///< of crank samples [Hz]
-  int counts{};   ///< of the encoder per turn
+  double rate{};  ///< rate of crank samples [Hz]
+  int counts{};   ///< counts of the encoder per revolution
   bool speed{};   ///< speeds are measured too
   SessionErrors errors;
 };
@@ -19,9 +19,9 @@ struct SessionRow {
 /// Simulated working sessions of the given hammer (seeded: the same on every run), some 20 s of computing.
 std::vector<SessionRow> sessionTable(const Settings& settings);
 
-/// As a table in Markdown.
+/// Rows as a table in Markdown.
 std::string markdown(const std::vector<SessionRow>& rows);
-/// As a JSON array of objects, errors as parts of one.
+/// Rows as a JSON array of objects, errors as parts of one.
 std::string json(const std::vector<SessionRow>& rows);
 
 }  // namespace hammer_loads::accuracy

@@ -1,4 +1,4 @@
-/// How far an estimated signal is from the true one.
+/// Error of an estimated signal against the true one.
 #pragma once
 
 #include <algorithm>
