@@ -13,7 +13,7 @@
 namespace hammer_loads {
 
 inline constexpr double kClaimedStraightShare = 0.8;  ///< Gebel 2017, conclusion
-inline constexpr double kClaimedDeviation = 0.03;     ///< the same
+inline constexpr double kClaimedDeviation = 0.03;     ///< Gebel 2017, conclusion
 
 /// A figure and the slider position [m] where it occurs.
 struct Extreme {
@@ -28,8 +28,8 @@ struct DesignFigures {
   double path_length{};                   ///< L of one jaw edge [m]
   double line_height{};                   ///< y [m]
   double scoop_height{};                  ///< [m]; negative if the open end drops below the line
-  double deviation_first_80{};            ///< of the first 80 % of L [-]
-  double deviation_whole{};               ///< of all of L [-]
+  double deviation_first_80{};            ///< deviation over the first 80 % of L [-]
+  double deviation_whole{};               ///< deviation over all of L [-]
   double straight_share_band{};           ///< for a tolerance of 1.5 %: the paper's 3 % read as the width of a band [-]
   double straight_share_off{};            ///< for a tolerance of 3 %: read as the distance from the band's middle [-]
   Extreme least_determinant;              ///< |det J| [m4]

@@ -15,7 +15,7 @@ constexpr int kMostFoldSteps = 100000;
 struct Local {
   Closure closure;
   Eigen::Vector3d df1, df2, ddet;
-  Eigen::Vector3d tangent() const { return df1.cross(df2); }  ///< its first component is det J
+  Eigen::Vector3d tangent() const { return df1.cross(df2); }  ///< direction whose first component is det J
 };
 
 Local localAt(const LeverGroup& group, const FirstRocker& rocker, const Eigen::Vector3d& y) {

@@ -1,4 +1,4 @@
-/// Where a branch of the lever group ends: folds, the poses with det J = 0.
+/// Ends of a branch of the lever group: folds, the poses with det J = 0.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct FirstRocker {
   Planar armAt(double theta1) const noexcept { return o1a * direction(theta1); }  ///< from O1 to A
 };
 
-/// How a search along a branch ended.
+/// End of a search along a branch.
 struct BranchEnd {
   enum class Kind {
     kNone,      ///< theta1 moved by the whole span without a fold

@@ -18,7 +18,7 @@
 
 namespace hammer_loads {
 
-/// Where the working branch ends.
+/// End of the working branch.
 struct SliderLimit {
   enum class Kind {
     kDeadPoint,  ///< O1, H and G in line: the slider cannot move rocker 1 further
@@ -32,7 +32,7 @@ struct SliderLimit {
 /// "dead point", "fold" or "crossing of branches".
 const char* nameOf(SliderLimit::Kind kind) noexcept;
 
-/// Why there is no pose for a slider position.
+/// Reason why there is no pose for a slider position.
 enum class SliderRefusal {
   kNone,
   kNotFinite,        ///< NaN or infinite
@@ -58,7 +58,7 @@ class Grapple {
 
   /// kNone inside the working branch; the stroke is not considered.
   SliderRefusal judge(double slider) const noexcept;
-  /// The same, then kOutsideStroke beyond the stroke by more than slider_margin.
+  /// Judges as judge(), and returns kOutsideStroke beyond the stroke by more than slider_margin.
   SliderRefusal judgeInStroke(double slider) const noexcept;
   /// One line: name, slider position, unit, what is allowed.
   std::string explain(SliderRefusal refusal, double slider, const std::string& name = "slider position") const;

@@ -1,4 +1,4 @@
-/// Where the grapple's links are at one slider position, and how they move with it.
+/// Pose of the grapple's links at one slider position, and their motion with it.
 #pragma once
 
 #include "hammer_loads/grapple/vectors.h"

@@ -14,7 +14,8 @@ namespace hammer_loads {
 /// Source of the slider's acceleration, which a JointState does not carry.
 enum class SliderAcceleration {
   kNone,        ///< neglected: accelerations are those of a slider at its present speed
-  kDifference,  ///< of the last two velocities over the time between them: that of half a sample period ago
+  kDifference,  ///< difference of the last two velocities over the time between them: the value half a sample period
+                ///< ago
 };
 
 struct GrappleSettings {
@@ -30,7 +31,7 @@ struct GrappleSettings {
 /// one line each. A grapple has no default: each of its keys must be given.
 Checked<GrappleSettings> loadGrappleSettings(const std::string& config_directory, const ParameterMap& given);
 
-/// The same from files; a later file's key replaces an earlier one's.
+/// Settings from files; a later file's key replaces an earlier one's.
 Checked<GrappleSettings> loadGrappleSettings(const std::string& config_directory,
                                              const std::vector<std::string>& files);
 

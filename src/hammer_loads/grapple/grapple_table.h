@@ -11,7 +11,7 @@ namespace hammer_loads {
 
 struct TableRequest {
   std::optional<double> from;     ///< slider position of the first row [m]; without it the closed one
-  std::optional<double> to;       ///< of the last row [m]; without it the open one
+  std::optional<double> to;       ///< slider position of the last row [m]; by default the open one
   std::optional<double> opening;  ///< instead: one row, where the jaw edges are this far apart [m]
   int steps{};                    ///< >= 1; equidistant, one row more than that
   bool summary{};                 ///< figures of the path between from and to instead of rows

@@ -21,7 +21,7 @@ class GrappleTracker {
   void reset() noexcept { has_motion_ = false; }
 
   bool hasMotion() const noexcept { return has_motion_; }  ///< a sample has been accepted since the start or reset()
-  /// Of the last accepted sample. Precondition of these four: hasMotion().
+  /// Results of the last accepted sample. Precondition of these four: hasMotion().
   const SliderMotion& slider() const noexcept { return slider_; }
   const GrappleMotion& motion() const noexcept { return motion_; }
   JawMotion right() const noexcept { return rightJaw(motion_, slider_.velocity, slider_.acceleration); }

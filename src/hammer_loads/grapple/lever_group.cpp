@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLargestStep = 0.3;  ///< of one Newton step [rad]: longer ones leave the basin
+constexpr double kLargestStep = 0.3;  ///< largest Newton step [rad]: longer ones leave the basin
 constexpr double kLastStep = 1e-10;   ///< [rad]: its square is below rounding
 constexpr double kNoisyStep = 1e-8;   ///< [rad]: beside a fold steps may stay as long as this; its square is rounding
 constexpr double kSlightTurn = 5e-3;  ///< [rad]: its 6th power over 720 is below rounding

@@ -100,7 +100,7 @@ std::optional<StampOrder::Verdict> GrappleFlow::order(const ros::Time& stamp) no
   return verdict;
 }
 
-/// Of the slider [m/s2]; nothing where it is not known.
+/// Acceleration of the slider [m/s2]; none where it is not known.
 std::optional<double> GrappleFlow::acceleration(const Reading& reading,
                                                 const StampOrder::Verdict& verdict) const noexcept {
   if (!reading.velocity) return std::nullopt;

@@ -19,12 +19,12 @@
 
 namespace hammer_loads {
 
-/// Why a message gave no sample; what the linkage refuses is a SliderRefusal.
+/// Reason why a message gave no sample; refusals by the linkage are a SliderRefusal.
 enum class MessageRefusal : std::size_t {
   kMissingJoint,  ///< the slider joint is not in the message
   kShortArray,    ///< fewer positions (or, where there are any, velocities) than names
   kOutOfOrder,    ///< older than the last accepted sample
-  kDuplicate,     ///< as old as the last accepted sample
+  kDuplicate,     ///< stamp equal to that of the last accepted sample
   kCount
 };
 
@@ -78,7 +78,7 @@ class GrappleFlow {
   GrappleSettings settings_;
   GrappleTracker tracker_;
   StampOrder stamps_;
-  bool has_velocity_{}, has_acceleration_{};  ///< of the last accepted sample
+  bool has_velocity_{}, has_acceleration_{};  ///< flags of the last accepted sample
   std::array<std::uint64_t, static_cast<std::size_t>(MessageRefusal::kCount)> message_refusals_{};
   std::array<double, kSliderRefusalKinds> last_refused_{};  ///< slider position [m]
   std::uint64_t without_velocity_{}, without_acceleration_{};

@@ -39,7 +39,7 @@ class GrappleNode final : public LiveNode {
   GrappleDiagnostics diagnostics_;
   LogServices log_services_;
   ros::Subscriber joint_states_;
-  std::string topic_;  ///< of joint_states_
+  std::string topic_;  ///< topic of joint_states_
 };
 
 }  // namespace hammer_loads

@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-/// Of the jaw edge P.
+/// Outputs of the jaw edge P.
 struct JawOutputs {
   /// jaw: left or right.
   explicit JawOutputs(const std::string& jaw)
