@@ -27,7 +27,7 @@ double covered(const ForceTrace& estimate, const ForceTrace& truth) {
 }
 
 /// What the picture is to show: a ring of some kilonewtons, which linkage knows the size of and elastic follows.
-TEST(BlowTrace, ShowsARingThatOneLevelFollows) {
+TEST(BlowTrace, ShowsAVibrationThatOneLevelFollows) {
   const BlowTrace trace = blowTrace(test::heldHull(*load(configDirectory(), {}).value));
   EXPECT_EQ(trace.truth.time.size(), 501U);
   EXPECT_GE(trace.linkage.time.size(), 40U);

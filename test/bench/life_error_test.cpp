@@ -25,7 +25,7 @@ TEST(LifeError, IsTheFactorOfTheLoad) {
 TEST(LifeError, AConstantErrorCostsNothing) { EXPECT_NEAR(errorOf(1.0, 5e4).figure().error, 0.0, 1e-12); }
 
 /// Two turns of ranges 20 and 60: weighed by the range, 20 is known to hypot(1, 2) and 60 to hypot(6, 8) of its own.
-TEST(LifeError, SaysWhatTheRangesOfTurnsSay) {
+TEST(LifeError, HasTheDeviationsOfTheRangesOfTurns) {
   LifeError error;
   const auto turn = [&](double top, double least_own, double top_own) {
     error.add(-10.0, -10.0, {least_own, 0.5}), error.add(top, top, {top_own, 1.5});
@@ -38,7 +38,7 @@ TEST(LifeError, SaysWhatTheRangesOfTurnsSay) {
   EXPECT_NEAR(figure.common, 2.0 * (20.0 + 60.0) / (20.0 * 20.0 + 60.0 * 60.0), 1e-12);
 }
 
-TEST(LifeError, SaysNothingOfLoadsWithoutDeviations) {
+TEST(LifeError, GivesNoDeviationForLoadsWithoutOne) {
   LifeError error;
   error.add(0.0, 0.0), error.add(1.0, 1.0);
   error.endTurn();

@@ -30,7 +30,7 @@ TEST_F(ShippedBoom, ModesSolveTheEquationOfMotion) {
   }
 }
 
-TEST_F(ShippedBoom, ItsWeightStiffensOrSoftensIt) {
+TEST_F(ShippedBoom, IsStiffenedOrSoftenedByItsWeight) {
   const ChainDynamics dynamics(boom_.chain());
   std::mt19937 random(43);
   for (int i = 0; i < 30; ++i) {

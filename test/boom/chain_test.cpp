@@ -60,7 +60,7 @@ TEST(Chain, KnowsItsLinksAndJoints) {
   EXPECT_EQ(chain.upper()[2], 2.0);
 }
 
-TEST(Chain, WhatIsFixedBesideItCountsAndWhatMovesIsTold) {
+TEST(Chain, IncludesFixedNeighboursAndReportsMovingOnes) {
   const Checked<Chain> made = oddChain();
   ASSERT_TRUE(made.value);
   EXPECT_EQ(made.value->link(3).body.mass, 14.0);
@@ -122,7 +122,7 @@ void expectProblems(const Bad& bad) {
   }
 }
 
-TEST(Chain, SaysWhatIsWrong) {
+TEST(Chain, ReportsEachFault) {
   const std::string two = link("base_link", "") + link("hammer_hull");
   const std::string hinge = joint("j", "revolute", "base_link", "hammer_hull");
   const std::string negative = link("hammer_hull",

@@ -93,7 +93,7 @@ TEST(ContactFollowing, PressuresShowWhatTheOilCarriesAndTheForceLate) {
   EXPECT_EQ(run.allocations, 0U);
 }
 
-TEST(ContactFollowing, WithAnImuTheForceIsThatOfTheInstant) {
+TEST(ContactFollowing, GivesTheForceOfTheInstantWithAnImu) {
   OnRock run(true, true);
   run.run(4.0, 1.0);
   EXPECT_LT(run.torque.rms(), 0.04);
@@ -113,7 +113,7 @@ TEST(ContactFollowing, AHullThatHangsCountsAsFreeAndLandsAgain) {
   EXPECT_EQ(run.boom.vibration().contact(), 0.0) << "it was lifted off";
 }
 
-TEST(ContactFollowing, WithoutPressuresABouncingHullTeachesNothing) {
+TEST(ContactFollowing, LearnsNothingFromABouncingHullWithoutPressures) {
   OnRock run(true, false, true);
   run.run(6.0, 0.0);
   const ModeIdentifier& identifier = *run.boom.vibration().identifier();

@@ -69,7 +69,7 @@ TEST_F(Cylinders, ForceDoesTheOppositeWorkOfTheLoad) {
   }
 }
 
-TEST_F(Cylinders, TriangleByHand) {
+TEST_F(Cylinders, FollowATriangleComputedByHand) {
   // Base 2 m below the boom's pivot, rod 1 m along the boom: a right angle at zero, L = sqrt 5, arm -2/sqrt 5 (the
   // boom's joint grows downwards, towards the base).
   CylinderParameters p = parameters_.cylinders[0];
@@ -121,7 +121,7 @@ TEST_F(Cylinders, DeadCentreIsReportedNotDividedBy) {
   }
 }
 
-TEST_F(Cylinders, SaysWhatIsWrong) {
+TEST_F(Cylinders, ReportsEachFault) {
   const CylinderParameters good = parameters_.cylinders[0];
   const auto problem = [&](auto change) {
     CylinderParameters p = good;
@@ -154,7 +154,7 @@ TEST_F(Cylinders, SaysWhatIsWrong) {
              length(far, -0.95)));
 }
 
-TEST_F(Cylinders, BothSignsOfTheJointAxisGiveOneForce) {
+TEST_F(Cylinders, GiveOneForceForBothSignsOfTheJointAxis) {
   // Turning the joint's axis round turns its angle and torque round; the cylinder feels the same.
   std::string urdf = test::shippedUrdf();
   const std::size_t joint = urdf.find("name=\"boom_joint\"");

@@ -63,7 +63,7 @@ TEST(Deviations, CoverMachinesWithOilDrawnAtRandom) {
   EXPECT_EQ(allocations, 0U);
 }
 
-TEST(Deviations, OfTheLoadAreDifferencesOfTheLoads) {
+TEST(Deviations, EqualDifferencesOfTheLoads) {
   std::mt19937 random(62);
   Boom boom = test::shippedBoom();
   for (int i = 0; i < 20; ++i) {
@@ -170,7 +170,7 @@ TEST(Deviations, ShrinkWithWhatIsIdentified) {
   EXPECT_LT(after.torque.norm(), 0.3 * before.torque.norm());
 }
 
-TEST(Deviations, AtADeadCentreAreThoseOfTheLoadAlone) {
+TEST(Deviations, AreThoseOfTheLoadAloneAtADeadCentre) {
   BoomParameters parameters = test::shippedBoomParameters();
   CylinderParameters& p = parameters.cylinders[0];
   p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0, p.closed_length = 1.5, p.stroke = 0.6;
@@ -217,7 +217,7 @@ TEST(CylinderFlags, PressuresAreThoseOfTrappedOil) {
   EXPECT_NEAR(pulls.rod, 60e3 / rod, 1e-6);
 }
 
-TEST(CylinderFlags, SayWhatIsWrong) {
+TEST(CylinderFlags, NameEachFault) {
   const Boom boom = test::shippedBoom();
   const Cylinder& c = boom.cylinders()[0];
   const CylinderPosition at = c.at(-0.35);
@@ -238,7 +238,7 @@ TEST(CylinderFlags, SayWhatIsWrong) {
   EXPECT_EQ(cylinderFlags(c, dead, 1e3, 1e3), kZeroMomentArm);
 }
 
-TEST(CylinderFlags, OfTheBoomTakeWeightAsSteady) {
+TEST(CylinderFlags, TakeTheBoomsWeightAsSteady) {
   Boom boom = test::shippedBoom();
   boom.move(still(test::workingPosition()), kLevel);
   BoomLoads loads;

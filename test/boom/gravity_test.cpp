@@ -27,7 +27,7 @@ std::string tiltedUrdf() {
       "<origin xyz=\"0.25 0 0.40\" rpy=\"0 0 0\"/>", "<origin xyz=\"0.25 0 0.40\" rpy=\"0.02 -0.03 0.01\"/>");
 }
 
-TEST(Gravity, InTheRootOfABaseThatLeans) {
+TEST(Gravity, FollowsABaseThatLeansInTheRoot) {
   std::mt19937 random(51);
   for (int i = 0; i < 100; ++i) {
     const BaseTilt base{test::between(random, -3.0, 3.0), test::between(random, -1.5, 1.5)};
@@ -41,7 +41,7 @@ TEST(Gravity, InTheRootOfABaseThatLeans) {
   EXPECT_LT(gravityInRoot(kGravity, {0.1, 0.0}).y(), -0.9);
 }
 
-TEST(Gravity, InTheTipWithTiltsOfTheDescription) {
+TEST(Gravity, FollowsTheTiltsOfTheDescriptionInTheTip) {
   const Checked<Chain> made = Chain::make(tiltedUrdf(), {});
   ASSERT_TRUE(made.value);
   std::mt19937 random(52);
@@ -58,7 +58,7 @@ TEST(Gravity, InTheTipWithTiltsOfTheDescription) {
   }
 }
 
-TEST(Gravity, OfALevelBaseIsThatOfThePitch) {
+TEST(Gravity, IsThatOfThePitchForALevelBase) {
   const Checked<Chain> made = Chain::make(test::shippedUrdf(), {});
   const JointVector q = test::joints({0.7, -0.3, 1.1, -0.6});
   const Eigen::Vector3d g = gravityInTip(*made.value, q, gravityInRoot(kGravity, {}));

@@ -80,7 +80,7 @@ TEST(HeldForces, AreKnownAheadUpToTheLast) {
 
 /// A blow 0.2 ms ago and a force that jumps there, seen at an instant known to 0.5 ms and to 0.1 ms: half of the jump
 /// is the line's, half is not; or it has been.
-TEST(HeldForces, ABlowIsALineAndABendToWhoDoesNotKnowTheInstant) {
+TEST(HeldForces, TreatABlowAsALineAndABendIfTheInstantIsUncertain) {
   ModeHistory past;
   const auto step = [&past](double length, double force) {
     past.begin(length);

@@ -45,14 +45,14 @@ TEST_F(Press, MachineTipsByHand) {
   EXPECT_FALSE(boom_.holdDown(press(1000.0 * hold.least * 1.001)).holds());
 }
 
-TEST_F(Press, PullingUpTipsTheMachineForward) {
+TEST_F(Press, PullingUpTipsTheMachineForwards) {
   pose(test::joints({0.0, -0.35, 1.20, -0.85}));
   const HoldDown hold = boom_.holdDown(press(-1000.0));
   EXPECT_EQ(hold.edge, 0);
   EXPECT_GT(hold.machine, 1.0);
 }
 
-TEST_F(Press, SwungAsideItTipsOverTheSideSooner) {
+TEST_F(Press, TipsOverTheSideSoonerWhenSwungAside) {
   pose(test::joints({0.0, -0.35, 1.20, -0.85}));
   const double ahead = boom_.holdDown(press(1000.0)).machine;
   for (double swing : {1.2, -1.2}) {

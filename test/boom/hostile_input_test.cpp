@@ -100,7 +100,7 @@ TEST(HostileInput, VerdictsAreOnTheSafeSide) {
   EXPECT_FALSE(boom.holdDown(huge).holds());
 }
 
-TEST(HostileInput, CylinderFiguresOfNoMachine) {
+TEST(HostileInput, RefusesCylinderFiguresOfNoMachine) {
   const BoomParameters good = test::shippedBoomParameters();
   double CylinderParameters::*const fields[] = {
       &CylinderParameters::base_x,          &CylinderParameters::base_z,         &CylinderParameters::rod_x,

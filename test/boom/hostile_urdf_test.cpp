@@ -44,7 +44,7 @@ void expectOne(const std::string& urdf, const std::string& line) {
   EXPECT_EQ(linksMissing(urdf, {}), "");
 }
 
-TEST(HostileUrdf, ManyLinks) {
+TEST(HostileUrdf, RefusesTooManyLinks) {
   expectOne(row(10000), "more than 1000 links, must be at most 1000");
   // At the limit the parsers have room; what the chain cannot carry is then its own line.
   const Checked<Boom> made = Boom::make(row(1000));
@@ -52,13 +52,13 @@ TEST(HostileUrdf, ManyLinks) {
   EXPECT_EQ(made.problems[0].rfind("robot_description: 999 moving joints and 1000 links", 0), 0U) << made.problems[0];
 }
 
-TEST(HostileUrdf, ManyJoints) {
+TEST(HostileUrdf, RefusesTooManyJoints) {
   std::string text = "<robot name=\"r\">" + plainLink("base_link") + plainLink("hammer_hull");
   for (int i = 0; i < 1001; ++i) text += joint(format("j%d", i), "base_link", "hammer_hull");
   expectOne(text + "</robot>", "more than 1000 joints, must be at most 1000");
 }
 
-TEST(HostileUrdf, ManyTagsWithinTags) {
+TEST(HostileUrdf, RefusesTooManyNestedTags) {
   const std::string line = "more than 64 tags within tags, must be at most 64";
   for (const char* tag : {"<a>", "<link>", "<robot name='r'>", "<_ b='/>'>", "<\xc3\xa4>"}) {
     expectOne(repeated(tag, 1000000), line);
@@ -73,7 +73,7 @@ TEST(HostileUrdf, ManyTagsWithinTags) {
   expectOne(repeated("<a><?xml version='></a>'?>", 2000), "cannot be read: a tag that does not end");
 }
 
-TEST(HostileUrdf, HugeText) {
+TEST(HostileUrdf, RefusesAHugeText) {
   const std::string text = test::shippedUrdf();
   expectOne(text + std::string(UrdfLimits::kBytes, ' '),
             format("%zu bytes, must be at most 16777216", text.size() + UrdfLimits::kBytes));
@@ -120,7 +120,7 @@ TEST(HostileUrdf, CountsExactlyWhatIsThere) {
   EXPECT_EQ(urdfLimitPassed(""), "");
 }
 
-TEST(HostileUrdf, RingsAndSharedChildren) {
+TEST(HostileUrdf, RefusesLoopsAndSharedChildren) {
   const std::string three = "<robot name=\"r\">" + plainLink("base_link") + plainLink("hammer_hull") + plainLink("c");
   // A ring beside the root, and one that hangs on it.
   expectOne(three + joint("j", "hammer_hull", "c") + joint("k", "c", "hammer_hull") + "</robot>",
@@ -141,7 +141,7 @@ TEST(HostileUrdf, RingsAndSharedChildren) {
   EXPECT_NE(made.problems[0].find("child of more than one joint"), std::string::npos);
 }
 
-TEST(HostileUrdf, NumbersOfNoMachine) {
+TEST(HostileUrdf, RefusesNumbersOfNoMachine) {
   const std::string good = test::shippedUrdf();
   const auto expectAbout = [&](const std::string& from, const std::string& to, const std::string& named) {
     const Checked<Boom> made = Boom::make(test::withFirstReplaced(good, from, to));

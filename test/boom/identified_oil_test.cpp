@@ -89,7 +89,7 @@ TEST_F(IdentifiedOil, FindsADelayWithinItsDeviation) {
 }
 
 /// Whichever way a clock is off, the motion is what the modes do at the crank's stamps.
-TEST_F(IdentifiedOil, OfAClockThatIsOffTheMotionIsThatAtTheCrank) {
+TEST_F(IdentifiedOil, GivesTheMotionAtTheCrankForAClockThatIsOff) {
   for (const int late : {3, -3}) {
     ModeIdentifier found = identifier();
     late_ = late;

@@ -183,7 +183,7 @@ TEST(JointLoads, MassMatrixEqualsTheHandMadePlanarChain) {
   }
 }
 
-TEST(JointLoads, TheSameAtEveryLink) {
+TEST(JointLoads, AreEqualAtEveryLink) {
   // The wrench shifted to a link turns the joints before that link as the wrench at the hull does.
   Boom boom = test::shippedBoom();
   const Chain& chain = boom.chain();

@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(BulkModulus, Oil,
                          [](const auto& named) { return named.param.name; });
 
 /// Readings of one instant in one call or each in its own: pressures are the same, an IMU's differ by the second order.
-TEST(ModeIdentifier, ReadingsTogetherSayWhatTheySayOneByOne) {
+TEST(ModeIdentifier, GivesEqualResultsForReadingsTogetherAndOneByOne) {
   for (const Clock clock : {Clock::kPressures, Clock::kImu}) {
     IdentifierSession run(0.7, Sensor::kPressures);
     run.run(1.0);  // frequencies are still being learned
@@ -92,7 +92,7 @@ TEST(ModeIdentifier, ReadingsTogetherSayWhatTheySayOneByOne) {
   }
 }
 
-TEST(ModeIdentifier, WithoutReadingsNothingIsFound) {
+TEST(ModeIdentifier, FindsNothingWithoutReadings) {
   IdentifierSession run(0.7, Sensor::kImu);
   const double before = run.identifier().frequencyDeviation(0);
   const JointVector torque = JointVector::Constant(4, 1e3);

@@ -9,7 +9,7 @@ namespace {
 
 using test::kGravity;
 
-TEST(SteelByHand, CantileverOfABarWithALoadAtItsEnd) {
+TEST(SteelByHand, EqualsACantileverWithALoadAtItsEnd) {
   // 4 m bar of 80 kg, level, held at its joint; at its end 1 kN down and 500 N to the side.
   const std::string urdf =
       "<robot name=\"bar\"><link name=\"base_link\"/><link name=\"bar\"><inertial><origin xyz=\"2 0 0\"/>"
@@ -48,7 +48,7 @@ TEST(SteelByHand, CantileverOfABarWithALoadAtItsEnd) {
   EXPECT_NEAR(loads.section[0].torque.y(), -(60.0 * 2.5 * 1.5 + 60.0 * 9.0 / 12.0) * 3.0, 1e-9);
 }
 
-TEST(SteelAtDeadCentre, OnlyWhatTheCylinderCrossesIsUnknown) {
+TEST(SteelAtDeadCentre, LeavesOnlyTheSectionsUnknownThatTheCylinderCrosses) {
   BoomParameters parameters = test::shippedBoomParameters();
   CylinderParameters& p = parameters.cylinders[0];
   p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0, p.closed_length = 1.5, p.stroke = 0.6;

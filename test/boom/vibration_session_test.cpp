@@ -231,16 +231,16 @@ void expectWithin(const Errors& errors, double bound) {
 constexpr double kMoving = 0.1;  // [rad], up to 0.19 rad/s
 
 // Forces linear between samples: as good as the samples' polygon follows the pulse.
-TEST(VibrationSession, SteadyPoseAt1000Hz) { expectWithin(session(1000.0, 0.0, false), 1e-3); }
-TEST(VibrationSession, SteadyPoseAt200Hz) { expectWithin(session(200.0, 0.0, false), 1e-2); }
-TEST(VibrationSession, MovingPoseAt1000Hz) { expectWithin(session(1000.0, kMoving, false), 1e-3); }
-TEST(VibrationSession, MovingPoseAt200Hz) { expectWithin(session(200.0, kMoving, false), 1e-2); }
+TEST(VibrationSession, FollowsASteadyPoseAt1000Hz) { expectWithin(session(1000.0, 0.0, false), 1e-3); }
+TEST(VibrationSession, FollowsASteadyPoseAt200Hz) { expectWithin(session(200.0, 0.0, false), 1e-2); }
+TEST(VibrationSession, FollowsAMovingPoseAt1000Hz) { expectWithin(session(1000.0, kMoving, false), 1e-3); }
+TEST(VibrationSession, FollowsAMovingPoseAt200Hz) { expectWithin(session(200.0, kMoving, false), 1e-2); }
 
 // With the exact mean of the wrench from the links' momentum no impulse is lost: far better, whatever the rate.
-TEST(VibrationSession, SteadyPoseAt1000HzWithMeans) { expectWithin(session(1000.0, 0.0, true), 1e-6); }
-TEST(VibrationSession, SteadyPoseAt200HzWithMeans) { expectWithin(session(200.0, 0.0, true), 2e-4); }
-TEST(VibrationSession, MovingPoseAt1000HzWithMeans) { expectWithin(session(1000.0, kMoving, true), 1e-3); }
-TEST(VibrationSession, MovingPoseAt200HzWithMeans) { expectWithin(session(200.0, kMoving, true), 2e-3); }
+TEST(VibrationSession, FollowsASteadyPoseAt1000HzWithMeans) { expectWithin(session(1000.0, 0.0, true), 1e-6); }
+TEST(VibrationSession, FollowsASteadyPoseAt200HzWithMeans) { expectWithin(session(200.0, 0.0, true), 2e-4); }
+TEST(VibrationSession, FollowsAMovingPoseAt1000HzWithMeans) { expectWithin(session(1000.0, kMoving, true), 1e-3); }
+TEST(VibrationSession, FollowsAMovingPoseAt200HzWithMeans) { expectWithin(session(200.0, kMoving, true), 2e-3); }
 
 }  // namespace
 }  // namespace hammer_loads

@@ -120,7 +120,7 @@ TEST_F(ShippedBoom, HugeStepsStayBounded) {
   }
 }
 
-TEST_F(ShippedBoom, TipMovesAsTheJointsTellIt) {
+TEST_F(ShippedBoom, TipMovesWithTheJoints) {
   steadyLoad(0.05, boom_.hammerTorque(push_));
   const Boom::TipVibration tip = boom_.tipVibration();
   const Pose before = boom_.pose().tip();
@@ -137,7 +137,7 @@ TEST_F(ShippedBoom, TipMovesAsTheJointsTellIt) {
   EXPECT_NEAR(tip.acceleration[4], vibration().acceleration().sum(), 1e-10);
 }
 
-TEST_F(ShippedBoom, ReducedMassAndStiffnessAtTheHull) {
+TEST_F(ShippedBoom, GivesReducedMassAndStiffnessAtTheHull) {
   for (const Eigen::Vector3d& direction : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()}) {
     const ReducedHull reduced = boom_.reducedHull(direction);
     vibration().rest();
@@ -156,7 +156,7 @@ TEST_F(ShippedBoom, ReducedMassAndStiffnessAtTheHull) {
               boom_.reducedHull(Eigen::Vector3d::UnitY()).stiffness > 1e30);
 }
 
-TEST_F(ShippedBoom, BeginsAnewAfterAGap) {
+TEST_F(ShippedBoom, RestartsAfterAGap) {
   steadyLoad(0.02, boom_.hammerTorque(push_));
   vibration().rest();
   EXPECT_EQ(vibration().energy(), 0.0);

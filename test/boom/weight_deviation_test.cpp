@@ -46,7 +46,7 @@ class WeightDeviation : public testing::Test {
   std::normal_distribution<> normal_;
 };
 
-TEST_F(WeightDeviation, OfMassesAndCentres) {
+TEST_F(WeightDeviation, IncludesMassesAndCentres) {
   parameters_.link_mass_std = 0.05, parameters_.link_com_std = 0.03;
   const JointVector q = test::workingPosition();
   const auto draw = [&](const Boom& given) {
@@ -65,7 +65,7 @@ TEST_F(WeightDeviation, OfMassesAndCentres) {
   expectAlike(weightDeviation(parameters_, q), spread(q, draw));
 }
 
-TEST_F(WeightDeviation, OfWeighedLinks) {
+TEST_F(WeightDeviation, UsesTheDeviationsOfWeighedLinks) {
   Boom given = boomOf(parameters_);
   for (const char* name : {"boom_link", "arm_link", "hammer_hull"}) {
     WeighedLink link = given.chain().body(*given.chain().linkIndex(name));
@@ -86,7 +86,7 @@ TEST_F(WeightDeviation, OfWeighedLinks) {
   expectAlike(weightDeviation(parameters_, q), spread(q, draw));
 }
 
-TEST_F(WeightDeviation, OfJointsZeros) {
+TEST_F(WeightDeviation, IncludesTheJointsZeros) {
   parameters_.link_mass_std = parameters_.link_com_std = 0.0;
   for (CylinderParameters& c : parameters_.cylinders) c.joint_zero_std = 0.004;
   const JointVector q = test::workingPosition();

@@ -44,7 +44,7 @@ TEST(WrenchShift, PureCoupleIsOnlyTurned) {
   }
 }
 
-TEST(WrenchShift, ThereAndBackIsTheSame) {
+TEST(WrenchShift, IsUndoneByTheShiftBack) {
   std::mt19937 random(2);
   double worst = 0.0;
   for (int i = 0; i < 10000; ++i) {

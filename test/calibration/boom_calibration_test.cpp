@@ -52,7 +52,7 @@ BoomCalibration calibrated(const FreeBoom& machine, std::mt19937& random, double
 }
 
 /// What is asked of two minutes: masses some 10 % off, seals unknown.
-TEST(BoomCalibration, WeighsWhatADrawingHasWrong) {
+TEST(BoomCalibration, CorrectsWrongNominalMasses) {
   std::mt19937 random(1);
   double given = 0.0;
   int joints = 0, weight_as_asked = 0, friction_as_asked = 0;
@@ -188,7 +188,7 @@ TEST(BoomCalibration, AKnownWeightSharpensTheCylindersGains) {
   EXPECT_LT(beside, 0.5 * alone);
 }
 
-TEST(BoomCalibration, NamesPressuresThatAreOtherwiseThanSaid) {
+TEST(BoomCalibration, NamesPressuresThatContradictTheBoomFile) {
   std::mt19937 random(5);
   const FreeBoom machine = FreeBoom::drawn(random);
   const BoomRecording good = machine.record(random, 60.0);
@@ -219,7 +219,7 @@ TEST(BoomCalibration, NamesPressuresThatAreOtherwiseThanSaid) {
   EXPECT_NE(said(degrees)[0].find("arm_joint"), std::string::npos) << said(degrees)[0];
 }
 
-TEST(BoomCalibration, SaysWhichJointMovedTooLittle) {
+TEST(BoomCalibration, NamesTheJointThatMovedTooLittle) {
   std::mt19937 random(6);
   const FreeBoom machine = FreeBoom::drawn(random);
   EXPECT_EQ(calibrateBoom(test::shippedBasis(), {{machine.record(random, 120.0), {}}}).problem, "");

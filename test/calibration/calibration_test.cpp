@@ -146,7 +146,7 @@ struct ByFile {
 };
 
 /// What a drawing has wrong looks like a sensor that is wrong: it is in the deviations, and moves no key for certain.
-TEST(Calibration, ADrawingsErrorsAreNotTheSensors) {
+TEST(Calibration, SeparatesNominalErrorsFromTheSensors) {
   HammerParameters drawing = test::mo100LinkageParameters(), exact = drawing;
   drawing.deviations = usualDeviations(drawing);
   exact.deviations = {};
@@ -235,7 +235,7 @@ TEST(Calibration, JitterIsMeasured) {
   }
 }
 
-TEST(Calibration, TooLittleSaysWhatItNeeds) {
+TEST(Calibration, StatesHowMuchMoreIsNeeded) {
   const Calibration short_one = calibrated(atWork(1.0, 500.0));
   EXPECT_NE(short_one.problem, "");
   EXPECT_NE(textOf(short_one).find("blows"), std::string::npos);
@@ -247,7 +247,7 @@ TEST(Calibration, TooLittleSaysWhatItNeeds) {
   EXPECT_NE(calibrate({}, basisOf(mechanism)).problem, "");
 }
 
-TEST(Report, WhatIsNotDeterminedIsNoKey) {
+TEST(Report, WritesNoKeyThatIsNotDetermined) {
   Calibration c;
   c.blows = 20, c.seconds = 5.0, c.more_blows = 80.0, c.facts.period = 1e-3;
   c.estimates = {{"crank_zero_rad", "rad", 0.01, 0.001, 0.003, "m"},
@@ -264,7 +264,7 @@ TEST(Report, WhatIsNotDeterminedIsNoKey) {
 }
 
 /// Sixteen keys and twenty correlations, as of a hammer file whose constants hide each other.
-TEST(Report, SaysInSixLinesWhatWasFoundWhatWasNotAndWhatToDo) {
+TEST(Report, StatesResultsGapsAndActionsInSixLines) {
   Calibration c;
   c.seconds = 60.0, c.blows = 240, c.more_blows = std::numeric_limits<double>::infinity(), c.facts.period = 1e-3;
   c.fitted = c.held_out = 1.0;

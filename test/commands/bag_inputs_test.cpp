@@ -33,7 +33,7 @@ class BagInputFiles : public test::BagFiles {
   }
 };
 
-TEST_F(BagInputFiles, TheSplitsOfARecordingAreOneRun) {
+TEST_F(BagInputFiles, SplitsOfARecordingAreOneRun) {
   ASSERT_EQ(run(kSession + " " + path("whole.bag")).exit_code, 0);
   const std::vector<std::string> whole = contentOfBag(path("whole.bag"));
   ASSERT_GT(whole.size(), 8000U);
@@ -105,7 +105,7 @@ TEST_F(BagInputFiles, ABagThatClaimsTooMuchIsRefused) {
   EXPECT_NE(with(chunk_at, 0xfffffff0U).find("a record reaches beyond the file's end"), std::string::npos);
 }
 
-TEST_F(BagInputFiles, WhatIsNoBagIsNamed) {
+TEST_F(BagInputFiles, NamesAFileThatIsNoBag) {
   std::ofstream(path("text.bag")) << "no bag at all\n";
   expectRefused(run(path("text.bag") + " " + path("out.bag")), {path("text.bag") + ": cannot be read as a bag"});
   expectRefused(run(path("none.bag") + " " + path("out.bag")), {path("none.bag"), "No such file or directory"});
@@ -150,7 +150,7 @@ TEST_F(BagInputFiles, SamplesThatAreAllRefusedNameTheJointSoughtAndThoseThere) {
   EXPECT_EQ(names().size(), 2U);
 }
 
-TEST_F(BagInputFiles, SamplesThatAreAllBadSayWhy) {
+TEST_F(BagInputFiles, NamesTheReasonIfAllSamplesAreBad) {
   {
     rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);
     sensor_msgs::JointState m;

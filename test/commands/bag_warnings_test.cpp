@@ -40,7 +40,7 @@ class BagWarnings : public test::BagFiles {
   }
 };
 
-TEST_F(BagWarnings, AGoodRecordingGivesNoneAndOneLineSaysWhatWasWritten) {
+TEST_F(BagWarnings, AGoodRecordingGivesNoneAndOneLineStatesWhatWasWritten) {
   const test::Outcome outcome =
       run(kSession + " " + path("out.bag") + " --params " + configDirectory() + "/hammer_mo100.yaml");
   EXPECT_EQ(outcome.err, "");

@@ -109,7 +109,7 @@ TEST_F(BoomBag, ReadsTheCylindersPressures) {
 }
 
 /// Oil 30 % softer than the boom file says, known by every sensor; against the machine's own equations.
-TEST_F(BoomBag, TellsWhatTheSteelOfAMachineOnSofterOilCarries) {
+TEST_F(BoomBag, StatesTheSectionLoadsOfAMachineOnSofterOil) {
   simulation::MachineSettings m = machineOfBag(true);
   m.duration = 7.0, m.drive.stop_time = 1e9;
   m.hammer.drive_reaction_ratio = 1.0;

@@ -54,7 +54,7 @@ TEST_F(BoomBag, HoldsEveryOutputAsTheLiveFlowGivesItAndIsByteIdenticalOnASecondR
 }
 
 /// By hand: from the gauge's frame to D, on the hammer joint's angle between its two states.
-TEST_F(BoomBag, TellsTheLoadAtATfFrameWithItsLeverArm) {
+TEST_F(BoomBag, StatesTheLoadAtATfFrameWithItsLeverArm) {
   const simulation::Session session = simulation::recordSession(machineOfBag(true));
   InputBag(path("in.bag"), session);
   ASSERT_EQ(process("out.bag", "boom_wrench_links: [strain_gauge]\n").exit_code, 0);

@@ -84,7 +84,7 @@ TEST_F(CalibrateBoom, WritesABoomFileThatOtherCommandsRead) {
   EXPECT_EQ(test::contentOf(out), before);  // the same input gives the same bytes
 }
 
-TEST_F(CalibrateBoom, SaysWhatAKnownWeightWeighs) {
+TEST_F(CalibrateBoom, StatesTheWeightOfAKnownMass) {
   std::mt19937 random(2);
   FreeBoom machine, loaded;
   loaded.hang(500.0, {-0.2, -0.9});

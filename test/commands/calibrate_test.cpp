@@ -202,7 +202,7 @@ TEST(Calibrate, RefusesAPipe) {
   EXPECT_EQ(outcome.err, pipe.path() + ": is no regular file, must be a bag\n");
 }
 
-TEST(Calibrate, WrongUsageAndHelp) {
+TEST(Calibrate, ReportsWrongUsageAndPrintsHelp) {
   EXPECT_EQ(runCalibrate(kBag).exit_code, 2);
   EXPECT_EQ(runCalibrate("--write x.yaml").exit_code, 2);
   EXPECT_EQ(runCalibrate(kBag + " --write x.yaml --nonsense").exit_code, 2);

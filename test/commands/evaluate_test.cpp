@@ -68,7 +68,7 @@ TEST(CrankAngleText, KeepsTheOffsetThatItsDigitsWereWrittenFor) {
   }
 }
 
-TEST(CrankAngleText, FewDigitsMeanWhatTheySay) {
+TEST(CrankAngleText, ReadsFewDigitsExactly) {
   EXPECT_DOUBLE_EQ(offsetOf("6.28"), -0.00318530717958647692528676655900);
   EXPECT_DOUBLE_EQ(offsetOf("6.2832"), 0.00001469282041352307471323344099);
   EXPECT_DOUBLE_EQ(offsetOf("-12.566"), 0.00037061435917295385057353311801);
@@ -80,7 +80,7 @@ TEST(CrankAngleText, FewDigitsMeanWhatTheySay) {
   EXPECT_EQ(offsetOf("+.5"), 0.5);
 }
 
-TEST(CrankAngleText, TellsTheSideOfTheBlow) {
+TEST(CrankAngleText, StatesTheSideOfTheBlow) {
   for (const char* before : {"-1e-300", "-1", "6.2831853071795864769", "6.283185307179586476925286766559", "5"})
     EXPECT_EQ(crankAngleFromText(before).value().side, Side::kBeforeBlow) << before;
   for (const char* after :

@@ -80,7 +80,7 @@ TEST_F(GrappleBag, IsByteIdenticalOnASecondRun) {
   EXPECT_TRUE(a == test::contentOf(path("b.bag")));
 }
 
-TEST_F(GrappleBag, TellsRefusedSamplesWithTheLimit) {
+TEST_F(GrappleBag, ReportsRefusedSamplesWithTheLimit) {
   const test::Outcome outcome = run(writeBag("in.bag", "/joint_states", 200) + " " + path("out.bag") + " " + grapple_);
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err,

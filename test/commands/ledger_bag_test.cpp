@@ -52,7 +52,7 @@ TEST_F(LedgerOfBags, AnotherMachineBeginsAnotherEpoch) {
   EXPECT_EQ(epochs().size(), 2U);
 }
 
-TEST_F(LedgerOfBags, WhatIsNoLedgerStaysAndGivesNoOutput) {
+TEST_F(LedgerOfBags, LeavesAFileThatIsNoLedgerAndGivesNoOutput) {
   const std::string text = "a text that is no ledger, and long enough to be taken for a file of some other kind\n";
   std::ofstream(ledger()) << text;
   expectRefused(run(kSession + " " + path("out.bag") + " --ledger " + ledger()), {ledger()});
@@ -64,7 +64,7 @@ TEST_F(LedgerOfBags, WhatIsNoLedgerStaysAndGivesNoOutput) {
   EXPECT_FALSE(fs::exists(path("out.bag")));
 }
 
-TEST_F(LedgerOfBags, ItsNameIsNoOtherOutput) {
+TEST_F(LedgerOfBags, RefusesTheNameOfAnotherOutput) {
   for (const std::string& arguments :
        {kSession + " " + path("a.bag") + " --ledger " + path("a.bag"),
         "--no-bag " + kSession + " --db " + path("a.sqlite") + " --ledger " + path("./a.sqlite")}) {

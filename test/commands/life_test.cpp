@@ -118,7 +118,7 @@ TEST(Life, CsvHasTheFiguresOfTheStandardsExample) {
   EXPECT_GT(std::stod(stress.at("damage_std")), 0.0);
 }
 
-TEST(Life, JsonSaysTheSame) {
+TEST(Life, JsonStatesTheSame) {
   const Ledger ledger;
   const std::vector<Row> rows = rowsOf(runLife(ledger.path() + " --csv").out);
   const YAML::Node json = YAML::Load(runLife("--json " + ledger.path()).out);
@@ -141,7 +141,7 @@ TEST(Life, JsonSaysTheSame) {
   EXPECT_EQ(epoch["channels"][1]["damage"]["value"].as<double>(), std::stod(rows[2].at("damage")));
 }
 
-TEST(Life, TextNamesChannelsDaysAndHowItCounts) {
+TEST(Life, TextNamesChannelsDaysAndTheRulesOfCounting) {
   const Ledger ledger;
   const Outcome outcome = runLife(ledger.path());
   EXPECT_EQ(outcome.exit_code, 0);
@@ -151,7 +151,7 @@ TEST(Life, TextNamesChannelsDaysAndHowItCounts) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part << '\n' << outcome.out;
 }
 
-TEST(Life, WhatIsNoLedgerIsOneLineAndExitCode1) {
+TEST(Life, AFileThatIsNoLedgerIsOneLineAndExitCode1) {
   const test::TemporaryFile text(std::string(3000, 'x'), ".sqlite"), empty({}, ".sqlite");
   for (const std::string& file :
        {text.path(), empty.path(), testing::TempDir(), std::string("/no/such/file"), std::string("/dev/null")}) {
@@ -192,7 +192,7 @@ const std::pair<const char*, const char*> kDamage[] = {
      "view cycles: must hold tables alone"},
     {"CREATE TRIGGER t AFTER UPDATE ON runs BEGIN DELETE FROM days; END", "trigger t: must hold tables alone"}};
 
-TEST(Life, WhatNoRunCanHaveWrittenIsOneLineHereAndWhereARunIsAdded) {
+TEST(Life, AnImpossibleLedgerIsOneLineHereAndWhereARunIsAdded) {
   for (const auto& [sql, words] : kDamage) {
     SCOPED_TRACE(sql);
     const Ledger ledger;

@@ -88,7 +88,7 @@ TEST_F(OutputSafety, ForceReplacesNothingElse) {
   expectRefused(run(kSession + " " + path("out.bag") + " --force --imu-topic /hammer_loads/mechanism"), {"an input"});
 }
 
-TEST_F(OutputSafety, WhatIsNoRegularFileIsNeverReplaced) {
+TEST_F(OutputSafety, NeverReplacesAFileThatIsNotRegular) {
   ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
   fs::create_symlink(path("fifo"), path("to_fifo"));
   fs::create_directory(path("directory"));

@@ -198,7 +198,7 @@ void expectRefused(const std::string& problem, const std::string& input, const s
   EXPECT_FALSE(fs::exists(output));
 }
 
-TEST_F(ProcessBag, TellsABagThatIsMissingTruncatedOrNone) {
+TEST_F(ProcessBag, ReportsABagThatIsMissingTruncatedOrNone) {
   std::ofstream(path("text.bag")) << "no bag at all\n";
   std::ofstream(path("cut.bag"), std::ios::binary) << contents(data("mo100_100hz.bag")).substr(0, 200000);
   for (const char* name : {"missing.bag", "text.bag", "cut.bag"}) {
@@ -208,7 +208,7 @@ TEST_F(ProcessBag, TellsABagThatIsMissingTruncatedOrNone) {
       << "nothing half-written";
 }
 
-TEST_F(ProcessBag, TellsABagOfAnotherTypeOrWithoutTheCrank) {
+TEST_F(ProcessBag, ReportsABagOfAnotherTypeOrWithoutTheCrank) {
   {
     rosbag::Bag bag(path("type.bag"), rosbag::bagmode::Write);
     bag.write("/hammer/crank", ros::Time(1.0), geometry_msgs::WrenchStamped());
@@ -219,7 +219,7 @@ TEST_F(ProcessBag, TellsABagOfAnotherTypeOrWithoutTheCrank) {
   expectRefused(process(path("other.bag"), path("out.bag")), "/something", path("out.bag"));
 }
 
-TEST_F(ProcessBag, TellsAnOutputThatCannotBeWritten) {
+TEST_F(ProcessBag, ReportsAnOutputThatCannotBeWritten) {
   const std::string problem = process(data("mo100_100hz.bag"), path("no/such/directory/out.bag"));
   EXPECT_NE(problem.find("out.bag"), std::string::npos) << problem;
 }

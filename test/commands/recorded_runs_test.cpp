@@ -236,7 +236,7 @@ TEST_F(RecordedRuns, ARunInfoOfAnotherDefinitionIsNamed) {
              {"warning: /hammer_loads/run_info: hammer_loads/RunInfo of another definition", "0123456789abcdef"});
 }
 
-TEST_F(RecordedRuns, TheImuIsReadFromTheLogsTopicAndMissedAloud) {
+TEST_F(RecordedRuns, ReadsTheImuFromTheLogsTopicAndReportsItsAbsence) {
   const std::string measured = yamlWith("hull_motion: imu\n", {"", "", "/hull_imu"});
   const auto imu = [](rosbag::Bag& bag) {
     sensor_msgs::Imu m;

@@ -19,7 +19,7 @@ using test::contentOf;
 using test::kSession;
 using test::Tables;
 
-TEST_F(Tables, SameInputGivesTheSameBytesWithAndWithoutABag) {
+TEST_F(Tables, GivesEqualBytesForEqualInputWithAndWithoutABag) {
   ASSERT_EQ(tables(kSession, "one.sqlite").exit_code, 0);
   ASSERT_EQ(run(kSession + " " + path("out.bag") + " --db " + path("two.sqlite")).exit_code, 0);
   // Under another name, in another directory, from another one.

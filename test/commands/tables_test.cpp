@@ -21,7 +21,7 @@ using test::kSession;
 using test::Tables;
 
 /// Column by column: what a reader of the bag sees. NaN is NULL.
-TEST_F(Tables, SayWhatTheOutputBagSays) {
+TEST_F(Tables, EqualTheOutputBag) {
   const test::Outcome outcome = run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   Database database(path("out.sqlite"), Database::Use::kRead, 0);

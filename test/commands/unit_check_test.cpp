@@ -42,7 +42,7 @@ UnitOutcome readSession(const std::string& path, double unit) {
   return outcome;
 }
 
-TEST(UnitCheckOfRecordedSessions, TellsDegreesAndNothingElse) {
+TEST(UnitCheckOfRecordedSessions, DetectsDegreesAndNothingElse) {
   int sessions = 0;
   for (const auto& entry : std::filesystem::directory_iterator(HAMMER_LOADS_TEST_DATA)) {
     if (entry.path().extension() != ".bag") continue;

@@ -45,7 +45,7 @@ TEST_F(FilterAtBlow, AToolMayTakeMostOfTheSpeed) {
 }
 
 /// Just before a sample it shows little there, just after one at once: without speeds, by readings in counts.
-TEST_F(FilterAtBlow, WhatAToolTookIsKnownWhereverItIsMet) {
+TEST_F(FilterAtBlow, KnowsTheSpeedThatAToolTookWhereverItIsMet) {
   double sum = 0.0, worst = 0.0;
   constexpr int kPlaces = 40;
   for (int place = 0; place < kPlaces; ++place) {

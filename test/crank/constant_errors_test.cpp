@@ -71,7 +71,7 @@ TEST(ConstantErrors, ConcludesNothingBeforeSomeTurns) {
 }
 
 /// What is off for certain is part of the uncertainty with what is not known of it; what may be nothing is not.
-TEST(ConstantErrors, WhatIsCertainCountsWithItsDeviation) {
+TEST(ConstantErrors, CountsACertainConstantWithItsDeviation) {
   const auto momentOf = [](double b) {
     ConstantErrors errors;
     for (int turn = 0; turn < 12; ++turn) {

@@ -49,7 +49,7 @@ TEST_F(CrankDynamics, AFreeTurnKeepsItsEnergyUpToTheBlow) {
 
 /// A crank that rests on the tool and whose encoder is 1 mrad off creeps over the blow where both sides push it back.
 /// It passed 4096 times in one step; a sample took 0.3 s.
-TEST_F(CrankDynamics, WhereBothSidesPushItBackItPassesAFewTimesOnly) {
+TEST_F(CrankDynamics, PassesAFewTimesOnlyWhereBothSidesPushItBack) {
   int most = 0;
   for (const ShaftModel& model : {rocker_, linkage_}) {
     for (const Side side : {Side::kBeforeBlow, Side::kAfterBlow}) {

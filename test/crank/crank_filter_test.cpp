@@ -54,7 +54,7 @@ TEST_F(CrankFilterTest, IdentifiesTheInertiaFromAGuessFiftyPercentWrong) {
 }
 
 /// Before the work begins the weight turns the crank back onto the tool, which stops it dead: no inertia explains that.
-TEST_F(CrankFilterTest, ADeadStopOnTheToolTeachesNothingOfTheInertia) {
+TEST_F(CrankFilterTest, LearnsNoInertiaFromADeadStopOnTheTool) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     simulation::MachineSettings machine = simulation::workingMo100();
     machine.duration = 5.0;
@@ -104,7 +104,7 @@ TEST_F(CrankFilterTest, ErrorsLieWithinTwoDeviationsAsOftenAsTheyShould) {
   EXPECT_GT(acceleration / samples, 0.90);
 }
 
-TEST_F(CrankFilterTest, TellsTheMotionBetweenSamples) {
+TEST_F(CrankFilterTest, GivesTheMotionBetweenSamples) {
   simulation::Session dense = shortSession(true, 2000.0, 0.6);
   CrankFilter f = filter(0.6);
   double worst = 0;
@@ -148,7 +148,7 @@ TEST_F(CrankFilterTest, LearnsTheSpeedUpFromAnglesAlone) {
   EXPECT_NEAR(f.estimate().speed, 20.0, 1.0);
 }
 
-TEST_F(CrankFilterTest, IgnoresOneOutlierAndBelievesTwo) {
+TEST_F(CrankFilterTest, IgnoresOneOutlierAndAcceptsTwo) {
   CrankFilter f = filter(0.6);
   f.start({0.5, 20.0});
   double angle = 0.5;
@@ -173,7 +173,7 @@ TEST_F(CrankFilterTest, AKickThatNoTorqueGivesIsAnOutlierHoweverSmall) {
   }
 }
 
-TEST_F(CrankFilterTest, ASpeedThatSaysNothingDoesNoHarm) {
+TEST_F(CrankFilterTest, ASpeedWithoutInformationDoesNoHarm) {
   for (const double told : {0.0, -20.0, 26.0}) {
     CrankFilter f = filter(0.6);
     f.start({0.5, told});

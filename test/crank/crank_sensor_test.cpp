@@ -33,7 +33,7 @@ CrankSensorPlace randomPlace(std::mt19937_64& random) {
   return p;
 }
 
-TEST(CrankSensor, WithoutAnyKeyNothingChanges) {
+TEST(CrankSensor, ChangesNothingWithoutAnyKey) {
   for (const CrankSensor& sensor : {CrankSensor(), *CrankSensor::make({}).value}) {
     EXPECT_TRUE(sensor.isIdentity());
     for (const double x : {0.0, -0.0, 1e-300, 6.2, -1e9, 123456.789}) {
@@ -82,7 +82,7 @@ TEST(CrankSensor, SpeedIsTheReadingsDerivativeTurnedBack) {
   }
 }
 
-TEST(CrankSensor, GearedEncoder) {
+TEST(CrankSensor, ReadsAGearedEncoder) {
   CrankSensorPlace place;
   place.ratio = 2.5;
   place.direction = -1;

@@ -44,12 +44,12 @@ TEST(EncoderSlip, ACrankThatWasPushedIsNone) {
   }
 }
 
-TEST(EncoderSlip, NorIsAModelThatFallsBehindByAndBy) {
+TEST(EncoderSlip, IsNoModelThatFallsBehindGradually) {
   EncoderSlip slip = quiet();
   for (int i = 1; i < 40; ++i) EXPECT_EQ(slip.follow(-5e-4 * i, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);
 }
 
-TEST(EncoderSlip, NorAClockThatWasSetNorASurpriseOfEachTurn) {
+TEST(EncoderSlip, IsNeitherAClockThatWasSetNorASurpriseOfEachTurn) {
   for (const double set : {-1.0, -0.6, -0.4, 0.4, 0.6, 1.0}) {  // of what the innovation shows
     EncoderSlip one = quiet();
     const bool clock = std::abs(set) > 0.5;
@@ -77,13 +77,13 @@ TEST(EncoderSlip, AStepBackIsOneAtOnce) {
   EXPECT_EQ(slip.count(), 2);
 }
 
-TEST(EncoderSlip, NorWhatTheTorqueCanDo) {
+TEST(EncoderSlip, IsNoChangeThatTheTorqueCanCause) {
   EncoderSlip slip = quiet();
   EXPECT_EQ(slip.follow(0.035, kVariance, 0.04, kWay, 0.0, true), Step::kNone);
 }
 
 /// Half a turn further the sensor is another one.
-TEST(EncoderSlip, NorIsASensorThatIsSomewhereElse) {
+TEST(EncoderSlip, IsNoSensorWithAnotherMounting) {
   for (const double step : {0.4, 0.625}) {
     EncoderSlip slip = quiet();
     EXPECT_EQ(slip.follow(step, kVariance, kByTorque, kWay, 0.0, true), step < 0.5 ? Step::kPerhaps : Step::kNone)

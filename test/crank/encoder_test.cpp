@@ -92,7 +92,7 @@ TEST(EncoderCount, ComesBackAfterNonsense) {
   EXPECT_TRUE(encoder.isKnown() && !encoder.isFiner());
 }
 
-TEST(EncoderCount, ThatIsGivenWrongIsContradicted) {
+TEST(EncoderCount, IsContradictedIfItIsGivenWrong) {
   for (const int counts : {360, 1024, 4096}) {
     Encoder given(kTwoPi / 1024);
     EXPECT_FALSE(given.contradictsGiven());

@@ -80,7 +80,7 @@ TEST(FilterInMovingHull, FollowsTheCrankAsInAFixedHull) {
 }
 
 /// The noise of the turning's acceleration, 0.003 rad/s sqrt(2)/1 ms, is the crank's too; it is relative to the hull.
-TEST(FilterInMovingHull, WithAnImuItIsNearlyAsGoodAndFarBetterThanWithout) {
+TEST(FilterInMovingHull, IsNearlyAsGoodWithAnImuAndFarBetterThanWithout) {
   const Errors imu = followed(test::onBoom(), Known::kImu), pitch = followed(test::onBoom(), Known::kPitch);
   EXPECT_LT(imu.acceleration, 0.0035);
   EXPECT_LT(imu.force, 0.006);

@@ -71,7 +71,7 @@ TEST(SpeedTrust, FindsAScaleApartFromALag) {
   EXPECT_NEAR(trust.lag(), 4e-3, 1e-4);
 }
 
-TEST(SpeedTrust, AnEvenSpeedWithoutNoiseSaysNothing) {
+TEST(SpeedTrust, LearnsNothingFromAnEvenSpeedWithoutNoise) {
   for (const double wrong : {0.0, 1e-3}) {
     SpeedTrust trust;
     for (int i = 1; i < 8000; ++i) {
@@ -87,7 +87,7 @@ TEST(SpeedTrust, AnEvenSpeedWithoutNoiseSaysNothing) {
   }
 }
 
-TEST(SpeedTrust, WhatIsNoNumberIsLeftOut) {
+TEST(SpeedTrust, LeavesOutNotANumber) {
   SpeedTrust trust;
   for (int i = 1; i < 8000; ++i) {
     const double t = 1e-3 * i, speed = SwingingCrank::speed(t);
@@ -99,7 +99,7 @@ TEST(SpeedTrust, WhatIsNoNumberIsLeftOut) {
 }
 
 /// An estimate that takes up half of what a late speed says, and knows what its lag makes of it.
-TEST(SpeedTrust, AnEstimateThatTookSpeedsUpJudgesThem) {
+TEST(SpeedTrust, JudgesSpeedsByAnEstimateThatUsedThem) {
   constexpr double kLag = 2e-3, kTaken = 0.5;
   SpeedTrust trust;
   const int turn = static_cast<int>(1e3 * 2.0 * M_PI / SwingingCrank::kOmega);

@@ -31,7 +31,7 @@ TEST(StampRounding, FindsTheStep) {
   EXPECT_EQ(roundingOf(90.0, 10000000), 1e-2);
 }
 
-TEST(StampRounding, FineStampsHaveNone) {
+TEST(StampRounding, FineStampsHaveNoRounding) {
   EXPECT_EQ(roundingOf(1000.0, 1), 0.0);
   EXPECT_EQ(roundingOf(1000.0, 10000), 0.0);
 }

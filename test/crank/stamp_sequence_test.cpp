@@ -150,7 +150,7 @@ TEST(StampSequence, AMessageOfABurstMayComeTwice) {
   EXPECT_TRUE(sequence.isSteady());
 }
 
-TEST(StampSequence, WhereManyChangePlacesTheLineCounts) {
+TEST(StampSequence, FollowsTheLineWhereManyChangePlaces) {
   const auto jitter = [](std::int64_t t, std::mt19937& random) {
     return t + static_cast<std::int64_t>(1e6 * std::normal_distribution<>()(random));
   };

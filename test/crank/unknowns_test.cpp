@@ -64,7 +64,7 @@ void expectEffect(int constant, double by, Filtered& with, Filtered& without, do
     EXPECT_LT(off[row], 0.02 * largest[row]) << kUnknowns[constant].name << ' ' << row;
 }
 
-TEST(Unknowns, OfTheSensorsPlaceDoWhatTheFilterSays) {
+TEST(Unknowns, MountingErrorsHaveTheEffectThatTheFilterStates) {
   constexpr double kBy = 1e-6;
   const std::function<double(double)> errors[] = {[](double) { return 1.0; }, [](double x) { return std::sin(x); },
                                                   [](double x) { return std::cos(x) - 1.0; }};
@@ -76,7 +76,7 @@ TEST(Unknowns, OfTheSensorsPlaceDoWhatTheFilterSays) {
   }
 }
 
-TEST(Unknowns, LatencyDoesWhatTheFilterSays) {
+TEST(Unknowns, LatencyHasTheEffectThatTheFilterStates) {
   constexpr double kBy = 1e-5;  // one of the machine's own steps: both are struck at the same place
   Filtered with, without;
   expectEffect(ConstantErrors::kLatency, kBy, with, without, kBy, angleOf, 2);  // a late machine has the same torque
@@ -95,7 +95,7 @@ TEST(Unknowns, ConsideredLatencyIsInTheDeviation) {
   EXPECT_EQ(said.filter.state().speed, exact.filter.state().speed);  // considered, not corrected
 }
 
-TEST(Unknowns, ThoseSeenComeFirstAndAreNamedInAWarning) {
+TEST(Unknowns, ObservedOnesComeFirstAndAreNamedInAWarning) {
   for (std::size_t i = 0; i < kUnknowns.size(); ++i) {
     const Unknown& u = kUnknowns[i];
     EXPECT_EQ(u.use == Unknown::Use::kSeen, static_cast<int>(i) < ConstantErrors::kPlace) << u.name;

@@ -110,7 +110,7 @@ TEST(SymbolTable, EveryKeyExistsAndNoHammerKeyIsMissing) {
   for (const std::string& name : names) EXPECT_EQ(parameters.count(name), 1U) << name;
 }
 
-TEST(SymbolTable, HoldsEveryNumberOfTheMessagesItSpeaksOf) {
+TEST(SymbolTable, HoldsEveryNumberOfTheMessagesItNames) {
   const Names names = symbolNames().messages;
   Names messages, fields;
   for (const std::string& name : names) messages.insert(name.substr(0, name.find('.')));

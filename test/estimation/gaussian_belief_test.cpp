@@ -45,7 +45,7 @@ struct Textbook {
 };
 
 /// Friedland: the belief and what the innovations say of the constants are together the filter that estimates both.
-TEST(GaussianBelief, WithGatheredConstantsEqualsTextbookFilterOfBoth) {
+TEST(GaussianBelief, EqualsTheTextbookFilterWithGatheredConstants) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Machine machine(seed);
     const Machine::Run run = machine.run(seed + 100, 60);
@@ -71,7 +71,7 @@ TEST(GaussianBelief, WithGatheredConstantsEqualsTextbookFilterOfBoth) {
   }
 }
 
-TEST(GaussianBelief, LastStateOfBatchLeastSquares) {
+TEST(GaussianBelief, EqualsTheLastStateOfBatchLeastSquares) {
   Machine machine(7);
   machine.prior *= 0.1;
   const Machine::Run run = machine.run(8, 25);
@@ -97,7 +97,7 @@ TEST(GaussianBelief, LastStateOfBatchLeastSquares) {
 
 /// Errors over their covariance (NEES): kN in the mean of machines whose constants are drawn from the prior, and not so
 /// where the constants are left out.
-TEST(GaussianBelief, ErrorsOfDrawnMachinesAreAsLargeAsSaid) {
+TEST(GaussianBelief, ErrorsOfDrawnMachinesHaveTheStatedSize) {
   const Machine machine(3);
   const Eigen::Matrix3d of_constants = machine.prior.cwiseAbs2().asDiagonal();
   constexpr int kRuns = 2000;
@@ -234,7 +234,7 @@ TEST(GaussianBelief, NeedsNoConstants) {
   EXPECT_DOUBLE_EQ(belief.covariance(0, 0), 2.23 / 3.23);
 }
 
-TEST(ConstantFit, FadesTakesAndBoundsWhatOneInnovationSays) {
+TEST(ConstantFit, FadesUpdatesAndBoundsTheEffectOfOneInnovation) {
   ConstantFit<1> fit;
   using Row = ConstantFit<1>::Row;
   fit.begin(ConstantFit<1>::Vector(10.0));

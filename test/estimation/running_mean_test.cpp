@@ -45,7 +45,7 @@ TEST(RunningMean, TakesTimesForWeights) {
   EXPECT_TRUE(coarse.mean().isApprox(-value, 1e-12));
 }
 
-TEST(RunningMean, FirstGuessCountsAsSaid) {
+TEST(RunningMean, FirstGuessCountsAsStated) {
   RunningMean<> mean(10.0, 4.0, 1.0);
   mean.add(0.0);
   EXPECT_DOUBLE_EQ(mean.mean(), 2.0);
@@ -63,7 +63,7 @@ TEST(Latch, EngagesHighAndReleasesLow) {
 }
 
 /// As often as their names say: a million drawn.
-TEST(Gate, NoiseExceedsAsOftenAsSaid) {
+TEST(Gate, NoiseExceedsItAtTheStatedRate) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0.0, 3.0);
   int usual = 0, rare = 0, very_rare = 0, impossible = 0;
@@ -78,7 +78,7 @@ TEST(Gate, NoiseExceedsAsOftenAsSaid) {
   EXPECT_LE(impossible, 5);
 }
 
-TEST(Gate, WhatIsNoNumberPasses) {
+TEST(Gate, PassesNotANumber) {
   EXPECT_FALSE(exceeds(std::numeric_limits<double>::quiet_NaN(), 1.0, gate::kUsual));
   EXPECT_TRUE(exceeds(5.1, 1.0, gate::kImpossible));
   EXPECT_FALSE(exceeds(-4.9, 1.0, gate::kImpossible));

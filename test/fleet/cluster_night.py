@@ -91,7 +91,7 @@ class Cluster(unittest.TestCase):
         db.close()
         return rows
 
-    def test_in_the_order_of_a_working_day(self):
+    def test_jobs_survive_a_working_day(self):
         out = self.directory / "out"
         running = self.start(out)
         self.kill_two()

@@ -27,7 +27,7 @@ class Lists(unittest.TestCase):
         self.assertEqual(as_csv[0].parameters, (str(self.directory / "h.yaml"), str(self.directory / "b.yaml")))
         self.assertEqual(as_csv[1].bag, "/abs/y.bag")
 
-    def test_folder(self):
+    def test_a_folder_is_a_list_of_bags(self):
         for machine, files in (("red", ("1.bag", "2.bag.active", "h.yaml", "notes.txt")), ("blue", ("1.bag",))):
             (self.directory / machine).mkdir()
             for name in files:

@@ -33,7 +33,7 @@ class Merge(MergeTest):
         self.assertEqual([c for c, in self.ask(
             f"SELECT class FROM machine_residues WHERE machine_channel = {at} ORDER BY place")], residue)
 
-    def test_in_pieces_as_at_once(self):
+    def test_merging_in_pieces_equals_merging_at_once(self):
         outcomes = [self.add(f"b{i}", first=1000 * i, seed=3 + i) for i in range(4)]
         self.merge(*outcomes, target="whole.sqlite")
         for outcome in reversed(outcomes):
@@ -87,7 +87,7 @@ class Merge(MergeTest):
         self.merge(self.add("a", of=sample.Machine("old")), self.add("b", first=900, seed=2, of=sample.Machine("new")))
         self.assertEqual(self.ask("SELECT count(*), count(DISTINCT identity) FROM machine_channels"), [(6, 2)])
 
-    def test_killed_between_bags_and_sums(self):
+    def test_a_kill_between_bags_and_sums_is_repaired(self):
         a = self.add("a")
         self.merge(a)
         db = sqlite3.connect(str(self.directory / "merged.sqlite"))

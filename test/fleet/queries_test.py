@@ -26,7 +26,7 @@ class Queries(MergeTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return list(csv.DictReader(io.StringIO(done.stdout)))
 
-    def test_answers(self):
+    def test_every_question_has_its_answer(self):
         self.assertEqual([row["machine"] for row in self.answer("worst_machines")], ["red", "blue"])
         self.assertEqual(self.answer("restarts")[0]["restarts"], "4")
         self.assertEqual(self.answer("highest_peaks")[0]["machine"], "red")
@@ -74,14 +74,14 @@ class Queries(MergeTest):
             self.assertGreater(max(places) - min(places), 0.9 * (picture.x[-1][0] - picture.x[0][0]))
             self.assertGreaterEqual(len({round(place) for place in places}), 4)
 
-    def test_misuse_by_machine(self):
+    def test_misuse_is_counted_by_machine(self):
         self.merge(self.add("m", "mauve", of=sample.Machine("mauve", misuse=(3, 100, 5, None)), seconds=80.0))
         row = next(row for row in self.answer("misuse") if row["machine"] == "mauve")
         self.assertAlmostEqual(float(row["blank_firings_per_hour"]), 3 * 3600 / 80, delta=0.5)
         self.assertAlmostEqual(float(row["blows_without_hold_down_per_hour"]), 5 * 3600 / 80, delta=0.5)
         self.assertEqual(row["still_s_per_hour"], "")
 
-    def test_boom_health_by_month(self):
+    def test_boom_health_is_shown_by_month(self):
         """A cylinder that softens from one month to the next; what is doubtful is in no trend."""
         for at, stiffness in enumerate((1.0, 0.98, 0.8)):
             oil = {"boom_cylinder": (stiffness, 0.0, 0), "arm_cylinder": (1.2, 0.0, 1)}
@@ -112,7 +112,7 @@ class Queries(MergeTest):
             self.assertTrue(path.read_text().startswith("-- "), path)
             self.answer(path.stem)
 
-    def test_a_file_that_is_none(self):
+    def test_a_file_that_is_no_database_is_refused(self):
         done = subprocess.run([sys.executable, str(FLEET / "query"), "life_left", "/dev/null"], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True)
         self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1))

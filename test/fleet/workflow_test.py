@@ -67,7 +67,7 @@ class Workflow(FleetTest):
         self.run_fleet(self.bags)
         self.assertEqual(self.calls(), everything)
 
-    def test_splits_of_one_recording_and_names_of_topics(self):
+    def test_splits_and_topics_reach_process_bag(self):
         folder = self.directory / "splits"
         folder.mkdir()
         (folder / "w_1.bag").write_text("3 20 1700000020 run1")
@@ -79,7 +79,7 @@ class Workflow(FleetTest):
                          ["--crank-topic", "/drive/encoder", "--imu-topic", "/imu"])
         self.assertEqual(sorted(self.bags_table()), ["w_0.bag", "w_2.bag"])
 
-    def test_list_and_rows_of_turns(self):
+    def test_a_list_with_rows_of_turns_is_merged(self):
         listed = self.directory / "list.csv"
         listed.write_text("machine,bag,parameters\nred,bags/red/r0.bag,bags/red/hammer.yaml\n"
                           "green,bags/red/none.bag,\n")

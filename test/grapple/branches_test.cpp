@@ -66,7 +66,7 @@ TEST(Branches, ClaimsSetHasTwoModesBetweenItsFoldsAndNoneBeyond) {
   }
 }
 
-TEST(Branches, BothBranchesOfTheClaimsSet) {
+TEST(Branches, AreTwoForTheClaimsSet) {
   const GrappleParameters p = test::claimsParameters();
   const LeverGroup group(p);
   const Branches closed = enumerateBranches(group, pinA(p, -1.30230276491399));
@@ -128,7 +128,7 @@ int modesByScan(const GrappleParameters& p, double distance, int samples) {
   return modes;
 }
 
-TEST(Branches, AsManyAsAScanOfTheConfigurationCurveFinds) {
+TEST(Branches, AreAsManyAsAScanOfTheConfigurationCurveFinds) {
   test::Random random(22);
   int with_six = 0, differing = 0;
   for (int i = 0; i < 3000; ++i) {

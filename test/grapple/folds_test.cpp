@@ -29,7 +29,7 @@ double concurrency(const FirstRocker& rocker, const GroupPose& pose, double thet
          l3.offset * cross(l1.normal, l2.normal);
 }
 
-TEST(Folds, OfTheClaimsSet) {
+TEST(Folds, AreThoseOfTheClaimsSet) {
   const GrappleParameters p = test::claimsParameters();
   const LeverGroup group(p);
   const FirstRocker rocker = rockerOf(p);
@@ -52,7 +52,7 @@ TEST(Folds, OfTheClaimsSet) {
   EXPECT_EQ(findBranchEnd(group, rocker, start, +1, 0.1).kind, BranchEnd::Kind::kNone);
 }
 
-TEST(Folds, OfTheStraightSet) {
+TEST(Folds, AreThoseOfTheStraightSet) {
   const GrappleParameters p = test::straightParameters();
   const Grapple grapple = test::grappleOf(p);
   const GrappleMotion m = *grapple.at(-0.266);
@@ -68,7 +68,7 @@ TEST(Folds, OfTheStraightSet) {
   EXPECT_NEAR(findBranchEnd(group, rocker, start, -1, 7.0).point.theta1, -2.375474242330, 1e-12);
 }
 
-TEST(Folds, OfRandomLinkagesAreSingularAndEndTheBranch) {
+TEST(Folds, AreSingularAndEndTheBranchOfRandomLinkages) {
   test::Random random(31);
   int folds = 0, full_turns = 0, singular = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -104,7 +104,7 @@ TEST(Folds, OfRandomLinkagesAreSingularAndEndTheBranch) {
   EXPECT_EQ(singular, 0);
 }
 
-TEST(SliderLimits, OfBothSets) {
+TEST(SliderLimits, AreThoseOfBothSets) {
   const Grapple claims = test::grappleOf(test::claimsParameters());
   EXPECT_EQ(claims.lowerLimit().kind, SliderLimit::Kind::kDeadPoint);
   EXPECT_NEAR(claims.lowerLimit().slider, -0.27, 1e-15);

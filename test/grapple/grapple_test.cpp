@@ -66,7 +66,7 @@ TEST(GrappleFile, ShippedFilesHoldTheTwoSets) {
   expectSame(straight.value->parameters(), test::straightParameters());
 }
 
-TEST(GrappleFile, ShippedFilesSayWhatTheyAre) {
+TEST(GrappleFile, ShippedFilesStateWhatTheyAre) {
   for (const char* name : {"grapple_claims.yaml", "grapple_straight.yaml"}) {
     std::ifstream file(configFile(name));
     const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -125,7 +125,7 @@ TEST(Grapple, RefusesValuesThatAreNotFinite) {
   EXPECT_EQ(grapple.problems.size(), 2u);
 }
 
-TEST(Grapple, BesideAFoldTheNearestPoseIsTheReference) {
+TEST(Grapple, TakesTheNearestPoseAsReferenceBesideAFold) {
   const GrappleParameters p = test::claimsParameters();
   const double slider = 0.7331;  // the other branch lies 0.012 rad away
   const GrappleMotion working = *test::grappleOf(p).at(slider);
@@ -150,7 +150,7 @@ TEST(Grapple, ParallelogramAtTheReferenceIsRefused) {
   EXPECT_TRUE(mentions(grapple.problems, "can move with the slider held"));
 }
 
-TEST(Grapple, SaysWhyThereIsNoPose) {
+TEST(Grapple, StatesWhyThereIsNoPose) {
   const Grapple grapple = test::grappleOf(test::claimsParameters());
   EXPECT_EQ(grapple.judge(0.74), SliderRefusal::kAcrossFold);       // the drive closes, the lever group does not
   EXPECT_EQ(grapple.judge(0.9), SliderRefusal::kOutOfReach);        // beyond the drive's upper dead point at 0.89

@@ -149,7 +149,7 @@ TEST(GrappleMotion, EqualsTheExplicitCurveToFiftyDigitsOverTheStroke) {
   }
 }
 
-TEST(GrappleMotion, BesideTheFoldDerivativesGrowAsTheyMust) {
+TEST(GrappleMotion, DerivativesGrowAsTheyMustBesideTheFold) {
   const GrappleParameters p = test::claimsParameters();
   const Grapple grapple = test::grappleOf(p);
   const double fold = grapple.upperLimit().slider;
@@ -172,7 +172,7 @@ TEST(GrappleMotion, BesideTheFoldDerivativesGrowAsTheyMust) {
   }
 }
 
-TEST(GrappleMotion, BesideTheDeadPointItIsStillRegular) {
+TEST(GrappleMotion, IsStillRegularBesideTheZeroMomentArm) {
   const auto m = test::grappleOf(test::claimsParameters()).at(-0.26);
   ASSERT_TRUE(m);
   expectClose(m->p, {-1.0858388224, -2.1317411179}, 1e-10, "P");
@@ -235,7 +235,7 @@ TEST(GrappleMotion, TimeDerivativesEqualDifferencesAndTheLeftJawMirrorsThem) {
   EXPECT_EQ(left.turning_acceleration, -now.turning_acceleration);
 }
 
-TEST(GrappleMotion, LinkDirectionsTurnAsTheirDerivativesSay) {
+TEST(GrappleMotion, LinkDirectionsFollowTheirDerivatives) {
   const Grapple grapple = test::grappleOf(test::straightParameters());
   const double slider = -0.3, step = 1e-5;
   const auto before = grapple.linkDirections(*grapple.at(slider - step));
@@ -245,7 +245,7 @@ TEST(GrappleMotion, LinkDirectionsTurnAsTheirDerivativesSay) {
     EXPECT_NEAR(now[i].d, (after[i].angle - before[i].angle) / (2.0 * step), 1e-8) << "link " << i + 1;
 }
 
-TEST(GrappleMotion, RegularWhereATriangleFormulaWouldChangeSign) {
+TEST(GrappleMotion, IsRegularWhereATriangleFormulaWouldChangeSign) {
   // theta1 = -90 deg: A on the line O-O1.
   const Grapple grapple = test::grappleOf(test::claimsParameters());
   double low = grapple.lowerLimit().slider + 1e-6, high = 0.332;

@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-TEST(GebelsFormulas, FailWhereTheErrataSay) {
+TEST(GebelsFormulas, FailWhereTheErrataStateIt) {
   const GrappleParameters p = test::claimsParameters();
   const Grapple grapple = test::grappleOf(p);
   // Z_O^-1 is printed with + sin in the second row: it does not keep |A|, and is singular at phi_OD = -45 deg.

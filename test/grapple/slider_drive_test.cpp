@@ -57,7 +57,7 @@ TEST(SliderDrive, EqualsTheLawOfCosinesToHundredDigits) {
   EXPECT_LT(worst_second, 1e-13);
 }
 
-TEST(SliderDrive, ReachEndsInTheDeadPoints) {
+TEST(SliderDrive, ReachEndsWhereTheMomentArmIsZero) {
   const SliderDrive drive(test::claimsParameters());
   const auto upper = drive.reachAround(0.3);
   ASSERT_TRUE(upper);

@@ -37,7 +37,7 @@ std::vector<double> swing(const GrappleParameters& p) {
 
 constexpr double kWarmLimit = 300.0, kColdLimit = 20000.0;  // [ns], demanded
 
-TEST(Speed, WarmStepWithVelocityAndAccelerationOfBothJaws) {
+TEST(Speed, StaysBelowItsBoundInAWarmStepOfBothJaws) {
   for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
     GrappleTracker tracker(test::grappleOf(p));
     const std::vector<double> sliders = swing(p);
@@ -56,7 +56,7 @@ TEST(Speed, WarmStepWithVelocityAndAccelerationOfBothJaws) {
   }
 }
 
-TEST(Speed, ColdEnumeration) {
+TEST(Speed, StaysBelowItsBoundInAColdEnumeration) {
   const GrappleParameters p = test::claimsParameters();
   const Grapple grapple = test::grappleOf(p);
   const std::vector<double> sliders = swing(p);

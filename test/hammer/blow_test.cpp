@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-TEST(Blow, OfThePapersHammerAtNameplateSpeedGivesAThousandJoule) {
+TEST(Blow, GivesAThousandJouleForThePapersHammerAtNameplateSpeed) {
   // model.md 1, 6: R = 0.1753; 13.6 rad/s for 1000 J; 31.416 rad/s brings 5476 J, of which the rebound keeps R^2.
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const RockerBlow nominal = blowAtCrankSpeed(mechanism, 31.416);
@@ -23,7 +23,7 @@ TEST(Blow, OfThePapersHammerAtNameplateSpeedGivesAThousandJoule) {
   EXPECT_NEAR(nominal.tool_impulse_z, 534.602622037, 1e-8);
 }
 
-TEST(Blow, MeasuredByAnUnchangedCrankIsThatAtItsSpeed) {
+TEST(Blow, IsThatAtTheCrankSpeedIfTheCrankIsUnchanged) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const RockerBlow measured = measuredBlow(mechanism, Level::kRocker, {13.6, 0.0, 1.0, 0.0, 0.6, 0.0});
   const RockerBlow known = blowAtCrankSpeed(mechanism, 13.6);
@@ -36,7 +36,7 @@ TEST(Blow, MeasuredByAnUnchangedCrankIsThatAtItsSpeed) {
 }
 
 /// The hull gets what the tool gives less what the links take up, by their momenta before and after.
-TEST(Blow, MeasuredImpulsesAreTheMomentaOfAllLinks) {
+TEST(Blow, ChangesTheMomentaOfAllLinksByTheMeasuredImpulses) {
   HammerParameters parameters = test::mo100LinkageParameters();
   parameters.drive_reaction_ratio = 0.5;
   const Mechanism mechanism = test::mechanismOf(parameters);
@@ -90,7 +90,7 @@ TEST(Blow, SupportTakesWhatMissesThePercussionCentre) {
   }
 }
 
-TEST(Blow, RodGivesUpTheEnergyThatTheLinkageLoses) {
+TEST(Blow, RodLosesTheEnergyThatTheLinkageLoses) {
   // Kinetic energy of the links with the crank's speed kept; crank and drive do not change theirs. What remains beside
   // the rod's turning about B is the rod's centre carried along by B: its momentum times B's speed.
   HammerParameters p = test::mo100LinkageParameters();

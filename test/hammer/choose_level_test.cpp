@@ -46,7 +46,7 @@ TEST(ChooseLevel, TakesTheCheapestWithinTolerance) {
   EXPECT_EQ(chooseLevel(mechanism, 1.001 * strict.difference[0], 5.0, kG).level, Level::kPulse);
 }
 
-TEST(ChooseLevel, ADrawingThatIsKnownWorseAllowsACheaperLevel) {
+TEST(ChooseLevel, AllowsACheaperLevelForLessCertainParameters) {
   HammerParameters p = drawing();
   const double known = chooseLevel(test::mechanismOf(p), 1.0, 5.0, kG).difference[1];
   for (double& deviation : p.deviations) deviation *= 0.5;
@@ -59,7 +59,7 @@ HammerParameters drawingWithRod(const RodSpring& rod) {
   return p;
 }
 
-TEST(ChooseLevel, ARodThatGivesNeedsElastic) {
+TEST(ChooseLevel, AnElasticRodNeedsElastic) {
   const Mechanism mechanism = test::mechanismOf(drawingWithRod({8e8, 0.3, 0.0}));
   const LevelChoice choice = chooseLevel(mechanism, 0.5, 5.0, kG);
   EXPECT_EQ(choice.level, Level::kElastic);
@@ -86,7 +86,7 @@ TEST(ChooseLevel, LongMeansAndStiffRodsNeedLess) {
   EXPECT_LT(stiff, 0.2 * chooseLevel(mechanism, 0.5, 5.0, kG).difference[2]);
 }
 
-TEST(ChooseLevel, SaysWhichAndWhyWithTheFigures) {
+TEST(ChooseLevel, StatesTheLevelAndTheReasonWithFigures) {
   const std::string line = describe({Level::kRocker, 0.5, false, {12.5, 0.123, 0.0}});
   EXPECT_NE(line.find("rocker is the cheapest"), std::string::npos) << line;
   EXPECT_NE(line.find("within 0.5 of"), std::string::npos) << line;

@@ -150,7 +150,7 @@ double errorOfFixedHull(const Mechanism& mechanism, const test::HullBody& body) 
 }
 
 /// Rocker's mass over the hull's, 35.2/400, and more if the hull's centre of mass is not on the tool's axis through D.
-TEST(MovingHull, TakenAsAtRestIsWrongByTheRatioOfMasses) {
+TEST(MovingHull, IsWrongByTheRatioOfMassesIfTakenAsAtRest) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   test::HullBody body = test::onBoom();
   EXPECT_NEAR(errorOfFixedHull(mechanism, body), 0.138, 0.005);
@@ -162,7 +162,7 @@ TEST(MovingHull, TakenAsAtRestIsWrongByTheRatioOfMasses) {
 
 bool sameBits(const HullWrench& a, const HullWrench& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-TEST(MovingHull, AtRestEveryLoadIsTheSameToTheBit) {
+TEST(MovingHull, LeavesEveryLoadEqualToTheBitAtRest) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   std::mt19937 random(11);
   std::uniform_real_distribution<> any(-1.0, 1.0);

@@ -216,7 +216,7 @@ TEST(HullWrench, LightCrankAndRodApproachTheRockerInProportion) {
   EXPECT_NEAR(miss(1e-3) / miss(1.0), 1e-3, 1e-9);
 }
 
-TEST(HullWrench, AtRestItIsTheWeight) {
+TEST(HullWrench, IsTheWeightAtRest) {
   const HammerParameters p = test::mo100LinkageParameters();
   const Mechanism mechanism = test::mechanismOf(p);
   const CrankMotion still{CrankAngle::fromAngle(1.0), 0.0, 0.0};
@@ -257,7 +257,7 @@ Printed asPrinted(const HammerParameters& p, double phi, double w, double sign_o
   return {-normal * std::cos(psi) + tangential * std::sin(psi), normal * std::sin(psi) + tangential * std::cos(psi)};
 }
 
-TEST(PrintedFormulas, WithTheSignMendedGiveTheSameForces) {
+TEST(PrintedFormulas, GiveEqualForcesWithTheSignMended) {
   const HammerParameters p = test::mo100Parameters();
   const Mechanism mechanism = test::mechanismOf(p);
   for (double phi = 0.05; phi < 6.25; phi += 0.05) {
@@ -269,7 +269,7 @@ TEST(PrintedFormulas, WithTheSignMendedGiveTheSameForces) {
   }
 }
 
-TEST(PrintedFormulas, AsPrintedPeakAtAThirdAndPushOneWayOnly) {
+TEST(PrintedFormulas, PeakAtAThirdAndPushOneWayOnlyAsPrinted) {
   const HammerParameters p = test::mo100Parameters();
   double highest_z = -1e9, highest_x = -1e9, lowest_x = 1e9, impulse_x = 0.0;
   constexpr int kSteps = 36000;

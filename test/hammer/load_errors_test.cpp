@@ -24,7 +24,7 @@ LoadWay wayNamed(const std::string& name) {
   throw std::invalid_argument(name);
 }
 
-TEST(LoadErrors, OfEveryLevelStayBelowTheBoundOnEveryHardCase) {
+TEST(LoadErrors, StayBelowTheBoundAtEveryLevelOnEveryHardCase) {
   for (const HardCase& hard_case : hardCases(kHammer)) {
     for (const Level level : {Level::kRocker, Level::kLinkage}) {
       const ExactCase exact(hard_case, level);

@@ -124,7 +124,7 @@ TEST(ConstantSpeedPulse, LobeWithoutAZeroBeginsWithTheTurn) {
   EXPECT_TRUE(std::isfinite(pulse.start));
 }
 
-TEST(ConstantSpeedPulse, WithoutAPositiveForceThereIsNoPulse) {
+TEST(ConstantSpeedPulse, HasNoPulseWithoutAPositiveForce) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const HalfSinePulse pulse = pulseAtConstantSpeed(mechanism, Level::kRocker, 0.01, {0.0, -9.8}).pulse;
   EXPECT_LT(pulse.amplitude, 0.0);

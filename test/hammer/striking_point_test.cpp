@@ -41,7 +41,7 @@ TEST(StrikingPoint, GivesTheImpulsesOfARigidBodyImpactForAnyRocker) {
   EXPECT_GT(slid, 500);
 }
 
-TEST(StrikingPoint, OnTheLineDoesNotSlideWhateverTheFriction) {
+TEST(StrikingPoint, DoesNotSlideOnTheLineWhateverTheFriction) {
   HammerParameters rough = test::mo100LinkageParameters(), smooth = rough;
   rough.striking_friction = 0.9;
   for (const Level level : {Level::kRocker, Level::kLinkage}) {

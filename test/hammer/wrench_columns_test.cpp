@@ -63,7 +63,7 @@ std::vector<Place> drawnPlaces() {
   return places;
 }
 
-TEST(WrenchColumns, AreTheLoadsOfTheHammersBesideIt) {
+TEST(WrenchColumns, EqualTheLoadsOfTheHammersBesideIt) {
   constexpr double kInertia = 0.7;
   int seen = 0;
   for (const double ratio : {0.0, 0.3, 1.0}) {
@@ -94,7 +94,7 @@ TEST(WrenchColumns, AreTheLoadsOfTheHammersBesideIt) {
   EXPECT_GT(seen, 3 * 3 * 40 * 12);
 }
 
-TEST(WrenchColumns, OnTheShaftAreTheLoadsOfTheHammersBesideIt) {
+TEST(WrenchColumns, EqualTheLoadsOnTheShaftOfTheHammersBesideIt) {
   const HammerParameters p = uncertain(1.0);
   const Mechanism mechanism = test::mechanismOf(p);
   for (const Level level : {Level::kRocker, Level::kLinkage}) {

@@ -123,7 +123,7 @@ class Mutations(unittest.TestCase):
         shutil.rmtree(str(folder))
         return done.returncode
 
-    def test_each_kind(self):
+    def test_mutations_of_each_kind_are_survived(self):
         kinds = ["bag", "yaml", "ledger", "db", "states", "series"]
         draw, before, problems = random.Random(SEED), None, []
         for kind in kinds:

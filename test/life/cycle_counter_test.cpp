@@ -52,7 +52,7 @@ TEST(CycleCounter, SaturationIsCountedAndCountsInTheOuterClass) {
   EXPECT_EQ(count.extremes.greatest, 1e30);
 }
 
-TEST(CycleCounter, WhatIsNoNumberChangesNothingButItsOwnCount) {
+TEST(CycleCounter, ANumberThatIsNoneChangesItsOwnCountAlone) {
   const LoadGrid grid = integerGrid(-5, 5);
   const Series good{1, -3, 5, -1, 3, -4, 4, -2};
   Series with;

@@ -18,7 +18,7 @@ const std::vector<RangeMean> kFigure6{{3, -0.5, 0.5}, {4, -1, 0.5}, {4, 1, 1},  
 
 const RangeDeviation kNone{kNaN, 0.0, kNaN};
 
-TEST(EquivalentLoad, O1OfTheStandardsExample) {
+TEST(EquivalentLoad, EqualsO1OfTheStandardsExample) {
   // nine digits quoted
   EXPECT_NEAR(equivalentLoad(kFigure6, 3.0, 1.0, kNone).value, 10.3039982, 5e-8);
   EXPECT_NEAR(equivalentLoad(kFigure6, 4.0, 1.0, kNone).value, 9.58741061, 5e-9);
@@ -28,7 +28,7 @@ TEST(EquivalentLoad, O1OfTheStandardsExample) {
 
 // O11: a sine of amplitude A at frequency f over T, with one equivalent cycle each T_eq, has 2 A (f T_eq)^(1/m)
 // whatever its mean. Samples at the peaks; the half cycles from and to the mean at both ends are the rest.
-TEST(EquivalentLoad, O11OfASine) {
+TEST(EquivalentLoad, EqualsO11ForASine) {
   const double amplitude = 7.0, frequency = 5.0, equivalent_period = 2.0;
   const int periods = 100000;
   for (const double mean : {0.0, -31.0}) {
@@ -45,7 +45,7 @@ TEST(EquivalentLoad, O11OfASine) {
 }
 
 // O11: damage sums of joined records add.
-TEST(EquivalentLoad, O11SumsOfRecordsAdd) {
+TEST(EquivalentLoad, AddsUpOverRecordsAsInO11) {
   std::vector<RangeMean> both = kFigure6;
   both.insert(both.end(), {{2.5, 0.0, 17.0}, {11.0, 3.0, 0.5}});
   const double first = std::pow(equivalentLoad(kFigure6, 5.0, 1.0, kNone).value, 5.0);
@@ -53,7 +53,7 @@ TEST(EquivalentLoad, O11SumsOfRecordsAdd) {
   EXPECT_NEAR(std::pow(equivalentLoad(both, 5.0, 1.0, kNone).value, 5.0), first + second, 1e-13 * (first + second));
 }
 
-TEST(EquivalentLoad, NoCyclesAndExtremeOnesHaveAValue) {
+TEST(EquivalentLoad, HasAValueForNoCyclesAndForExtremeOnes) {
   EXPECT_EQ(equivalentLoad({}, 5.0, 10.0, {1.0, 0.0, kNaN}).value, 0.0);
   EXPECT_EQ(equivalentLoad({}, 5.0, 10.0, {1.0, 0.0, kNaN}).deviation, 0.0);
   EXPECT_NEAR(equivalentLoad({{1e200, 0.0, 1.0}}, 10.0, 1.0, kNone).value / 1e200, 1.0, 1e-14);
@@ -84,7 +84,7 @@ Series twoSines() {
 }
 
 // O12: amplitude 1000 at 1e7 cycles, slope 5.
-TEST(Damage, O12TwoSines) {
+TEST(Damage, EqualsO12ForTwoSines) {
   const SnCurve curve = SnCurve::make(2000.0, 1e7, 5.0, 5.0).value.value();
   const double by_hand = 8.451272e-4;
   const ExactCycles count = exactCount(twoSines());
@@ -110,7 +110,7 @@ TEST(Damage, O12TwoSines) {
   }
 }
 
-TEST(Damage, O13MeanStressByFkm) {
+TEST(Damage, EqualsO13ForMeanStressByFkm) {
   const FkmMeanStress fkm{0.3};
   const struct {
     double amplitude, mean, at_alternating;

@@ -124,7 +124,7 @@ TEST(Ledger, AnythingElseInItsPlaceIsLeftAsItIs) {
   EXPECT_EQ(LedgerRun(file.path("empty"), machine(), "a").end(piece), kWritten);
 }
 
-TEST(Ledger, AFileThatIsTakenAwayIsBegunAnew) {
+TEST(Ledger, StartsAFileThatIsTakenAwayAgain) {
   const LedgerFile file;
   LifeRecorder part = recorder(), after = recorder();
   Loads loads(6);

@@ -119,7 +119,7 @@ TEST(LedgerMix, IsTheWholeRecordingsEachOnce) {
   }
 }
 
-TEST(LedgerMix, WhatIsMoreCompleteTakesThePlaceByItself) {
+TEST(LedgerMix, AMoreCompleteRunReplacesTheOther) {
   const LedgerFile file;
   killed(file.path(), {1}, 2);
   EXPECT_EQ(contentsOf(file.path()).totals.at(0)[0].tally.counted, 2U * kSamplesOfPiece);

@@ -103,7 +103,7 @@ TEST(LedgerThread, PiecesThatWaitForTheDiskAreAddedUp) {
   EXPECT_EQ(contentsOf(file.path()).totals.at(0)[0].tally.counted, 201U * 60000U);
 }
 
-TEST(LedgerThread, WaitsForAnotherWriterAndSaysSo) {
+TEST(LedgerThread, WaitsForAnotherWriterAndReportsIt) {
   const LedgerFile file;
   const Contents expected = pieceByPiece(file.path("direct.sqlite"));
   std::optional<Holder> other(std::in_place, file.path(), "BEGIN EXCLUSIVE");
@@ -117,7 +117,7 @@ TEST(LedgerThread, WaitsForAnotherWriterAndSaysSo) {
   expectTheSame(contentsOf(file.path()), expected);
 }
 
-TEST(LedgerThread, SaysAtItsEndWhatIsNotWritten) {
+TEST(LedgerThread, ReportsAtItsEndWhatIsNotWritten) {
   const LedgerFile file;
   std::ofstream(file.path()) << "no ledger at all, but a text that is long enough to be taken for one, or so it seems";
   const std::string before = file.bytes();

@@ -21,7 +21,7 @@ TEST(TurnExtremes, ASampleThatIsHardlyKnownMayBeTheExtreme) {
   EXPECT_DOUBLE_EQ(hardly.ofRange().common, 0.3);
 }
 
-TEST(TurnExtremes, WithoutDeviationsThereIsNone) {
+TEST(TurnExtremes, HaveNoDeviationWithoutThoseOfSamples) {
   TurnExtremes turn;
   turn.add(1.0, {});
   turn.add(3.0, {});

@@ -37,7 +37,7 @@ void expectClosed(const Series& series, const ClosedPairs& closed, const Series&
   for (std::size_t i = 0; i < residue.size(); ++i) EXPECT_EQ(on_grid.residue[i] - 20.0, residue[i]);
 }
 
-TEST(Oracles, O1AstmFigure6) {
+TEST(Oracles, EqualsO1AstmFigure6) {
   expectRanges(kSeriesOfFigure6, {{3, 0.5}, {4, 1.5}, {6, 0.5}, {8, 1}, {9, 0.5}});
   expectClosed(kSeriesOfFigure6, {{-1, 3, 1}}, {-2, 1, -3, 5, -4, 4, -2});
   const Cycles expected{{{3, -0.5}, 0.5}, {{4, -1}, 0.5}, {{4, 1}, 1},    {{6, 1}, 0.5},
@@ -52,7 +52,7 @@ struct Numbered {
   bool operator==(const Numbered& o) const { return value == o.value; }
 };
 
-TEST(Oracles, O1PointsCarryWhereTheyAre) {
+TEST(Oracles, PointsCarryTheirPlacesInO1) {
   FourPointStack<Numbered> stack;
   std::vector<std::pair<int, int>> closed;
   for (int i = 0; i < static_cast<int>(kSeriesOfFigure6.size()); ++i) {
@@ -66,7 +66,7 @@ TEST(Oracles, O1PointsCarryWhereTheyAre) {
 }
 
 // A repeating history: begun at its largest peak it closes up to one cycle (ASTM E1049-85, 5.4.5).
-TEST(Oracles, O2AstmFigure7) {
+TEST(Oracles, EqualsO2AstmFigure7) {
   const Series history{-2, 1, -3, 5, -1, 3, -4, 4};
   Series from_peak;
   for (std::size_t i = 0; i <= history.size(); ++i) from_peak.push_back(history[(3 + i) % history.size()]);
@@ -80,23 +80,23 @@ TEST(Oracles, O2AstmFigure7) {
   EXPECT_NEAR(sum / sum_once - 1.0, 0.137, 5e-4);
 }
 
-TEST(Oracles, O6) {
+TEST(Oracles, EqualsO6) {
   expectRanges({2, -14, 10, 0, 13, -9, 11, -8, 8, -9, 15, -4, 10, 0, 13, 0},
                {{10, 2}, {13, 0.5}, {16, 1.5}, {17, 0.5}, {19, 0.5}, {20, 1}, {22, 1}, {29, 0.5}});
 }
 
-TEST(Oracles, O7) {
+TEST(Oracles, EqualsO7) {
   expectClosed({4, 7, 2, 10, 5, 9, 3, 4, 2, 12, 5, 11, 1, 4, 3, 10, 6, 12, 4, 8, 1, 9, 4, 6},
                {{5, 9, 1}, {3, 4, 2}, {2, 10, 1}, {5, 11, 1}, {6, 10, 1}, {4, 8, 1}, {1, 12, 1}},
                {4, 7, 2, 12, 1, 9, 4, 6});
 }
 
-TEST(Oracles, O8) {
+TEST(Oracles, EqualsO8) {
   expectClosed({2, 5, 3, 6, 2, 4, 1, 6, 1, 4, 1, 5, 3, 6, 3, 6, 1, 5, 2},
                {{3, 5, 2}, {3, 6, 1}, {1, 4, 1}, {2, 4, 1}, {1, 6, 2}}, {2, 6, 1, 5, 2});
 }
 
-TEST(Oracles, O9) {
+TEST(Oracles, EqualsO9) {
   expectRanges({-1.5, 1, -3, 10, -1, 3, -8, 4, -2, 6, -1, -4, -8, 2, 1, -5, 0, 2.5, -4, 1, 0, 2, -.5},
                {{1, 1}, {2.5, 1}, {4, 1.5}, {6, 1.5}, {6.5, .5}, {7, 1}, {10.5, .5}, {13, .5}, {14, 1}, {18, .5}});
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1000000;
 
-TEST(TurnLoads, OfSamplesAndTheExtremesBetween) {
+TEST(TurnLoads, AreThoseOfSamplesAndTheExtremesBetween) {
   TurnLoadsRecorder recorder(2);
   const double a[] = {1.0, 5.0}, b[] = {3.0, -2.0}, peak[] = {4.0, kNaN}, c[] = {2.0, 0.0};
   recorder.add(10 * kMs, a);

@@ -21,7 +21,7 @@ TEST(CrankRocker, AcceptsThePapersHammerWithoutRemark) {
   EXPECT_NEAR(made.value->ratios().lambda3, 2.5, 1e-15);
 }
 
-TEST(CrankRocker, CorrectsTheRodWithinToleranceAndSaysSo) {
+TEST(CrankRocker, CorrectsTheRodWithinToleranceAndReportsIt) {
   LinkLengths rounded = kMo100;
   rounded.rod += 0.9e-3 * rounded.crank;
   const Checked<CrankRocker> made = CrankRocker::make(rounded);

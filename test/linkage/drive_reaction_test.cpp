@@ -23,7 +23,7 @@ TEST(DriveReaction, IsTheRotorsChangeOfAngularMomentum) {
   }
 }
 
-TEST(DriveReaction, OfALevelThatCountsTheCrankAsDriveHasItsInertiaAtOne) {
+TEST(DriveReaction, HasTheCranksInertiaAtOneForALevelThatCountsItAsDrive) {
   const HammerParameters p = test::mo100LinkageParameters();
   const double crank = p.crank_inertia_about_com +
                        p.crank_mass * (p.crank_com_along * p.crank_com_along + p.crank_com_across * p.crank_com_across);

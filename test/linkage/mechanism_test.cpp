@@ -80,7 +80,7 @@ TEST(Mechanism, KeepsParametersWithTheRodCorrected) {
   EXPECT_NEAR(made.value->rockerFirstMoment(), 35.2 * 0.106, 1e-15);
 }
 
-TEST(Mechanism, MassesAtRestHaveTheFirstMomentOfTheDrawing) {
+TEST(Mechanism, MassesAtRestHaveTheNominalFirstMoment) {
   // At the blow crank, rod and rocker lie on the xi axis: sum of mass times position from D, placed by hand.
   const HammerParameters p = test::mo100LinkageParameters();
   const Mechanism mechanism = test::mechanismOf(p);

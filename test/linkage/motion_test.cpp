@@ -141,7 +141,7 @@ TEST(Motion, HasThePapersRatiosAtTheBlow) {
   }
 }
 
-TEST(Motion, BothBranchesMeetHalfATurnFromTheBlow) {
+TEST(Motion, BranchesMeetHalfATurnFromTheBlow) {
   std::mt19937 random(10);
   for (int i = 0; i < 10; ++i) {
     const Mechanism mechanism = test::mechanismOf(test::randomParameters(random));

@@ -129,7 +129,7 @@ TEST_F(LogTest, OutlivesWriteErrors) {
   EXPECT_EQ(readAll().size(), 1u);
 }
 
-TEST_F(LogTest, SaysThatItsDirectoryMayNotBeWritten) {
+TEST_F(LogTest, ReportsThatItsDirectoryMayNotBeWritten) {
   settings_.directory = "/proc";  // not even by root
   EXPECT_NE(BagLog(settings_).start().at(0).find("log_directory: '/proc', must be writable"), std::string::npos);
   settings_.directory = path("locked");

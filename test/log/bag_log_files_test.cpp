@@ -60,7 +60,7 @@ TEST_F(LogTest, NeverOverwritesAFile) {
   EXPECT_EQ(wrenches, 2u);
 }
 
-TEST_F(LogTest, SaysBeforehandWhyItCannotStart) {
+TEST_F(LogTest, ReportsBeforehandWhyItCannotStart) {
   writeFile(path("file"), "");
   std::filesystem::create_directory(path("empty"));
   using Change = std::function<void(LogSettings&)>;

@@ -147,7 +147,7 @@ TEST_F(LogTest, StartsStopsAndSplitsOnRequest) {
   EXPECT_EQ(log.health().messages_dropped, 0u);
 }
 
-TEST_F(LogTest, WhatIsForgottenIsNotRepeated) {
+TEST_F(LogTest, DoesNotRepeatAForgottenMessage) {
   {
     BagLog log(settings_);
     ASSERT_TRUE(log.start().empty());
@@ -172,7 +172,7 @@ TEST_F(LogTest, WhatIsForgottenIsNotRepeated) {
   EXPECT_EQ(infos, (std::vector<std::string>{"old", "new", "new"}));
 }
 
-TEST_F(LogTest, SameInputsGiveSameContents) {
+TEST_F(LogTest, GivesEqualContentsForEqualInputs) {
   for (const char* prefix : {"one", "two"}) {
     settings_.prefix = prefix;
     settings_.split_size = prefix[0] == 'o' ? 64'000 : 100'000'000;

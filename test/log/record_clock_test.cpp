@@ -41,7 +41,7 @@ TEST(RecordClock, RisesWhateverTheWallClockDoes) {
   EXPECT_EQ(clock.last(), ros::Time(101.0));
 }
 
-TEST(RecordClock, BeginsAnewWhenSimulatedTimeRunsBack) {
+TEST(RecordClock, RestartsWhenSimulatedTimeRunsBack) {
   ros::Time::setNow(ros::Time(100.0));
   ASSERT_TRUE(ros::Time::isSimTime());
   RecordClock clock;

@@ -121,7 +121,7 @@ TEST(BesideBlow, MeansGoOn) {
 
 /// Some ms pass until the readings show that a blow was none; until then its force is published, and said to be as
 /// doubtful as blank blows are frequent.
-TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsSaidToBeDoubtful) {
+TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsFlagged) {
   const Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   simulation::MachineSettings machine = test::shippedMachine(shipped, 30.0, 431);
   machine.blow.blank_share = 0.1;

@@ -10,7 +10,7 @@ struct BoomAttack {
   Numbers angles;
 };
 
-TEST(InputAttack, TheBoomsAngles) {
+TEST(InputAttack, SurvivesAnyAnglesOfTheBoom) {
   const Names million(1000000, "joint");
   const BoomAttack attacks[] = {
       {"NaN", kBoom, {kNan, kNan, kNan}},

@@ -41,7 +41,7 @@ TEST(BoomFollower, AutoIsCompliantUntilALongPulseShowsThatRigidSuffices) {
   EXPECT_TRUE(automatic.sample(kLoad).choice.compliant);
 }
 
-TEST(BoomFollower, WithoutCylindersTheBoomIsRigid) {
+TEST(BoomFollower, TakesABoomWithoutCylindersAsRigid) {
   Follower automatic(BoomModel::kAuto, boomWithoutFile());
   automatic.sample(kLoad);
   automatic.follower.turnEnded(pulseOf(0.018), 300.0);
@@ -57,7 +57,7 @@ TEST(BoomFollower, WithoutCylindersTheBoomIsRigid) {
   EXPECT_EQ(rigid.follower.state().loads.total, state.loads.total);
 }
 
-TEST(BoomFollower, ADeadPointIsTakenAsRigid) {
+TEST(BoomFollower, TakesTheBoomAsRigidAtAZeroMomentArm) {
   BoomParameters parameters = shippedBoomParameters();
   // The arm's cylinder, in line with its joint at the working pose.
   CylinderParameters& arm = parameters.cylinders[1];

@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(
                             }}));
 
 /// What is lasting and no rock makes is an error of the sensors, or of masses and lengths.
-TEST(PressuresThatAreOff, SaySo) {
+TEST(PressuresThatAreOff, StayWithinTheDeviations) {
   const std::vector<std::function<double(double)>> wrong{[](double p) { return 1.02 * p; },
                                                          [](double p) { return p + 1e5; }};
   for (const bool rock : {false, true}) {

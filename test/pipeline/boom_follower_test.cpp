@@ -15,7 +15,7 @@ namespace {
 
 /// A load that is no number, in one step: the vibration begins anew, its loads are withheld until what was wrong would
 /// have died out, and are then those of a follower that knew nothing of it.
-TEST(BoomFollower, AVibrationThatRunsAwayBeginsAnewAndIsWithheldForAWhile) {
+TEST(BoomFollower, ResetsAVibrationThatRunsAwayAndWithholdsItForAWhile) {
   Follower struck(BoomModel::kCompliant), other(BoomModel::kCompliant);
   for (int i = 0; i < 50; ++i) ASSERT_FALSE(struck.sample(kLoad).fault) << "the channel";
   EXPECT_EQ(struck.follower.runaways(), 0U);
@@ -130,7 +130,7 @@ TEST(BoomFollower, NamesJointStatesThatComeLaterThanTheSample) {
       "boom joints: no loads for 1 samples: swing_joint: its states come later than the crank samples of their time");
 }
 
-TEST(BoomFollower, SaysWhichJointIsNotKnownAndGoesOnWhenItIs) {
+TEST(BoomFollower, NamesTheJointThatIsNotKnownAndGoesOnWhenItIs) {
   Follower compliant(BoomModel::kCompliant);
   EXPECT_TRUE(compliant.follower.sample({0, kLoad}, {}).fault);
   compliant.sample(kLoad);
@@ -148,7 +148,7 @@ TEST(BoomFollower, SaysWhichJointIsNotKnownAndGoesOnWhenItIs) {
   EXPECT_TRUE(compliant.follower.state().tip.velocity.isZero(0.0));
 }
 
-TEST(BoomFollower, TellsTheHullsLoadAtALink) {
+TEST(BoomFollower, StatesTheHullsLoadAtALink) {
   Follower rigid(BoomModel::kRigid);
   rigid.follower.jointStates(0, kFour, {0.0, 0.0, 0.4, 0.0}, {});
   rigid.follower.sample({0, {}}, {});
@@ -162,7 +162,7 @@ TEST(BoomFollower, TellsTheHullsLoadAtALink) {
   EXPECT_NEAR(w.torque.y(), 50.0 - 0.55 * 1000.0 - 1.80 * 20000.0, 1e-9);
 }
 
-TEST(BoomFollower, HoldsDownAgainstTheMeanPressForceAtTheTool) {
+TEST(BoomFollower, HoldsDownAgainstTheMeanHoldDownForceAtTheTool) {
   Follower rigid(BoomModel::kRigid);
   rigid.follower.turnEnded(std::nullopt, 3000.0);
   EXPECT_FALSE(rigid.sample({}).hold_down) << "before any sample nothing is known";

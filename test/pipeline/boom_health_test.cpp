@@ -77,7 +77,7 @@ TEST(BoomHealth, IsNotKnownOfABoomAsItsFileHasIt) {
 }
 
 /// Seals that rub with a tenth of the force and that nobody gave damp as no oil does.
-TEST(BoomHealth, SaysWhereSomethingElseThanOilDamps) {
+TEST(BoomHealth, NamesWhereSomethingElseThanOilDamps) {
   simulation::MachineSettings m = onSite(1.0, {1.0, 1.0, 1.0}, 61);
   m.on_boom.seals.friction = 0.1;
   const std::vector<BoomHealth> turns = healthOf(m);

@@ -43,13 +43,13 @@ TEST_F(IntakeTest, RefusesEachBadSampleAndTakesTheNextGoodOne) {
   EXPECT_FALSE(judge(6 * kMs).refusal);
 }
 
-TEST_F(IntakeTest, AGapLongerThanStaleBeginsAnew) {
+TEST_F(IntakeTest, RestartsAfterAGapLongerThanStale) {
   judge(0);
   EXPECT_EQ(judge(249 * kMs).order, CrankSampleGate::Order::kNext);
   EXPECT_EQ(judge(500 * kMs).order, CrankSampleGate::Order::kFirst);
 }
 
-TEST_F(IntakeTest, TimeRunningBackIsBelievedFromTheSecondSampleOn) {
+TEST_F(IntakeTest, AcceptsTimeRunningBackFromTheSecondSampleOn) {
   judge(1000 * kMs);
   EXPECT_EQ(judge(10 * kMs).refusal, Refusal::kOutOfOrder);
   EXPECT_EQ(judge(11 * kMs).order, CrankSampleGate::Order::kFirst);

@@ -66,7 +66,7 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
 
 /// Which sample of a burst was lost its stamp does not say: where the readings show that it was a later one, the sample
 /// counted too late goes back. Energies were 2 times the true one, forces off by their peak.
-TEST(CrankLosses, WithinBurstsStandWhereTheReadingsHaveThem) {
+TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
   const Settings settings = test::settingsWith("{}");
   for (const double rate : {200.0, 500.0, 1000.0}) {
     for (const std::uint64_t seed : {1u, 2u}) {
@@ -100,7 +100,7 @@ TEST(CrankLosses, WithinBurstsStandWhereTheReadingsHaveThem) {
 
 /// Where samples are taken at equal intervals a reading ahead shows lost ones, but a rod that rings moves a crank by as
 /// much: instants were half a second off, and blows found where none was.
-TEST(CrankOnARodThatGives, LosesNoSamplesToItsRing) {
+TEST(CrankOnARodThatGives, LosesNoSamplesToItsVibration) {
   const Settings settings = test::settingsWith("{}");
   simulation::MachineSettings machine = eightSecondsOf(settings);
   machine.rod.stiffness = 5e8;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPoseStep = 1e-3;  // [s]
 
-TEST(CrankTrustStrokes, TwoStrokesInARowThatAreNotBelieved) {
+TEST(CrankTrustStrokes, LosesTheCrankAfterTwoRefusedStrokesInARow) {
   CrankTrust trust{CrankSensor{}};
   double angle = 0.0;
   const auto stroke = [&](bool believed) {
@@ -28,7 +28,7 @@ TEST(CrankTrustStrokes, TwoStrokesInARowThatAreNotBelieved) {
   EXPECT_FALSE(stroke(false)) << "what was lost in a gap is no contradiction";
 }
 
-TEST(CrankTrustStrokes, ACrankThatRocksAtTheDeadCentreSaysNothing) {
+TEST(CrankTrustStrokes, LearnsNothingFromACrankThatRocksAtTheDeadCentre) {
   CrankTrust trust{CrankSensor{}};
   for (int i = 0; i < 10; ++i) {
     trust.follow(i % 2 == 0 ? 0.4 : -0.4, 1.0, kPoseStep);

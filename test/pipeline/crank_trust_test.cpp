@@ -78,7 +78,7 @@ void expectWithheld(const Played& played, const std::string& key) {
   ASSERT_NE(textOfWarning(played, key), "") << key;
 }
 
-TEST(CrankTrust, BackwardIsWithheldWithAndWithoutSpeeds) {
+TEST(CrankTrust, WithholdsABackwardCrankWithAndWithoutSpeeds) {
   const simulation::Session session = workingSession();
   expectWithheld(play(session, "{}",
                       [](CrankReading& r) {
@@ -189,7 +189,7 @@ simulation::MachineSettings elasticMachine(double stiffness, double damping_rati
 }
 
 /// Such a rod, a coarse encoder and no speeds keep the innovations within what is expected of them.
-TEST(CrankTrust, AZeroFarOffIsWithheldOnAMachineWhoseRodGives) {
+TEST(CrankTrust, WithholdsAZeroFarOffOnAMachineWithAnElasticRod) {
   simulation::MachineSettings machine = elasticMachine(8e8, 0.3);
   machine.crank.speed = false;
   machine.crank.counts = 1024;

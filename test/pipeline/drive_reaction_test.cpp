@@ -12,7 +12,7 @@ using test::Player;
 using test::settingsWith;
 
 /// Sum of the drive's part times interval, and the crank's gain of speed between blows.
-TEST(DrivesPart, OfMeansIsTheRotorsChangeOfSpeedBetweenTheBlows) {
+TEST(DrivesPart, IsTheRotorsChangeOfSpeedBetweenTheBlowsForMeans) {
   Player player(settingsWith("output: mean\n"));
   double impulse = 0.0, smooth = 0.0, inertia = 0.0, begin = 0.0, end = 0.0, jumps = 0.0;
   player.playTo(3.0, [](double, const SampleResult&) {});

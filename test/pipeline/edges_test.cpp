@@ -65,7 +65,7 @@ TEST_P(RefusedSamples, ChangeNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(UnderEveryHullMotion, RefusedSamples, testing::Values("fixed", "imu", "model"));
 
-TEST(Stamps, BeyondEveryClockAreRefusedAndTheLastGoodOneIsNot) {
+TEST(Stamps, AreRefusedBeyondEveryClockAndTheLastGoodOneIsNot) {
   const Settings settings = settingsWith("boom: none\n", false);
   Pipeline pipeline = pipelineOf(settings);
   EXPECT_FALSE(pipeline.crankSample(kLastStamp - 1000000, {1.0, 0.0}).refusal);

@@ -20,7 +20,7 @@ Eigen::Vector3d loadOf(const simulation::CrankTruth& t) {
 
 /// Without the ring a mean of 1/60 s is off by 3 % of its peak; the sum over the turn, which is right, does not show
 /// it.
-TEST(ElasticOutputs, MeansHaveTheRing) {
+TEST(ElasticOutputs, MeansContainTheVibration) {
   std::uint64_t seed = 810;
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
@@ -76,7 +76,7 @@ TEST(ElasticOutputs, MeansLoseNoImpulseAtAnyRate) {
 }
 
 /// Outputs at 2300 Hz on samples at 1000 Hz, up to 40 ms after a blow, tool and retainer not touched.
-TEST(ElasticOutputs, BetweenSamplesTheRodIsASpringToo) {
+TEST(ElasticOutputs, TakeTheRodAsASpringBetweenSamplesToo) {
   const simulation::MachineSettings machine = test::machineOfOutputs({8e8, 0.3, 0.0}, 831);
   const simulation::Session session = simulation::recordSession(machine);
   const auto ringErrors = [&](Level level) {
@@ -115,7 +115,7 @@ TEST(ElasticOutputs, BetweenSamplesTheRodIsASpringToo) {
 
 /// The rod's force is its spring's, by the size of that in C, which the rod's own mass hardly changes: 6 to 40 ms after
 /// a blow, and before the blow from half a turn on.
-TEST(ElasticOutputs, PinForcesHaveTheRing) {
+TEST(ElasticOutputs, PinForcesContainTheVibration) {
   const simulation::MachineSettings machine = test::machineOfOutputs({8e8, 0.3, 0.0}, 851);
   const simulation::Session session = simulation::recordSession(machine);
   struct Errors {
@@ -192,7 +192,7 @@ accuracy::FigureErrors peaksOf(const simulation::MachineSettings& machine, Level
 
 /// Rock that throws the rocker back lets the rod ring with more than the strike: the turn's peak is the ring's, by a
 /// half.
-TEST(ElasticOutputs, ThePeakOfATurnMayBeTheRings) {
+TEST(ElasticOutputs, ThePeakOfATurnMayBeTheVibrations) {
   simulation::MachineSettings machine = test::machineOfOutputs({9e8, 0.5, 0.0}, 871);
   machine.strike.contact_stiffness = 1e8, machine.strike.rock_strength = 3e5;
   for (const Level level : {Level::kElastic, Level::kLinkage}) {

@@ -17,7 +17,7 @@ namespace {
 
 /// At 200 Hz a ring of 150 to 250 Hz has all its peaks between samples: of the true loads the samples alone have ranges
 /// that are a tenth to a fifth too small.
-TEST(ElasticRanges, ARingBetweenSparseSamplesIsCounted) {
+TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
   std::uint64_t seed = 840;
   for (const simulation::RodSettings& rod : {simulation::RodSettings{8e8, 0.2, 0.0}, {1.3e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
@@ -77,7 +77,7 @@ TEST(ElasticRanges, ImpactsInWornPinsAreCountedByTheirSizeNotByTheirMoment) {
   EXPECT_LT(std::abs(mean), 0.15);
 }
 
-TEST(ElasticRanges, ARingOfUnknownPhaseHasItsCrestAtAnExtreme) {
+TEST(ElasticRanges, AVibrationOfUnknownPhaseHasItsCrestAtAnExtreme) {
   SampleResult sample;
   sample.deviation.wrench = {5.0, 50.0, 0.5};
   sample.rod_ring = {3.0, 30.0, 0.4};
@@ -89,7 +89,7 @@ TEST(ElasticRanges, ARingOfUnknownPhaseHasItsCrestAtAnExtreme) {
 }
 
 /// Of a level without the spring an extreme is that of a ring whose phase is not known: its crest.
-TEST(ElasticRanges, ARigidLevelsRangesHaveTheCrestOfARingInTheirDeviation) {
+TEST(ElasticRanges, ARigidLevelsRangesHaveTheVibrationsCrestInTheirDeviation) {
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{8e8, 0.3, 0.0}, {8e8, 0.3, 2e-4}, {1e9, 0.3, 5e-4}}) {
     SCOPED_TRACE(rod.play);

@@ -19,7 +19,7 @@ accuracy::ElasticErrors rodErrors(const simulation::MachineSettings& machine, Le
 }
 
 /// Issue: 0.40 of the truth, the whole turn 3.5 %. The rigid level shows that the flaw is there.
-TEST(ElasticSession, TheRingAfterTheBlowIsPublished) {
+TEST(ElasticSession, PublishesTheVibrationAfterTheBlow) {
   std::uint64_t seed = 700;
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
@@ -70,7 +70,7 @@ TEST(ElasticSession, StampsOfWholeMillisecondsAreInTheDeviation) {
 }
 
 /// The pins' play is not given.
-TEST(ElasticSession, PlayIsLearned) {
+TEST(ElasticSession, LearnsTheJointClearance) {
   const accuracy::ElasticErrors e = rodErrors(test::machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
   EXPECT_LT(e.after.rms[1], 0.5);
   EXPECT_GT(e.after.covered[1], 0.80);
@@ -117,7 +117,7 @@ std::vector<accuracy::WrenchAt> rodWrenches(const simulation::MachineSettings& m
 }
 
 /// A rod stiffer than the readings show is a rigid one: to the bit.
-TEST(ElasticSession, OfARigidMachineItIsLinkage) {
+TEST(ElasticSession, UsesLinkageForARigidMachine) {
   const simulation::MachineSettings machine = test::machineWithRod({}, 720);
   const auto elastic = rodWrenches(machine, Level::kElastic), linkage = rodWrenches(machine, Level::kLinkage);
   ASSERT_EQ(elastic.size(), linkage.size());
@@ -152,7 +152,7 @@ TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
 }
 
 /// Without a tool nothing strikes: the rod's model is contradicted, and the machine is a rigid one.
-TEST(ElasticSession, AMissedToolIsNoRing) {
+TEST(ElasticSession, AMissedToolIsNoVibration) {
   simulation::MachineSettings machine = test::machineWithRod({1e9, 0.3, 0.0}, 740);
   machine.blow.blank_share = 0.2;
   const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic), rigid = rodErrors(machine, Level::kLinkage);

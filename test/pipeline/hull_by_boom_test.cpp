@@ -13,7 +13,7 @@ BoomErrors byPressuresAlone(const simulation::MachineSettings& machine, const ch
                         "boom_stiffness: identified\nlevel: rocker\nhull_motion: model\n", {false, true});
 }
 
-TEST(HullByBoom, WhatItsVibrationLeavesInDoubtIsInTheWrench) {
+TEST(HullByBoom, DeviationsIncludeTheUncertaintyOfItsVibration) {
   for (const test::Pose& pose : {test::Pose{-0.45, 1.00, -0.50}, test::Pose{-0.70, 1.55, -0.75}}) {
     for (const double oil : {0.8, 1.2}) {
       const BoomErrors e = byPressuresAlone(test::machineOnBoom(oil, 100.0, pose), "free");
@@ -25,7 +25,7 @@ TEST(HullByBoom, WhatItsVibrationLeavesInDoubtIsInTheWrench) {
 
 /// A rock that lands and lets go again between two readings of the pressures is the most of it: 6 to 15 % of Fz, of
 /// which 14 to 22 % was covered before its doubt was published.
-TEST(HullByBoom, OnRockItIsOffByMoreAndSaysSo) {
+TEST(HullByBoom, DeviationsHoldTheLargerErrorsOnRock) {
   double covered = 0.0;
   const std::array<simulation::RockSettings, 3> rocks{{{1.5e7, 3.0, 4e3}, {3e7, 3.0, 5e3}, {5e7, 3.0, 3.5e3}}};
   for (const simulation::RockSettings& rock : rocks) {
@@ -57,7 +57,7 @@ std::array<double, 2> coveredWithoutSensors(const std::string& keys, double oil)
 }
 
 /// A hull on oil swings by more than its load makes at once: some 4 to 10 % of the peak, along x more than along z.
-TEST(HullByBoom, AnImuThatNeverSpeaksLeavesTheHullsMotionInDoubt) {
+TEST(HullByBoom, DeviationsHoldForAnImuThatNeverPublishes) {
   const auto [x, z] = coveredWithoutSensors("hull_motion: imu\n", 1.0);
   EXPECT_GT(x, 0.75);
   EXPECT_GT(z, 0.88);
@@ -65,7 +65,7 @@ TEST(HullByBoom, AnImuThatNeverSpeaksLeavesTheHullsMotionInDoubt) {
 }
 
 /// By the oil of a boom file, which is good to 30 %: 17 to 50 % were covered before its doubt was in the wrench.
-TEST(HullByBoom, AnOilThatIsGivenLeavesTheHullsMotionInDoubt) {
+TEST(HullByBoom, DeviationsHoldForOilThatIsGiven) {
   for (const double oil : {0.75, 1.3}) {
     const auto [x, z] = coveredWithoutSensors("hull_motion: model\nboom_stiffness: given\n", oil);
     EXPECT_GT(x, 0.8) << oil;
@@ -75,7 +75,7 @@ TEST(HullByBoom, AnOilThatIsGivenLeavesTheHullsMotionInDoubt) {
 
 /// Rock shakes a hull at 25 to 60 Hz, which 100 readings a second do not follow; what the hull's mass is they do not
 /// show either, and no force of several times the peak is made of it.
-TEST(HullByBoom, AnImuThatIsReadTooRarelyOnRockSaysSo) {
+TEST(HullByBoom, DeviationsHoldForAnImuThatIsReadTooRarelyOnRock) {
   for (const double oil : {0.85, 1.0, 1.2}) {
     for (const double rate : {100.0, 200.0}) {
       simulation::MachineSettings machine = test::machineOnBoom(oil, 100.0, {-0.35, 1.2, -0.9});

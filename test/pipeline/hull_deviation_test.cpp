@@ -102,7 +102,7 @@ TEST(Deviations, AreUnknownWithoutAFilter) {
   EXPECT_TRUE(std::isnan(deviation.speed));
 }
 
-TEST(Deviations, OfAKnownCovarianceAreThoseOfManyDraws) {
+TEST(Deviations, EqualThoseOfManyDrawsForAKnownCovariance) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const HullModel model(mechanism, Level::kRocker);
   CrankEstimate crank;

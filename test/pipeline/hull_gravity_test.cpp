@@ -38,7 +38,7 @@ TEST(HullGravity, SwingCountsWithADescriptionAlone) {
   EXPECT_NEAR(with.gravity().z, -kG * std::cos(0.2), 1e-12);
 }
 
-TEST(HullGravity, UntilEveryJointHasBeenHeardItIsThatOfThePitch) {
+TEST(HullGravity, IsThatOfThePitchUntilEveryJointIsReceived) {
   HullGravity gravity = gravityWith("hull_pitch_rad: 0.4\n", true);
   EXPECT_FALSE(gravity.joints({"swing_joint"}, {1.0}));
   EXPECT_NEAR(gravity.gravity().x, kG * std::sin(0.4), 1e-12);
@@ -117,7 +117,7 @@ TEST(HullGravity, SignsAndOffsetStandForADescription) {
   EXPECT_NEAR(by_keys.gravity().z, by_description.gravity().z, 1e-12);
 }
 
-TEST(HullGravity, JointsBesideThePitchAreAtZeroUntilTheyAreHeard) {
+TEST(HullGravity, JointsBesideThePitchAreAtZeroUntilTheyAreReceived) {
   const Settings settings = strangersSettings(kStrangersJoints + "pitch_offset_rad: 0.25\n", strangersUrdf(false));
   HullGravity gravity(settings.pipeline, std::nullopt);
   gravity.joints({"j_lift", "j_stick", "j_tool"}, {0.1, 0.2, 0.3});

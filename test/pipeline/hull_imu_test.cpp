@@ -47,7 +47,7 @@ TEST(HullImu, RefusesWhatCannotBe) {
   expectRefused(kUpright, 0, ImuRefusal::kOutOfOrder);
 }
 
-TEST(HullImu, BelievesTimeRunningBackFromTheSecondReadingOn) {
+TEST(HullImu, AcceptsTimeRunningBackFromTheSecondReadingOn) {
   HullImu imu(atD());
   for (StampNs t : {5000 * kMs, 5001 * kMs}) imu.update(t, kUpright);
   EXPECT_EQ(imu.update(1000 * kMs, kUpright), ImuRefusal::kOutOfOrder);
@@ -58,7 +58,7 @@ TEST(HullImu, BelievesTimeRunningBackFromTheSecondReadingOn) {
 }
 
 /// 1 ns and 50 us apart: a difference of 0.01 rad/s is noise there, not 1e7 and 200 rad/s2.
-TEST(HullImu, NoTwoReadingsThatWaitedForABusMakeAnAcceleration) {
+TEST(HullImu, IgnoresSimultaneousStamps) {
   const auto turning = [](double rate) {
     ImuReading reading = kUpright;
     reading.rate.y() = rate;
@@ -79,7 +79,7 @@ TEST(HullImu, NoTwoReadingsThatWaitedForABusMakeAnAcceleration) {
   }
 }
 
-TEST(HullImu, SaysWhenItIsStale) {
+TEST(HullImu, ReportsThatItIsStale) {
   HullImu imu(atD());
   for (StampNs t : {0 * kMs, 1 * kMs}) imu.update(t, kUpright);
   EXPECT_TRUE(imu.at(21 * kMs));
@@ -92,7 +92,7 @@ TEST(HullImu, SaysWhenItIsStale) {
 }
 
 /// Weight and tilt at once: hull pitch p about +y, unit mounted askew.
-TEST(HullImu, AtRestReadsGravityByPitch) {
+TEST(HullImu, ReadsGravityByPitchAtRest) {
   for (const double pitch : {-1.0, 0.0, 0.7}) {
     const HullImuSettings mounting = test::imuMounting();
     const HullMotion right{{9.8 * std::sin(pitch), -9.8 * std::cos(pitch)}};
@@ -112,7 +112,7 @@ TEST(HullImu, RollPitchYawTurnAboutFixedAxes) {
   EXPECT_NEAR(std::atan2(r(2, 1), r(2, 2)), 0.3, 1e-15);
 }
 
-TEST(HullImu, BetweenReadingsItFollowsTheLineAndOneIntervalBeyond) {
+TEST(HullImu, FollowsTheLineBetweenReadingsAndOneIntervalBeyond) {
   HullImu imu(atD());
   imu.update(0, {{0.0, 0.0, 10.0}, {0.0, 0.1, 0.0}});
   imu.update(2 * kMs, {{0.0, 0.0, 12.0}, {0.0, 0.3, 0.0}});

@@ -43,7 +43,7 @@ TEST(WrenchPath, GivesLoadAndImpulseAtAnyInstantBlowsIncluded) {
 }
 
 /// A blow of 3 N s after 1 ms, at which Fz falls from 300 to -50 N, its instant known to 0.1 ms.
-TEST(WrenchPath, SaysHowLikelyAnInstantIsOnTheOtherSideOfABlowAndWhatWouldBeAddedThere) {
+TEST(WrenchPath, GivesTheProbabilityOfTheOtherSideAndTheLoadAddedThere) {
   WrenchPath path;
   WrenchHistory step;
   step.count = 1;
@@ -112,7 +112,7 @@ Foretold foretell(double interval, double noise) {
 constexpr double kJump = 4000.0 / 400.0;  // root mean square [m/s2]
 
 /// Without the load all of it would be missed.
-TEST(DrivenSignal, JumpsWithTheLoadAndSaysHowFarItIsOff) {
+TEST(DrivenSignal, JumpsWithTheLoadAndStatesItsDeviation) {
   for (const double interval : {1e-3, 5e-3}) {
     for (const double noise : {0.02, 0.3}) {
       const Foretold e = foretell(interval, noise);
@@ -246,7 +246,7 @@ TEST(HullMobility, IsTheInverseOfTheMassThatTheBoomsModesGive) {
 }
 
 /// Before work the crank falls on its tool: what stops it is the tool's force, which the model takes for the hull's.
-TEST(HullMotionFilter, DoubtsTheForceOfACrankThatLandsOnItsTool) {
+TEST(HullMotionFilter, DeviationsHoldTheForceOfACrankThatLandsOnItsTool) {
   double worst = 0.0;
   for (const unsigned seed : {240U, 304U}) {
     const VectorErrors e = vectorErrors(seed, 1000.0, 0.1, 0.0, 0.0, 0.5, 0.65);

@@ -7,7 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-TEST(HullPitch, IsTheSumOnceEveryJointWasHeard) {
+TEST(HullPitch, IsTheSumOnceEveryJointWasReceived) {
   HullPitch pitch({"boom", "arm", "hammer"}, 0.7);
   EXPECT_TRUE(pitch.update({"arm", "swing"}, {0.2, 9.0}));
   EXPECT_EQ(pitch.pitch(), 0.7);

@@ -176,19 +176,19 @@ void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   }
 }
 
-TEST(InputAttack, ValuesOfTheCrank) {
+TEST(InputAttack, SurvivesAnyValuesOfTheCrank) {
   for (const PipelineSettings& settings : allSettings()) {
     for (const Attack& attack : valueAttacks()) expectSurvival(attack, settings);
   }
 }
 
-TEST(InputAttack, ShapesOfTheCrankMessage) {
+TEST(InputAttack, SurvivesAnyShapeOfTheCrankMessage) {
   for (const PipelineSettings& settings : allSettings()) {
     for (const Attack& attack : shapeAttacks()) expectSurvival(attack, settings);
   }
 }
 
-TEST(InputAttack, StampsAndPublishersOfTheCrank) {
+TEST(InputAttack, SurvivesAnyStampsAndPublishersOfTheCrank) {
   for (PipelineSettings settings : allSettings()) {
     for (const CrankStamps stamps : {CrankStamps::kAuto, CrankStamps::kHeader}) {
       settings.crank_stamps = stamps;

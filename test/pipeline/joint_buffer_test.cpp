@@ -52,7 +52,7 @@ TEST_F(Joints, AreHeldBeyondTheNewestStateAndLinearBetweenStates) {
 }
 
 /// By two that republish one joint state, or out of one buffer: a count of 1 mrad in 10 us is no 100 rad/s.
-TEST_F(Joints, ThatCameTogetherMoveAsBefore) {
+TEST_F(Joints, MoveAsBeforeIfTheyCameTogether) {
   for (int i = 0; i < 5; ++i) {
     const double angle = 0.01 * i;
     buffer_.update(20 * i * kMs, kFour, {0.0, angle, 1.0, -0.8}, {});
@@ -98,14 +98,14 @@ TEST_F(Joints, GrowStaleEachByItself) {
   EXPECT_NEAR(at(900 * kMs).position[2], 1.0 + 6.0 / 7.0, 1e-15);
 }
 
-TEST_F(Joints, BeforeTheFirstStateAreTheFirst) {
+TEST_F(Joints, AreTheFirstBeforeTheFirstState) {
   buffer_.update(1000 * kMs, kFour, {0.1, 0.2, 1.3, 0.0}, {});
   EXPECT_EQ(at(900 * kMs).position[2], 1.3);
   JointMotion motion;
   EXPECT_TRUE(buffer_.at(799 * kMs, motion));
 }
 
-TEST_F(Joints, WithoutVelocitiesDifferencesFollowAParabolaExactly) {
+TEST_F(Joints, DifferencesFollowAParabolaExactlyWithoutVelocities) {
   const double a = 0.6, v = -0.3;
   const auto position = [&](double t) { return 1.0 + v * t + 0.5 * a * t * t; };
   // Steps of different lengths.
@@ -156,7 +156,7 @@ TEST_F(Joints, BadValuesAreRefusedAndCounted) {
 }
 
 /// One is a damaged message, two are a joint that was elsewhere all the while.
-TEST_F(Joints, AJumpIsBelievedFromTheSecondOn) {
+TEST_F(Joints, AcceptAJumpFromTheSecondReadingOn) {
   ASSERT_TRUE(buffer_.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {}));
   EXPECT_FALSE(buffer_.update(20 * kMs, {"arm_joint"}, {1.3}, {}));
   EXPECT_TRUE(buffer_.update(40 * kMs, {"arm_joint"}, {1.01}, {}));
@@ -175,7 +175,7 @@ TEST_F(Joints, TheFirstOfADuplicateCounts) {
   EXPECT_EQ(buffer_.refusals().out_of_order, 1U);
 }
 
-TEST_F(Joints, ALateStateIsRefusedTimeRunningBackIsBelieved) {
+TEST_F(Joints, RefuseALateStateAndAcceptTimeRunningBack) {
   buffer_.update(1000 * kMs, kFour, {0.0, 0.0, 1.0, 0.0}, {});
   EXPECT_FALSE(buffer_.update(990 * kMs, kFour, {0.0, 0.0, 2.0, 0.0}, {}));
   EXPECT_TRUE(buffer_.update(1010 * kMs, kFour, {0.0, 0.0, 1.1, 0.0}, {}));

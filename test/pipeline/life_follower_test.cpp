@@ -102,7 +102,7 @@ TEST(LoadCycles, NothingIsCountedFarBeyondWhatIsPublished) {
   }
 }
 
-TEST(LoadCycles, OfSparseSamplesAreThoseOfDenseOnes) {
+TEST(LoadCycles, AreThoseOfDenseSamplesForSparseOnes) {
   const Settings settings = test::settingsWith("{}");
   const life::LifePiece sparse = run(settings, sessionAt(100.0), kNothing);
   const life::LifePiece dense = run(settings, sessionAt(1000.0), kNothing);

@@ -45,7 +45,7 @@ LimitWatch judged(const simulation::Session& session, const std::vector<Limit>& 
   return watch;
 }
 
-TEST(Limits, TellAWeakMachineFromAStrongOne) {
+TEST(Limits, DistinguishAWeakMachineFromAStrongOne) {
   const simulation::Session strong = workWithFlow(1.0), weak = workWithFlow(0.8);
   const double more = medianEnergy(strong), less = medianEnergy(weak), between = 0.5 * (more + less);
   ASSERT_LT(less, 0.8 * more) << "by the simulated impact";

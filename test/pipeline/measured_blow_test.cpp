@@ -111,7 +111,7 @@ void drawRestitution(simulation::MachineSettings& machine) {
 
 /// A passage that is taken back, as an encoder's edge shows, must not strike a second time. No restitution slows a
 /// crank so: no energy is given.
-TEST(MeasuredBlow, OfHalfTheSpeed) {
+TEST(MeasuredBlow, HasNoRestitutionIfItTakesHalfTheSpeed) {
   for (const std::uint64_t seed : {503u, 504u, 505u}) {
     const Blows blows = follow([](auto& machine) { machine.blow.crank_loss = 0.45; }, 1000.0, seed);
     EXPECT_GT(blows.count, 30u);
@@ -123,7 +123,7 @@ TEST(MeasuredBlow, OfHalfTheSpeed) {
 
 /// The crank reaches the dead centre with its speed after the blow; the tool is taken along by all of drive and links.
 /// That is no blow of a restitution from 0 to 1: no energy is given, or one within its deviation.
-TEST(MeasuredBlow, OfAToolMetEarly) {
+TEST(MeasuredBlow, GivesNoWrongEnergyForAToolMetEarly) {
   std::size_t wrong = 0;
   struct Sensor {
     double rate;
@@ -155,7 +155,7 @@ TEST(MeasuredBlow, OfAToolMetEarly) {
 
 /// Which sample shows the blow is in doubt where stamps jitter; what is known of a blow once it has been measured is
 /// not.
-TEST(MeasuredBlow, OfARestitutionDrawnAnew) {
+TEST(MeasuredBlow, FollowsADrawnRestitution) {
   for (const double jitter : {0.0, 2e-4}) {
     for (const bool speed : {true, false}) {
       for (const std::uint64_t seed : {301u, 302u, 303u, 304u, 305u, 906u}) {
@@ -177,7 +177,7 @@ TEST(MeasuredBlow, OfARestitutionDrawnAnew) {
 }
 
 /// Before it works the crank stands still, and without speeds all samples of a burst are alike.
-TEST(MeasuredBlow, OfSamplesInBurstsWithoutSpeeds) {
+TEST(MeasuredBlow, IsAccurateForSamplesInBurstsWithoutSpeeds) {
   for (const double rate : {100.0, 200.0, 1000.0}) {
     for (const std::uint64_t seed : {301u, 302u, 303u, 612u, 806u}) {
       const Blows blows =
@@ -189,7 +189,7 @@ TEST(MeasuredBlow, OfSamplesInBurstsWithoutSpeeds) {
 }
 
 /// A count that shows the dead centre late or early makes a blow seem to act too soon or too late.
-TEST(MeasuredBlow, OfARestitutionDrawnAnewBesideAZeroThatIsOff) {
+TEST(MeasuredBlow, FollowsADrawnRestitutionBesideAZeroThatIsOff) {
   for (const double jitter : {0.0, 2e-4}) {
     for (const double zero : {-0.5 * kDegree, 0.5 * kDegree}) {
       for (const std::uint64_t seed : {301u, 302u, 303u, 304u}) {

@@ -29,7 +29,7 @@ double blankFiringsOf(const simulation::Session& session) {
   return 0.5 * static_cast<double>(session.truth.back().turn - static_cast<std::int64_t>(session.blows.size()));
 }
 
-TEST(Misuse, BlankStrokesAreThoseOfTheMachine) {
+TEST(Misuse, CountsTheBlankFiringsOfTheMachine) {
   const Settings settings = test::settingsWith("level: rocker\n", false);
   const simulation::Session good = atWork(0.0), some = atWork(0.1);
   const Counts of_good = misuseOf(good, settings, false), of_some = misuseOf(some, settings, false);
@@ -40,7 +40,7 @@ TEST(Misuse, BlankStrokesAreThoseOfTheMachine) {
 }
 
 /// Without boom and pressures nothing is known of the press force and the place: not zero.
-TEST(Misuse, WhatNothingMeasuresIsNotKnown) {
+TEST(Misuse, TakesAnUnmeasuredCountAsNotKnown) {
   const Counts alone = misuseOf(atWork(0.0), test::settingsWith("level: rocker\n", false), false);
   EXPECT_FALSE(alone.withoutHoldDown());
   EXPECT_FALSE(alone.still());
@@ -54,7 +54,7 @@ Counts onRock(double hold_down_force, double stiffness, bool pressures = true) {
                   true, pressures);
 }
 
-TEST(Misuse, BlowsWithoutPressForceAreSeenByPressures) {
+TEST(Misuse, CountsBlowsWithoutHoldDownForceByPressures) {
   const Counts pressed = onRock(12000.0, 3e7), hangs = onRock(0.0, 0.0);
   ASSERT_GT(pressed.judged_blows, 25U);
   EXPECT_EQ(*pressed.withoutHoldDown(), 0U);

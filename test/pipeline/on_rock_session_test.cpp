@@ -79,7 +79,7 @@ TEST_P(OnRock, PressuresAndImuShowTheRocksForceToo) {
 }
 
 /// The torques lack the rock's force, up to nine tenths of them: the flag says so, and the deviations are as wide.
-TEST_P(OnRock, AnImuAloneSaysThatTheRocksForceIsNotKnown) {
+TEST_P(OnRock, AnImuAloneShowsThatTheRocksForceIsNotKnown) {
   const simulation::Session& session = sessionOn(GetParam());
   const BoomErrors e = errorsOf("imu", session, kByImuToo, {true, false});
   EXPECT_GT(e.worstTorque(), 0.3) << "what there is to say";

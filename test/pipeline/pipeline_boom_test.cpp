@@ -160,7 +160,7 @@ TEST(PipelineWithBoom, StaleJointsSilenceTheBoomAloneUntilTheyAreBack) {
 }
 
 /// Longer than stale_after_s: where the crank went meanwhile is not known.
-TEST(PipelineWithBoom, VibrationBeginsAnewAfterADropOut) {
+TEST(PipelineWithBoom, VibrationRestartsAfterADropOut) {
   const Settings settings = settingsWith("boom: compliant\n");
   constexpr double kFrom = 3.5, kTo = 3.9, kShortFrom = 3.0, kShortTo = 3.005;
   const simulation::Session session = test::record({{kShortFrom, kShortTo}, {kFrom, kTo}});

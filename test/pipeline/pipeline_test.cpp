@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, UnseenSessions,
                                          Case{3, 1.5, 0.15, 0.8, true}, Case{4, 1.0, 0.6, 0.6, true},
                                          Case{5, 1.0, 0.03, 0.5, true}, Case{6, 1.5, 0.15, 0.6, false}));
 
-TEST(Pipeline, AfterADropOutNothingIsTenPercentWrong) {
+TEST(Pipeline, HasNoErrorOfTenPercentAfterADropOut) {
   for (const double gap : {0.03, 0.1, 0.2, 0.4}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       MachineSettings machine = machineWithDropOut(seed, 1000.0);

@@ -136,7 +136,7 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
 }
 
 /// At the levels below, its size is said where it acts, and the ranges of cycles that it may lengthen.
-TEST(RodRing, RigidLevelsSayHowLargeItIs) {
+TEST(RodRing, RigidLevelsStateItsSize) {
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
@@ -209,7 +209,7 @@ TEST(RodRing, IsTheSameByRareReadings) {
 
 /// Rock that throws the rocker back with half its speed: a rigid mechanism reads a quarter off the crank. It says that
 /// it does not know; level elastic does.
-TEST(RodRing, OfLivelyRockARigidLevelKnowsNoRestitution) {
+TEST(RodRing, RigidLevelsKnowNoRestitutionOnLivelyRock) {
   simulation::StrikeSettings lively;
   lively.contact_stiffness = 1.2e8, lively.rock_strength = 3e5;
   for (const simulation::RodSettings& rod : {simulation::RodSettings{1e9, 0.6, 0.0}, {5e8, 1.0, 0.0}}) {
@@ -229,7 +229,7 @@ TEST(RodRing, OfLivelyRockARigidLevelKnowsNoRestitution) {
 }
 
 /// Past the dead centre the linkage stops the rocker within some 10 ms, with more force than at any blow: a rod rings.
-TEST(RodRing, RingsWhereNoToolIsMetAsWell) {
+TEST(RodRing, OccursWithoutAToolAsWell) {
   simulation::MachineSettings machine = ringingMachine(test::shippedDrawing().mechanism, {6e8, 0.2, 0.0}, 14.0, 4712);
   machine.blow.blank_share = 0.2;
   const simulation::Session session = simulation::recordSession(machine);

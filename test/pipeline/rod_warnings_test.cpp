@@ -44,7 +44,7 @@ std::string heardOf(const simulation::MachineSettings& machine, Level level) {
 
 bool names(const std::string& text, const char* what) { return text.find(what) != std::string::npos; }
 
-TEST(RodWarnings, ARightSensorIsNotBlamedForARodThatGives) {
+TEST(RodWarnings, ACorrectSensorIsNotBlamedForAnElasticRod) {
   std::mt19937_64 random(4301);
   for (std::uint64_t i = 0; i < 12; ++i) {
     const simulation::MachineSettings machine = drawnMachine(random, 4300 + i);
@@ -62,7 +62,7 @@ TEST(RodWarnings, ARightSensorIsNotBlamedForARodThatGives) {
 
 /// For twelve seconds something that no model has shakes the crank in the half turn after the blow; then readings agree
 /// again.
-TEST(RodWarnings, WhatCameAndWentIsNotSaidToBe) {
+TEST(RodWarnings, ReportsNoCauseThatHasPassed) {
   simulation::MachineSettings machine = test::machineWithRod({}, 4401);
   machine.duration = 18.0;
   machine.drive.stop_time = 25.0;
@@ -85,7 +85,7 @@ TEST(RodWarnings, WhatCameAndWentIsNotSaidToBe) {
 
 /// Coarse or rare readings show less of the rod, and less of the zero. Where the rigid model follows less than half of
 /// such a recording, what else could be is named behind the rod.
-TEST(RodWarnings, NorByCoarseOrRareReadings) {
+TEST(RodWarnings, ACorrectSensorIsNotBlamedForCoarseOrRareReadings) {
   std::mt19937_64 random(4302);
   int lost_most = 0;
   for (std::uint64_t i = 0; i < 9; ++i) {
@@ -136,7 +136,7 @@ TEST(RodWarnings, ARigidRodIsNotBlamed) {
 }
 
 /// Up to 3 deg of the zero and 1.5 deg of the eccentricity are such a rod's, what is beyond is not.
-TEST(RodWarnings, WhatNoRodMakesIsNamedBesideIt) {
+TEST(RodWarnings, NamesACauseThatNoRodExplainsBesideIt) {
   const auto heard = [](double zero, double eccentricity) {
     simulation::MachineSettings machine = simulation::workingMo100();
     machine.hammer = test::shippedDrawing().mechanism.parameters();

@@ -67,7 +67,7 @@ TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
 }
 
 /// Without pressures too: nothing says that seals damp as a mode does.
-TEST(RubbingBoom, MakesWhatFollowsFromTheMotionAloneAsDoubtful) {
+TEST(RubbingBoom, DeviationsHoldForLoadsThatFollowFromTheMotionAlone) {
   const BoomErrors e = errorsOf("seals", rubbingSession(0.05), "boom_stiffness: identified\n", {true, false});
   EXPECT_GT(e.covered(), 0.88);
   EXPECT_GT(e.sectionsCovered(), 0.8);

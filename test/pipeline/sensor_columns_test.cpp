@@ -113,7 +113,7 @@ TEST(SensorColumns, SpeedsThatLagCostNothingAndAreNamed) {
   for (const unsigned seed : {811U, 821U, 822U, 824U}) expectHarmless({200.0, 1e-3, 2e-2}, seed);
 }
 
-TEST(SensorColumns, SpeedsOutOfScaleLikewise) {
+TEST(SensorColumns, SpeedsOutOfScaleCostNothingAndAreNamed) {
   simulation::MachineSettings s = machineOfColumns(1000.0, 812);
   holdStamps(3e-4, s);
   simulation::MachineSettings mute = s;
@@ -125,7 +125,7 @@ TEST(SensorColumns, SpeedsOutOfScaleLikewise) {
 }
 
 /// Where stamps jitter they are worth having.
-TEST(SensorColumns, SpeedsThatAreRightAreTakenUp) {
+TEST(SensorColumns, CorrectSpeedsAreUsed) {
   for (const double rate : {1000.0, 200.0}) {
     simulation::MachineSettings s = machineOfColumns(rate, 813);
     holdStamps(1e-3, s);

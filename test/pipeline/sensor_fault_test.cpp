@@ -66,7 +66,7 @@ void everywhere(const std::function<void(double)>& at) {
   for (double begin = kFrom; begin < kFrom + kTurn; begin += 0.0103) at(begin);
 }
 
-TEST(SensorFault, AnAngleThatStandsStillWhileTheSpeedGoesOn) {
+TEST(SensorFault, CausesNoLargeErrorForAnAngleThatStandsStillWhileTheSpeedGoesOn) {
   for (const double rate : {1000.0, 200.0}) {
     const Session session = record(rate);
     for (const double length : {0.003, 0.01, 0.03, 0.1}) {
@@ -85,7 +85,7 @@ TEST(SensorFault, AnAngleThatStandsStillWhileTheSpeedGoesOn) {
 }
 
 /// Far: by more than a third of the way between two samples of the fastest crank here, 0.052 rad.
-TEST(SensorFault, OneAngleFarOff) {
+TEST(SensorFault, LosesOneSampleToAnAngleFarOff) {
   const Session session = record(1000.0);
   for (const bool with_speed : {true, false}) {
     for (const double off : {0.03, 0.05, 0.1, 0.3, -0.03, -0.05, -0.1, -0.3}) {
@@ -104,7 +104,7 @@ TEST(SensorFault, OneAngleFarOff) {
   }
 }
 
-TEST(SensorFault, ASpeedThatSaysNothing) {
+TEST(SensorFault, LosesNoSampleToASpeedWithoutInformation) {
   for (const double rate : {1000.0, 100.0, 50.0}) {
     const Session session = record(rate);
     for (const double factor : {0.0, 1.3}) {

@@ -58,7 +58,7 @@ TEST(SensorsOverBus, ReadingsThatCameTogetherTurnNoHull) {
 
 /// Nor do the first ones of a unit: one of these machines had its crank thrown away by 1e7 rad/s2, and as its speed was
 /// in doubt from then on, it began anew with each sample.
-TEST(SensorsOverBus, NorDoTheFirstThatCame) {
+TEST(SensorsOverBus, TurnNoHullWithTheFirstReadings) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     simulation::MachineSettings machine = test::machineOnBoom(1.0, 100.0);
     machine.duration = 0.05;

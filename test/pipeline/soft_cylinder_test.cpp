@@ -87,7 +87,7 @@ TEST(SoftCylinder, IsNamedByWhatTheBoomFileAllowsFor) {
 
 /// Seals damp the boom beside its oil, and shift what the oil seems: the stiffness found has that in its deviation.
 /// Where nothing rubs it is known to some percent.
-TEST(SoftCylinder, HasTheDoubtOfWhatDampsBesideTheOil) {
+TEST(SoftCylinder, HasTheUncertaintyOfDampingBesideTheOil) {
   const std::array<double, 3> oil{1.0, 1.0, 2.2};
   int within = 0, all = 0;
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {

@@ -14,7 +14,7 @@ using test::kPeak;
 using test::run;
 using test::sessionAt;
 
-TEST(TurnLoads, OfTheHullHaveThePulsesPeakAtAnyRate) {
+TEST(TurnLoads, HaveThePulsesPeakAtAnyRateForTheHull) {
   for (const double rate : {100.0, 1000.0}) {
     std::size_t turns = 0, withheld = 0;
     run(test::settingsWith("{}"), sessionAt(rate), [&](const SampleResult& result, const LifeFollower& follower) {
@@ -98,7 +98,7 @@ TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
 }
 
 /// Where the rod's spring is followed, loads between samples are not those of a rigid path.
-TEST(TurnLoads, OfARodThatGivesAreAsPublished) {
+TEST(TurnLoads, AreAsPublishedForAnElasticRod) {
   const Settings settings = test::settingsWith("level: elastic\n");
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = settings.mechanism.parameters();
@@ -128,7 +128,7 @@ TEST(TurnLoads, OfARodThatGivesAreAsPublished) {
   EXPECT_LE(counted[1], 1.02 * published[1]);
 }
 
-TEST(TurnLoads, OfJointsAreThoseOfTheSamples) {
+TEST(TurnLoads, AreThoseOfTheSamplesForJoints) {
   double greatest = -1e300;
   std::optional<StampNs> blow;
   std::size_t turns = 0;

@@ -55,7 +55,7 @@ simulation::MachineSettings unwoundMachine(std::uint64_t seed, double rate) {
   return machine;
 }
 
-TEST(UnitCheck, TellsDegreesOfAngleOfSpeedAndOfBoth) {
+TEST(UnitCheck, DetectsDegreesOfAngleOfSpeedAndOfBoth) {
   for (const double rate : {50.0, 100.0, 1000.0, 5000.0}) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const simulation::Session session = simulation::recordSession(unwoundMachine(seed, rate));
@@ -98,7 +98,7 @@ TEST(UnitCheck, IsCalmedByGoodSamples) {
   EXPECT_FALSE(judge(session, {1.0, 1.0, false}, check).last);
 }
 
-TEST(UnitCheck, SaysNothingOfGarbage) {
+TEST(UnitCheck, ConcludesNothingFromGarbage) {
   UnitCheck check(kMaxSpeed);
   std::mt19937 random(7);
   std::uniform_real_distribution<> any(-1e4, 1e4);

@@ -128,7 +128,7 @@ TEST(UnmeasuredHull, TheDeviationsOfABlowHoldTheHullsVelocity) {
   expectHonest(errors.impulse, "tool impulse", 4.0);  // 3.4 times by the crank alone
 }
 
-TEST(UnmeasuredHull, AHullSaidToBeHeldHasNoPartOfIt) {
+TEST(UnmeasuredHull, AHullThatIsHeldHasNoPartOfIt) {
   SwingErrors free, held;
   followSwing(drawnSwing(920), "unmeasured", 1, free);
   followSwing(drawnSwing(920), "fixed", 1, held);

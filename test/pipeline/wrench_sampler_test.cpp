@@ -100,7 +100,7 @@ TEST(MeanOutput, IsTheImpulseOfTheTurns) {
   EXPECT_NEAR(total.z, true_impulse, 0.02 * true_impulse) << "the trapezoid over the blow's jump is the larger error";
 }
 
-TEST(InstantaneousOutput, ByDefaultIsTheSamplesOwn) {
+TEST(InstantaneousOutput, IsTheSamplesOwnByDefault) {
   const MachineSettings machine = machineAt(1000.0);
   const Session session = simulation::recordSession(machine);
   Pipeline pipeline(test::mechanismOf(machine.hammer), settingsOf(Level::kRocker, OutputKind::kInstantaneous, 0.0));
@@ -115,7 +115,7 @@ TEST(InstantaneousOutput, ByDefaultIsTheSamplesOwn) {
   }
 }
 
-TEST(InstantaneousOutput, AtARateOfItsOwnLiesOnTheSamplesWhereTheyMeet) {
+TEST(InstantaneousOutput, LiesOnTheSamplesWhereItsOwnRateMeetsThem) {
   const MachineSettings machine = machineAt(1000.0);
   const Session session = simulation::recordSession(machine);
   Pipeline pipeline(test::mechanismOf(machine.hammer), settingsOf(Level::kRocker, OutputKind::kInstantaneous, 3000.0));
@@ -140,7 +140,7 @@ TEST(InstantaneousOutput, AtARateOfItsOwnLiesOnTheSamplesWhereTheyMeet) {
   EXPECT_GT(static_cast<double>(outputs), 0.995 * expected) << "but those beside the blow";
 }
 
-TEST(MeanOutput, BeginsAnewAfterADropOut) {
+TEST(MeanOutput, RestartsAfterADropOut) {
   MachineSettings machine = machineAt(1000.0);
   machine.crank.drop_outs = {{2.0, 2.5}};
   const Session session = simulation::recordSession(machine);

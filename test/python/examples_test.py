@@ -42,12 +42,12 @@ class Examples(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         self.picture = pathlib.Path(self.folder.name) / "out.png"
 
-    def test_turn(self):
+    def test_turn_writes_figures_and_a_picture(self):
         out = run("turn.py", support.SOURCE / "config" / "hammer_mo100.yaml", "--png", self.picture)
         self.assertIn("amplitude: ", out)
         self.assertTrue(is_picture(self.picture))
 
-    def test_own_geometry(self):
+    def test_own_geometry_names_the_change_point(self):
         lines = run("own_geometry.py").splitlines()
         self.assertEqual(lines[1].split()[0], "MO-100")
         self.assertIn("rod_length_m", lines[-1])
@@ -60,7 +60,7 @@ class Examples(unittest.TestCase):
         self.assertTrue(is_picture(self.picture))
 
     @unittest.skipUnless("HAMMER_LOADS_PROGRAMS" in os.environ, "no process_bag: built without ROS")
-    def test_database_of_a_bag(self):
+    def test_a_bags_database_is_read(self):
         programs = os.environ["HAMMER_LOADS_PROGRAMS"]
         path = os.path.join(self.folder.name, "bag.sqlite")
         subprocess.run([os.path.join(programs, "process_bag"), str(BAG), "--no-bag", "--db", path], check=True,
@@ -71,7 +71,7 @@ class Examples(unittest.TestCase):
         self.assertIn("energy", run("database.py", path))
 
     @unittest.skipIf(rosbag is None, "no rosbag on this machine")
-    def test_design_from_a_bag(self):
+    def test_design_improves_the_hammer_of_a_bag(self):
         rows = {line[:34].strip(): line[34:].split() for line in run("design.py", BAG).splitlines()}
         before, after = map(float, rows["boom load [N m/J]"])
         self.assertLess(after, 0.97 * before)
@@ -126,7 +126,7 @@ class Design(unittest.TestCase):
         blow = found.blow(20.0, level="rocker")
         self.assertLess(abs(blow["support_impulse_z"]), 1e-9 * blow["tool_impulse_z"])
 
-    def test_paper_s_case_the_ideal_centre_of_mass(self):
+    def test_the_ideal_centre_of_mass_is_the_papers(self):
         """P1 (18), and with friction, a face off the line and a rod's mass what momentum demands (doc/model.md, 5)."""
         x, z = design.ideal_centre_of_mass(mass=35.2, inertia_about_pivot=0.737, striking_point=(-0.1975, 0.0))
         self.assertAlmostEqual(x, -0.737 / (35.2 * 0.1975), delta=1e-6)

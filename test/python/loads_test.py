@@ -46,7 +46,7 @@ class Loads(unittest.TestCase):
         right = newton_euler.loads(self.hammer.parameters, ANGLE, SPEED, ACCELERATION, 0.2, massless=True)
         self.assert_like(got, right)
 
-    def test_own_geometry(self):
+    def test_own_geometry_equals_newton_and_euler(self):
         own = self.hammer.changed(crank_length_m=0.06, rod_length_m=0.2, rocker_length_m=0.17, pivot_distance_m=0.09,
                                   rod_mass_kg=9.0, rocker_com_angle_deg=20.0)
         self.assertEqual(own.parameters["rod_mass_kg"], 9.0)
@@ -78,7 +78,7 @@ class Loads(unittest.TestCase):
         self.assertAlmostEqual(float(before), -55448.8, delta=0.05)  # P0's figures, doc/model.md
         self.assertAlmostEqual(float(after), -35.2 * 0.106 * (0.6803499 * 31.416) ** 2, delta=0.5)
 
-    def test_what_is_not_a_number_stays_so_and_what_is_too_large_is_named(self):
+    def test_nan_stays_nan_and_a_too_large_value_is_named(self):
         got = self.hammer.wrenches([1.0, np.nan, 1.0], [1.0, 1.0, np.nan])
         np.testing.assert_array_equal(np.isnan(got[WRENCH[0]]), [False, True, True])
         self.assertEqual(support.message(self.hammer.wrenches, [1.0, 1e9], 1.0),
@@ -109,7 +109,7 @@ class Loads(unittest.TestCase):
 class Turn(unittest.TestCase):
     hammer = hl.Hammer.from_yaml()
 
-    def test_figures_of_the_turn_are_the_model_page_s(self):
+    def test_figures_of_a_revolution_are_the_model_page_s(self):
         pulse = self.hammer.pulse(31.416, level="rocker")
         for name, value, delta in (("amplitude", 40558.04, 0.01), ("peak_angle", np.radians(348.480), 2e-5),
                                    ("impulse", 483.2184, 1e-4), ("angular_frequency", 167.866, 1e-3),
@@ -138,7 +138,7 @@ class Turn(unittest.TestCase):
 class Words(unittest.TestCase):
     """Problems are the commands' own."""
 
-    def test_what_is_no_number_is_a_value_error_that_names_the_argument(self):
+    def test_nan_raises_a_value_error_that_names_the_argument(self):
         hammer = hl.Hammer.from_yaml()
         for call, name in ((lambda: hammer.wrenches("x", 1, 1), "angle"), (lambda: hammer.wrenches(1, ["x"], 1), "speed"),
                            (lambda: hammer.wrenches(1, 1, object()), "acceleration"),
@@ -165,13 +165,13 @@ class Words(unittest.TestCase):
                          "<Hammer: crank_length_m 0.048, rod_length_m 0.15, rocker_length_m 0.12, pivot_distance_m 0.078, "
                          "rocker_mass_kg 40.5, rocker_inertia_about_pivot_kg_m2 0.737, level linkage>")
 
-    def test_files(self):
+    def test_missing_files_are_named(self):
         self.assertEqual(support.message(hl.Hammer.from_yaml, "/no/such.yaml"),
                          "/no/such.yaml: cannot be read: No such file or directory")
         path = support.SOURCE / "config" / "hammer_mo100.yaml"
         self.assertEqual(hl.Hammer.from_yaml(path).parameters, hl.Hammer.from_yaml().parameters)
 
-    def test_keys_and_values(self):
+    def test_bad_keys_and_values_are_named(self):
         hammer = hl.Hammer.from_yaml()
         self.assertIn("rod_mas_kg: unknown key", support.message(hammer.changed, rod_mas_kg=1.0))
         self.assertIn("crank_length_m: -1 m, must be > 0", support.message(hammer.changed, crank_length_m=-1.0))

@@ -92,13 +92,13 @@ class Figures(unittest.TestCase):
         least = -truth.first * (truth.u_before * truth.at_blow) ** 2
         self.assertAlmostEqual(turn.extreme(0, -1.0)[0] / least, 1.0, delta=1e-9)
 
-    def test_at_the_papers_speed(self):
+    def test_loads_at_the_papers_speed_are_those_of_an_independent_model(self):
         self.check(Turn.at_speed(SHIPPED, papers.SPEED), Independent(SHIPPED.parameters, speed=papers.SPEED))
 
-    def test_at_work_with_1000_joules(self):
+    def test_loads_at_1000_joules_are_those_of_an_independent_model(self):
         self.check(Turn.at_energy(SHIPPED, papers.ENERGY), Independent(SHIPPED.parameters, energy=papers.ENERGY))
 
-    def test_of_the_package_s_own_pulse(self):
+    def test_half_sine_is_that_of_the_package(self):
         found, own = Turn.at_speed(SHIPPED, papers.SPEED).half_sine(), SHIPPED.pulse(papers.SPEED, level="rocker")
         for key, name in (("H", "amplitude"), ("S", "impulse"), ("mu", "angular_frequency"), ("t1", "start")):
             self.assertAlmostEqual(found[key] / own[name], 1.0, delta=1e-10, msg=key)

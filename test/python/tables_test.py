@@ -40,14 +40,14 @@ def astm(series):
 
 
 class Cycles(unittest.TestCase):
-    def test_example_of_the_standard(self):
+    def test_counts_follow_the_standards_example(self):
         cycles = hl.count_cycles([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
         by_range = {}
         for r, n in zip(cycles["range"], cycles["count"]):
             by_range[r] = by_range.get(r, 0.0) + n
         self.assertEqual(by_range, {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5})  # X1, figure X1.1
 
-    def test_random_series(self):
+    def test_random_series_are_counted_by_astm(self):
         series = np.random.default_rng(5).normal(size=2000)
         cycles = hl.count_cycles(series)
         got = {(r, m): n for r, m, n in zip(cycles["range"], cycles["mean"], cycles["count"])}
@@ -64,7 +64,7 @@ class Cycles(unittest.TestCase):
         damage = [float((c["count"] * c["range"] ** 3).sum()) for c in (cycles, exact)]
         self.assertAlmostEqual(damage[0] / damage[1], 1.0, delta=0.02)
 
-    def test_nothing_and_what_is_no_number(self):
+    def test_nothing_and_nan_give_no_cycles(self):
         self.assertEqual(hl.count_cycles([])["range"].size, 0)
         np.testing.assert_array_equal(hl.count_cycles([0.0, math.nan, 2.0, math.inf, 0.0])["range"], [2.0])
         self.assertEqual(support.message(hl.count_cycles, [1.0], full_scale=(2.0, 1.0)),

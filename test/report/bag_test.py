@@ -18,7 +18,7 @@ class Bags(ReportTest):
         self.bag = self.directory / "work.bag"
         self.bag.write_text("3 20 1700000000")
 
-    def test_to_a_page(self):
+    def test_a_bag_becomes_a_page(self):
         parameters = self.directory / "hammer.yaml"
         parameters.write_text("a: 1\n")
         page = self.page_of(self.bag, options=["--params", parameters])
@@ -46,7 +46,7 @@ class Bags(ReportTest):
         self.page_of(self.bag, options=topics)
         self.assertEqual((self.programs / "options.txt").read_text().split(), topics)
 
-    def test_bad_ones(self):
+    def test_bad_bags_are_refused(self):
         out = self.directory / "out.html"
         self.bag.write_text("broken")
         outcome = report(self.bag, "--html", out)
@@ -57,7 +57,7 @@ class Bags(ReportTest):
         self.assertRefused(report(self.bag, "--html", out), "needs the built command process_bag")
         self.assertFalse(out.exists())
 
-    def test_parameters_without_a_bag(self):
+    def test_parameters_without_a_bag_are_refused(self):
         self.assertRefused(report("a.sqlite", "--html", "x", "--params", "y"), "are for bags", code=2)
 
 

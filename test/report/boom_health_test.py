@@ -17,7 +17,7 @@ class BoomHealth(ReportTest):
         self.page = self.page_of(self.file)
         return self.page.table(TABLE)
 
-    def test_what_has_changed_is_said(self):
+    def test_changes_are_reported(self):
         rows = self.rows(3, arm_cylinder=(0.9, 0.0, 0), boom_cylinder=(1.1, -0.05, 0), hammer_cylinder=(1.0, 0.04, 0))
         self.assertEqual(rows["arm_cylinder"]["Verdict"], "as before")
         self.assertEqual(rows["boom_cylinder"]["Verdict"], "softer")
@@ -33,7 +33,7 @@ class BoomHealth(ReportTest):
             for (_, stiffness), truth in zip(curve, expected):
                 self.assertAlmostEqual(stiffness, truth, delta=0.005)
 
-    def test_a_doubtful_one_is_no_trend(self):
+    def test_a_value_damped_by_something_else_is_no_trend(self):
         rows = self.rows(2, arm_cylinder=(0.9, -0.3, 1))
         self.assertEqual(rows["arm_cylinder"]["Verdict"], "doubtful: something else than oil damps the boom")
 
@@ -45,7 +45,7 @@ class BoomHealth(ReportTest):
         self.assertEqual(modes["1"]["Frequency [Hz]"], "4 to 4.09")
         self.assertEqual(modes["1"]["Turns"], "100")
 
-    def test_without_sensors_it_is_not_known(self):
+    def test_load_is_unknown_without_sensors(self):
         sample.make(self.file, seconds=20.0)
         self.assertIn("Not known: it needs boom_stiffness: identified", self.page_of(self.file).text)
 

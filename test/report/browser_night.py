@@ -87,7 +87,7 @@ class Browser(ReportTest):
         _, errors = chromium(self.directory, "--dump-dom", page.as_uri())
         self.assertTrue([line for line in errors if "seen" in line])
 
-    def test_one_machine(self):
+    def test_the_page_of_one_machine_is_good(self):
         file = self.directory / "machine.sqlite"
         sample.make(file, seconds=300.0, warnings=[("jitter", "crank stamps jitter by 0.23 ms")], refusals={"duplicate": 3})
         page = self.page("machine", file)
@@ -96,14 +96,14 @@ class Browser(ReportTest):
         chromium(self.directory, "--no-pdf-header-footer", f"--print-to-pdf={paper}", page.as_uri())
         self.assertGreater(paper.stat().st_size, 50000)
 
-    def test_two_machines(self):
+    def test_the_page_of_two_machines_is_good(self):
         files = []
         for name, peak in (("first", 40000.0), ("second", 60000.0)):
             files.append(self.directory / (name + ".sqlite"))
             sample.make(files[-1], sample.Machine(name, peak_N=peak), seconds=60.0)
         self.assertGood(self.page("two", *files), 65)
 
-    def test_no_turn_and_hostile_names(self):
+    def test_hostile_names_are_escaped(self):
         file = self.directory / "idle.sqlite"
         sample.make(file, seconds=0.0, boom=False, warnings=[("k", "<script>throw 1</script>" * 20)])
         self.assertGood(self.page("idle", file), 0)

@@ -27,7 +27,7 @@ def with_budget(path, rows, restarts=0):
 class Budget(ReportTest):
     ROWS = [("blow/energy", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy", 900.0, 20.0, "readings", 0.36)]
 
-    def test_largest_first_and_what_halving_it_gives(self):
+    def test_largest_source_comes_first_with_the_gain_of_halving_it(self):
         path = self.directory / "a.sqlite"
         with_budget(path, self.ROWS)
         figure, = budget_of(subjects_of(Database(path))[0])
@@ -50,13 +50,13 @@ class Budget(ReportTest):
         self.assertEqual([part for part in parts if not part[0].startswith("the rest")],
                          [("rocker_mass_kg: 64 %", 64.0), ("readings: 36 %", 36.0), ("readings: 100 %", 100.0)])
 
-    def test_a_file_without_one_says_so(self):
+    def test_a_file_without_a_budget_is_reported(self):
         path = self.directory / "b.sqlite"
         sample.make(path, seconds=20.0, boom=False)
         self.assertIn("keeps no budget", self.page_of(path).text)
 
     @unittest.skipUnless(program("budget") and program("process_bag"), "needs the built commands")
-    def test_command_over_a_bag(self):
+    def test_command_reads_a_bag(self):
         bag = HERE.parent / "data" / "mo100_1khz.bag"
         outcome = subprocess.run([program("budget"), str(bag), "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                  encoding="utf-8")
@@ -71,7 +71,7 @@ class Budget(ReportTest):
             self.assertGreater(found[quantity]["std"], found[quantity]["std_with_largest_halved"])
         self.assertIn("rocker_mass_kg", [s["source"] for s in found["pulse/turn_impulse_z"]["sources"]])
 
-    def test_what_would_be_nothing_is_one_line(self):
+    def test_negligible_shares_are_one_line(self):
         shares = [("rocker_mass_kg", 0.9991), ("readings", 5e-4), ("supply", 3e-4), ("crank_mass_kg", 1e-4)]
         self.assertEqual(budget.share_lines(shares), ["   99.9 %  rocker_mass_kg", "    0.1 %  readings", "    0.0 %  2 more"])
         self.assertEqual(budget.share_lines(shares[:1]), ["   99.9 %  rocker_mass_kg"])

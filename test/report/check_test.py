@@ -59,7 +59,7 @@ class Check(ReportTest):
         statuses = {line["check"]: line["status"] for line in json.loads(outcome.stdout)["recordings"][0]["checks"]}
         self.assertIn(statuses["zero"], ("look", "wrong"))
 
-    def test_wrong_usage(self):
+    def test_wrong_usage_is_refused(self):
         self.assertEqual(self.check("a.sqlite").returncode, 2)
         self.assertEqual(self.check(self.directory / "no.bag").returncode, 1)
 

@@ -17,7 +17,7 @@ FIGURE_6 = [-2, 1, -3, 5, -1, 3, -4, 4, -2]  # of the standard
 
 
 class Rainflow(unittest.TestCase):
-    def test_the_standards_example(self):
+    def test_counts_follow_the_standards_example(self):
         count = Count(-10.5, 10.5, 21)
         count.join([level + 10 for level in FIGURE_6])
         by_range = {}
@@ -43,14 +43,14 @@ class Rainflow(unittest.TestCase):
             self.assertEqual(count.residue, residue)
             self.assertEqual(count.closed, {(b - a, a): n for (a, b), n in closed.items()})
 
-    def test_nothing(self):
+    def test_nothing_gives_no_cycles(self):
         self.assertEqual(joined_residues([], []), ([], []))
         self.assertEqual(Count(0.0, 1.0, 4).ranges_and_means(), [])
         self.assertEqual(equivalent_range([], 3.0, 10.0), (0.0, None))
 
 
 class Damage(unittest.TestCase):
-    def test_mean_stress(self):
+    def test_mean_stress_follows_fkm(self):
         for amplitude, mean, expected in ((2, 2, 2.6), (3, 3, 3.9), (3, 2, 3.6), (2, 4, 2.836363), (2, 3, 2.718181),
                                           (1, 3, 1.536363), (2, 1, 2.3), (2, -2, 1.4), (2, -9, 1.4)):
             self.assertAlmostEqual(at_alternating(amplitude, mean, 0.3)[0], expected, delta=2e-6)
@@ -162,19 +162,19 @@ class Ledger(ReportTest):
         self.assertSame(channel.remaining_hours(channel.damage()), expected["remaining_hours"])
         self.assertEqual(sum(n for _, _, n in channel.count.ranges_and_means()), expected["cycles"])
 
-    def test_page(self):
+    def test_the_page_shows_the_epoch(self):
         page = self.page_of(self.file)
         self.assertIn("Epoch 1: 2.5 hours", page.text)
         self.assertEqual(sorted(page.table("By the day on which a cycle closed")), ["2026-01-31", "2026-02-01"])
 
-    def test_beside_a_recording(self):
+    def test_a_ledger_is_shown_beside_a_recording(self):
         other = self.directory / "rec.sqlite"
         sample.make(other, seconds=20.0, boom=False)
         page = self.page_of(other, self.file)
         self.assertIn("Over all turns", page.tables)
         self.assertEqual(len(page.tables["Damage-equivalent loads"]), 2)
 
-    def test_without_anything(self):
+    def test_an_empty_ledger_has_no_epoch(self):
         db = sqlite3.connect(str(self.file))
         db.execute("DELETE FROM epochs")
         db.commit()

@@ -59,7 +59,7 @@ class Damaged(ReportTest):
         self.assertFalse([c for c in said if ord(c) < 32 and c != "\n"], what)
         return code
 
-    def test_any_bytes_and_values(self):
+    def test_any_bytes_and_values_are_survived(self):
         self.assertEqual(self.check("the good one"), 0)
         draw, codes = random.Random(1), [0, 0]
         tables = [row[0] for row in sqlite3.connect(str(self.file)).execute(
@@ -100,7 +100,7 @@ class Damaged(ReportTest):
             outcome = report(self.file, "--html", self.out[0], "--force")
             self.assertEqual(len(outcome.stderr.splitlines()), outcome.returncode, outcome.stderr)
 
-    def test_a_table_named_outside(self):
+    def test_a_table_name_outside_the_folder_is_refused(self):
         victim = self.directory.parent / f"victim{os.getpid()}.csv"
         execute(self.file, f'CREATE TABLE "../../{victim.stem}"(a)')
         code, said = self.outcome()
@@ -108,7 +108,7 @@ class Damaged(ReportTest):
         self.assertIn("must be of letters, digits and _", said)
         self.assertFalse(victim.exists())
 
-    def test_a_view_without_end(self):
+    def test_an_endless_view_is_refused(self):
         execute(self.file, "DROP TABLE cycles", "CREATE VIEW cycles AS WITH RECURSIVE n(steps) AS "
                            "(SELECT 1 UNION ALL SELECT 1 FROM n) SELECT steps, 1 AS run_id, 1 AS channel, 1 AS low, "
                            "1 AS count FROM n")
@@ -164,7 +164,7 @@ class Tables(ReportTest):
         self.assertEqual(report(self.file, "--csv", tables, "--force").returncode, 0)
         self.assertEqual({path.name: path.read_bytes() for path in tables.iterdir()}, before)
 
-    def test_killed_while_it_replaces(self):
+    def test_a_kill_while_replacing_leaves_one_whole_folder(self):
         """At whatever instant: one of the two is there, whole."""
         sample.make(self.file, seconds=5.0, boom=False)
         tables = self.directory / "tables"

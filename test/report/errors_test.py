@@ -30,27 +30,27 @@ class Inputs(ReportTest):
         db.commit()
         db.close()
 
-    def test_the_good_one_first(self):
+    def test_a_good_file_is_accepted(self):
         self.assertEqual(report(self.file, "--html", self.directory / "out.html").returncode, 0)
 
-    def test_not_there(self):
+    def test_a_missing_file_is_refused(self):
         self.refused(self.directory / "none.sqlite", "No such file")
 
-    def test_no_sqlite(self):
+    def test_a_file_that_is_no_sqlite_is_refused(self):
         for content in (b"", b"#ROSBAG V2.0\n", b"SQLite format 2\0" * 100):
             self.file.write_bytes(content)
             self.refused(self.file, "is no SQLite file")
 
-    def test_half_a_file(self):
+    def test_half_a_file_is_refused(self):
         content = self.file.read_bytes()
         self.file.write_bytes(content[:len(content) // 2 // 4096 * 4096])
         self.refused(self.file, "cannot be read")
 
-    def test_another_application(self):
+    def test_a_database_of_another_application_is_refused(self):
         self.change("PRAGMA application_id = 1")
         self.refused(self.file, "another database")
 
-    def test_older_and_newer(self):
+    def test_older_and_newer_versions_are_refused(self):
         for version, word in ((0, "older"), (2, "newer")):
             self.change(f"PRAGMA user_version = {version}")
             self.refused(self.file, word, f"version, {version};", "reads version 1")
@@ -59,7 +59,7 @@ class Inputs(ReportTest):
         self.change("DROP TABLE cycles")
         self.refused(self.file, "no such table: cycles")
 
-    def test_a_directory_and_a_fifo(self):
+    def test_a_directory_and_a_fifo_are_refused(self):
         fifo = self.directory / "fifo"
         os.mkfifo(fifo)
         self.before = sorted(os.listdir(self.directory))
@@ -84,7 +84,7 @@ class Outputs(ReportTest):
         self.assertRefused(report(self.file, "--html", self.out, "--force"), self.out, "no page of this command")
         self.assertEqual(self.out.read_text(), "<html>thesis</html>")
 
-    def test_never_an_input(self):
+    def test_an_input_is_never_overwritten(self):
         before = self.file.read_bytes()
         link = self.directory / "link"
         os.link(self.file, link)
@@ -100,10 +100,10 @@ class Outputs(ReportTest):
         for out, word in ((fifo, "a FIFO"), (link, "a symbolic link"), (folder, "a directory"), ("/dev/null", "a device")):
             self.assertRefused(report(self.file, "--html", out, "--force"), out, word)
 
-    def test_no_such_directory(self):
+    def test_a_missing_directory_is_reported(self):
         self.assertRefused(report(self.file, "--html", self.directory / "none" / "out.html"), "No such file")
 
-    def test_interrupted(self):
+    def test_an_interruption_leaves_nothing(self):
         """By a signal while it waits for a ledger that is locked."""
         locked = sqlite3.connect(str(self.file), isolation_level=None)
         locked.execute("BEGIN EXCLUSIVE")
@@ -118,7 +118,7 @@ class Outputs(ReportTest):
 
 
 class Usage(ReportTest):
-    def test_wrong_usage(self):
+    def test_wrong_usage_is_refused(self):
         for arguments in ((), ("a.sqlite",), ("--html", "x.html"), ("a.sqlite", "--html", "x", "--colour")):
             self.assertRefused(report(*arguments), "report: ", "--help", code=2)
 
@@ -133,7 +133,7 @@ class Usage(ReportTest):
                 self.assertRefused(report(file, "--html", self.directory / "x.html"), f"No module named {package}")
             shutil.rmtree(broken)
 
-    def test_help_and_version(self):
+    def test_help_and_version_are_printed(self):
         self.assertIn("--html OUT.html", report("--help").stdout)
         version = (SOURCE / "package.xml").read_text().split("<version>")[1].split("<")[0]
         self.assertEqual(report("--version").stdout, f"hammer_loads {version}\n")

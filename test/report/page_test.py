@@ -50,12 +50,12 @@ class Page(ReportTest):
         self.assertAlmostEqual(min(y for _, y in band), least, delta=1e-3 * greatest)
         self.assertAlmostEqual(max(y for _, y in band), greatest, delta=1e-3 * greatest)
 
-    def test_parameters_that_differ(self):
+    def test_differing_parameters_are_listed(self):
         rows = self.page_of(self.file).table("Parameters that differ from the shipped ones")
         self.assertEqual(rows, {"rocker_mass_kg": {"In force": "36.5", "Shipped": "35.2"},
                                 "own_key": {"In force": "1", "Shipped": "none"}})
 
-    def test_sensor_health(self):
+    def test_sensor_health_is_shown(self):
         page = self.page_of(self.file)
         health = page.table("The crank's sensor")
         self.assertEqual(health["Consistency"]["Verdict"], "sound")
@@ -64,7 +64,7 @@ class Page(ReportTest):
         self.assertEqual(health["Refused samples"]["Value"].split()[0], "10")
         self.assertEqual(page.table("Refused samples by reason")["duplicate"]["Samples"], "7")
 
-    def test_loads_of_joints_and_sections(self):
+    def test_loads_of_joints_and_sections_are_shown(self):
         page = self.page_of(self.file)
         rows = page.table("Loads over all turns")
         least, mean, greatest = self.ask(
@@ -76,7 +76,7 @@ class Page(ReportTest):
         for kind, count in self.ask("SELECT rtrim(name, replace(name, '/', '')), count(*) FROM channels GROUP BY 1"):
             self.assertEqual(sum(len(p.classes("line")) for p in page.pictures if p.title == kind.rstrip("/")), count, kind)
 
-    def test_turns_with_half_sine_and_band(self):
+    def test_turns_are_shown_with_half_sine_and_band(self):
         page = self.page_of(self.file)
         for kind in ("Typical turn", "Worst turn"):
             self.assertIn(kind + ", number", page.text)
@@ -92,7 +92,7 @@ class Page(ReportTest):
         self.assertAlmostEqual(max(y for _, y in curve), max(forces), delta=2e-3 * max(forces))
         self.assertAlmostEqual(min(y for _, y in curve), min(forces), delta=2e-3 * max(forces))
 
-    def test_for_keyboard_and_reader(self):
+    def test_the_page_serves_keyboard_and_screen_reader(self):
         page = self.page_of(self.file)
         self.assertEqual(len(page.ids), len(set(page.ids)))
         for link in page.links:
@@ -113,14 +113,14 @@ class Page(ReportTest):
             for name in ("src", "href", "srcset"):
                 self.assertFalse(given.get(name, "#").startswith(("http", "//", "file")), (tag, given))
 
-    def test_same_bytes_for_the_same_files(self):
+    def test_equal_files_give_equal_bytes(self):
         pages = []
         for name in ("one.html", "two.html"):
             self.assertEqual(report(self.file, "--html", self.directory / name).returncode, 0)
             pages.append((self.directory / name).read_bytes())
         self.assertEqual(*pages)
 
-    def test_size_of_a_long_recording(self):
+    def test_a_long_recording_has_a_small_page(self):
         """Curves are thinned: eight times the turns, hardly more bytes; far below 3 MB with all channels."""
         sizes = []
         for seconds in (150.0, 1200.0):
@@ -140,7 +140,7 @@ class Comparison(ReportTest):
             self.files.append(self.directory / (name + ".sqlite"))
             sample.make(self.files[-1], sample.Machine(name, peak_N=peak), seconds=60.0)
 
-    def test_side_by_side_and_overlaid(self):
+    def test_machines_are_shown_side_by_side_and_overlaid(self):
         page = self.page_of(*self.files)
         peaks = page.table("Machines side by side")["Peak force along the tool [kN]"]
         self.assertAlmostEqual(number(peaks["second"]) / number(peaks["first"]), 1.5, delta=0.05)
@@ -148,7 +148,7 @@ class Comparison(ReportTest):
         curves = [p for p in page.pictures if p.title.endswith("over the time of work")]
         self.assertEqual([p.classes("line") for p in curves], 5 * [["line first", "line second"]])
 
-    def test_what_a_warning_puts_in_doubt_is_marked(self):
+    def test_figures_affected_by_a_warning_are_marked(self):
         third, boom = self.directory / "third.sqlite", self.directory / "boom.sqlite"
         sample.make(third, seconds=60.0, warnings=[("jitter", "crank stamps jitter by 0.23 ms")])
         sample.make(boom, seconds=60.0, warnings=[("pressures", "pressures in bar")])
@@ -167,7 +167,7 @@ class Comparison(ReportTest):
             sample.make(files[-1], sample.Machine(f"m{i}"), seconds=20.0, boom=False)
         self.assertEqual(len(self.page_of(*files).table("Machines, one a row")), 6)
 
-    def test_files_of_the_same_name(self):
+    def test_files_of_one_name_are_distinguished(self):
         other = self.directory / "other"
         other.mkdir()
         sample.make(other / "first.sqlite", seconds=20.0, boom=False)
@@ -189,24 +189,24 @@ class Comparison(ReportTest):
 
 
 class LittleData(ReportTest):
-    def test_no_turn(self):
+    def test_a_file_without_a_revolution_is_reported(self):
         file = self.directory / "idle.sqlite"
         sample.make(file, seconds=0.0, boom=False)
         page = self.page_of(file, note="idle: no whole turn")
         self.assertIn("no whole turn", page.text)
         self.assertIn("The crank's sensor", page.tables)
 
-    def test_no_run(self):
+    def test_a_file_without_a_run_is_reported(self):
         file = self.directory / "nothing.sqlite"
         sample.make(file, runs=0)
         self.assertIn("no run at all", self.page_of(file, note="nothing: no run at all").text)
 
-    def test_no_boom(self):
+    def test_a_file_without_a_boom_has_no_sections(self):
         file = self.directory / "bare.sqlite"
         sample.make(file, seconds=20.0, boom=False)
         self.assertIn("No sections", self.page_of(file).text)
 
-    def test_nothing_but_null(self):
+    def test_null_columns_are_survived(self):
         file = self.directory / "null.sqlite"
         sample.make(file, seconds=20.0)
         db = sqlite3.connect(str(file))

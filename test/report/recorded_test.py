@@ -10,7 +10,7 @@ DATA = SOURCE / "test" / "data"
 
 @unittest.skipUnless(program("process_bag"), "needs the built command process_bag")
 class Recorded(ReportTest):
-    def test_page_of_a_session(self):
+    def test_the_page_of_a_session_has_its_figures(self):
         out = self.directory / "page.html"
         level = self.directory / "level.yaml"  # that of the session's machine
         level.write_text("level: rocker\n")

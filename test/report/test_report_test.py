@@ -77,7 +77,7 @@ class TestReport(ReportTest):
         with_budget(path, self.ROWS, restarts=4)
         self.assertRegex(self.page(path)[0]["Reservations"], r"Restarts: 4, look at it")
 
-    def test_what_has_no_budget_or_two_machines_gets_none(self):
+    def test_files_without_a_budget_or_of_two_machines_get_none(self):
         path, page = self.directory / "b.sqlite", self.directory / "b.html"
         sample.make(path, seconds=20.0, boom=False)
         outcome = self.command(path, "--html", page)
@@ -90,7 +90,7 @@ class TestReport(ReportTest):
         self.assertFalse(page.exists())
 
     @unittest.skipUnless(program("process_bag"), "needs the built commands")
-    def test_over_a_bag_it_names_inputs_and_checks(self):
+    def test_the_report_of_a_bag_names_inputs_and_checks(self):
         page = self.directory / "d.html"
         outcome = self.command(HERE.parent / "data" / "mo100_1khz.bag", "--html", page)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)

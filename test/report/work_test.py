@@ -63,7 +63,7 @@ class Work(ReportTest):
         self.ask("SELECT 1", *sql)
         return self.page_of(self.file, options=["--force"])
 
-    def test_limits_that_were_exceeded(self):
+    def test_exceeded_limits_are_shown(self):
         limit = "INSERT INTO parameters VALUES(1, 'limit_peak_force_warn_N', '9000.0', NULL)"
         self.assertIn("No limits were given", self.page_after("none.sqlite").text)
         kept = self.page_after("kept.sqlite", limit)
@@ -84,7 +84,7 @@ class Work(ReportTest):
                          ("WARN", "9\u202f456 \u00b1 91 N", "7", "2"))
         self.assertIn("2023-11-14 22:14:20", row["First"])
 
-    def test_a_measured_load_beside_the_computed_one(self):
+    def test_a_measured_load_is_compared_with_the_computed_one(self):
         self.assertNotIn("Measured reference", self.page_after("alone.sqlite").text)
         page = self.page_after("measured.sqlite", "INSERT INTO reference VALUES(1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, "
                                "0.985, 0.99871, 0.968)")
@@ -93,7 +93,7 @@ class Work(ReportTest):
                          ("20\u202f000", "4.2 kN", "0.084 kN", "2 %", "\u22120.03 kN"))
         self.assertEqual((row["Scale"], row["Correlation"], row["Within two"]), ("0.985", "0.99871", "96.8 %"))
 
-    def test_median_and_spread(self):
+    def test_median_and_spread_are_those_of_the_blows(self):
         energies = sorted(e for e, in self.ask("SELECT energy FROM blows"))
         median, spread = self.figures(self.page_of(self.file))["blow energy, median \u00b1 spread"].split("\u00b1")
         self.assertAlmostEqual(number(median), statistics.median(energies), delta=0.1)
@@ -149,7 +149,7 @@ class Work(ReportTest):
         self.assertAlmostEqual(number(self.figures(page)["energy of all blows"]), good[2] / 1e3, delta=1e-3 * good[2] / 1e3)
         self.assertIn("energy and restitution are withheld: 5 of 1000", page.text)
 
-    def test_names_instead_of_hashes(self):
+    def test_names_are_shown_instead_of_hashes(self):
         sample.make(self.file, seconds=60.0, runs=2)
         page = self.page_of(self.file)
         for column in ("machine", "input_sha256", "run_key"):
@@ -201,7 +201,7 @@ class Costs(ReportTest):
         db.commit()
         db.close()
 
-    def test_which_blows_cost_what(self):
+    def test_dearest_blows_are_named(self):
         dear = self.DEAR * 2.0 ** self.SLOPE
         share = 100.0 * dear / (dear + 1.0 - self.DEAR)
         page = self.page_of(self.file)
@@ -210,7 +210,7 @@ class Costs(ReportTest):
         dearest = page.table("Dearest turns")
         self.assertEqual({int(row["Turn"]) <= 30 for row in dearest.values()}, {True})
 
-    def test_by_hour(self):
+    def test_damage_is_shown_by_hour(self):
         """The recording begins 100 s before a full hour (22:58:20): the dear turns are in the first."""
         rows = self.page_of(self.file).table("Damage by hour")
         self.assertEqual(sorted(rows), ["2023-11-14 22:00", "2023-11-14 23:00"])
@@ -236,12 +236,12 @@ class Costs(ReportTest):
         for run, total in enumerate(totals, 1):
             self.assertAlmostEqual(number(rows[f"site, run {run}"]["Damage [%]"]), 100.0 * total / sum(totals), delta=0.1)
 
-    def test_another_load_another_life(self):
+    def test_the_life_follows_the_load(self):
         rows = self.page_of(self.file).table("Life over that of now")
         self.assertAlmostEqual(number(rows["0.9"]["slope 5"]), 0.9 ** -5, delta=0.005)
         self.assertIn(f"slope 10: {2 ** -0.1:.3f} of the load", self.page_of(self.file, options=["--force"]).text)
 
-    def test_life_by_a_curve_of_two_slopes(self):
+    def test_life_follows_a_curve_of_two_slopes(self):
         """Where cycles fall below the knee the life grows faster than by the steep slope, slower than by the other."""
         file = self.directory / "curve.sqlite"
         sample.make(file, seconds=100.0)
@@ -276,7 +276,7 @@ class Misuse(ReportTest):
         self.assertIn("of 500 blows", rows["Blows without press force"]["Meaning"])
         self.assertAlmostEqual(number(rows["Hammering at one place [s]"]["Count"]), 12.5)
 
-    def test_what_is_not_measured_is_not_zero(self):
+    def test_unmeasured_values_are_not_zero(self):
         file = self.directory / "site.sqlite"
         sample.make(file, sample.Machine(misuse=(0, 0, None, None)), seconds=50.0)
         rows = self.page_of(file).table("Misuse")

@@ -163,7 +163,7 @@ TEST_F(BoomTest, AFrameUnknownToTfIsSilentAndNamedUntilItsTransformComes) {
   EXPECT_TRUE(eventually([] { return machine_->says("frames", "every frame known"); }));
 }
 
-TEST_F(BoomTest, WithoutJointStatesTheJointLoadsAreSilentAndTheHullWrenchGoesOn) {
+TEST_F(BoomTest, PublishesNoJointLoadsButTheHullWrenchWithoutJointStates) {
   ASSERT_TRUE(isWhole());
   machine_->speaking.clear();
   const ros::Time silent = machine_->last_joints + ros::Duration(kMaxAge);

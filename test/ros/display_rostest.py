@@ -50,7 +50,7 @@ class DisplayTest(unittest.TestCase):
             self.assertAlmostEqual(frame.transform.translation.x, x)
             self.assertAlmostEqual(frame.transform.rotation.w, 1.0)
 
-    def test_what_is_shown_is_a_load_that_was_given(self):
+    def test_every_shown_load_was_published(self):
         compared = 0
         for frame, told in self.shown.items():
             for message in list(told):

@@ -86,7 +86,7 @@ TEST_F(Messages, HoldTheStateInItsOrder) {
   }
 }
 
-TEST_F(Messages, HoldWhatTheSteelCarries) {
+TEST_F(Messages, HoldTheSectionLoads) {
   sample(kStamp - 1000000);
   sample(kStamp);
   const BoomState& state = follower_.state();
@@ -114,7 +114,7 @@ TEST_F(Messages, HoldWhatTheSteelCarries) {
   EXPECT_NEAR(vibration().natural_frequency_std[1], 0.15 * state.frequency[1], 1e-12);
 }
 
-TEST_F(Messages, TellTheVibrationAndWhy) {
+TEST_F(Messages, StateTheVibrationAndTheReason) {
   sample(kStamp - 1000000);
   sample(kStamp);
   const BoomVibration before = vibration();

@@ -55,7 +55,7 @@ class Frames : public testing::Test {
                         }};
 };
 
-TEST_F(Frames, TheLeverArmCounts) {
+TEST_F(Frames, IncludeTheLeverArm) {
   tf({transform("gauge", kHull, 0.0, 2.5, 0.0)}, 1.0, true);
   load(1.0, 1.1);
   ASSERT_EQ(told_.size(), 1U);
@@ -100,7 +100,7 @@ TEST_F(Frames, AWrenchWaitsForItsTransformAndIsRecordedWithIt) {
   EXPECT_EQ(frames_.counts(0).dropped, 0U);
 }
 
-TEST_F(Frames, WithoutTransformNothingIsToldAndTheFrameIsNamed) {
+TEST_F(Frames, PublishNothingAndNameTheFrameWithoutATransform) {
   tf({transform("gauge", kHull, 0.0, 1.0, 0.0)}, 0.9, true);
   load(1.0, 1.0);
   EXPECT_EQ(told_.size(), 1U);  // the other frame is silent
@@ -122,7 +122,7 @@ TEST_F(Frames, WithoutTransformNothingIsToldAndTheFrameIsNamed) {
   EXPECT_EQ(frames_.complaint(1), "");
 }
 
-TEST_F(Frames, WhatIsOlderThanTfIsNotWaitedFor) {
+TEST_F(Frames, DoNotWaitForWrenchesOlderThanTf) {
   load(1.0, 1.0);
   load(1.2, 1.2);
   tf({transform("gauge", kHull, 1.1, 0.0, 0.0)}, 1.21);
@@ -143,7 +143,7 @@ TEST_F(Frames, AQueueIsBounded) {
   EXPECT_EQ(told_.back().wrench.wrench.force.z, 4999.0);
 }
 
-TEST_F(Frames, TimeMayBeginAnew) {
+TEST_F(Frames, AcceptTimeThatRestarts) {
   tf({transform("gauge", "mount", 0.0, 1.0, 0.0)}, 5.0, true);
   tf({transform("mount", kHull, 5.0, 0.0, 0.0)}, 5.0);
   load(5.1, 5.1);
@@ -166,7 +166,7 @@ TEST_F(Frames, ABadTransformIsNotTaken) {
 }
 
 /// tf2 throws in the callback for a stamp near the end of time; what it takes may still be no place.
-TEST_F(Frames, WhatTf2CannotHoldIsRefusedAndTheNextGoodOneWorks) {
+TEST_F(Frames, RefuseStampsBeyondTf2AndUseTheNextGoodOne) {
   const double nan = std::nan("");
   std::vector<geometry_msgs::TransformStamped> bad(8, transform("gauge", kHull, 1.0, 2.5, 0.0));
   bad[0].header.stamp = ros::Time(4294967295U, 999999999U);

@@ -142,7 +142,7 @@ TEST_F(GrappleFlowTest, AJumpAcrossTheFoldIsNeverFollowed) {
   EXPECT_NEAR(kept_.edges[kRight].back().second.point.x, x, kRounding);
 }
 
-TEST_F(GrappleFlowTest, WithoutVelocityThereIsNoTwistAndNoAccelAndThatIsTold) {
+TEST_F(GrappleFlowTest, ReportsMissingVelocityAndPublishesNeitherTwistNorAccel) {
   send(0.3, std::nullopt);
   EXPECT_EQ(kept_.edges[kRight].size(), 1u);
   EXPECT_TRUE(kept_.twists[kRight].empty());
@@ -155,7 +155,7 @@ TEST_F(GrappleFlowTest, WithoutVelocityThereIsNoTwistAndNoAccelAndThatIsTold) {
   EXPECT_EQ(flow_.withoutVelocity(), 1u);
 }
 
-TEST_F(GrappleFlowTest, TimeThatRunsBackIsBelievedFromTheSecondSampleOn) {
+TEST_F(GrappleFlowTest, AcceptsTimeThatRunsBackFromTheSecondSampleOn) {
   send(0.3, 0.1);
   stamp_ -= ros::Duration(100.0);
   send(0.3, 0.1);
@@ -165,7 +165,7 @@ TEST_F(GrappleFlowTest, TimeThatRunsBackIsBelievedFromTheSecondSampleOn) {
   EXPECT_EQ(flow_.accepted(), 3u);
 }
 
-TEST_F(GrappleFlowTest, AfterResetGivesWhatAFreshOneGivesBitForBit) {
+TEST_F(GrappleFlowTest, EqualsAFreshOneBitForBitAfterReset) {
   for (int i = 0; i < 50; ++i) send(0.6 - 0.01 * i, 0.1);
   flow_.reset();
   stamp_ -= ros::Duration(10.0);
@@ -231,7 +231,7 @@ TEST(SliderAccelerationTest, DifferenceIsThatOfTheLastTwoVelocities) {
   EXPECT_EQ(flow.withoutAcceleration(), 4u);
 }
 
-TEST(GrappleSettingsTest, TellsEveryProblemOnOneLineEach) {
+TEST(GrappleSettingsTest, ReportsEveryProblemOnOneLineEach) {
   std::vector<std::string> problems;
   ParameterMap given = *readParameterFile(test::claimsFile(), problems);
   given["slider_acceleration"].value = YAML::Node("guess");

@@ -44,7 +44,7 @@ class GrappleProcessTest(unittest.TestCase):
         self.assertEqual([topic for topic, _ in published if topic.startswith('/%s/' % name)], [])
         return err.splitlines()
 
-    def test_bad_parameters_are_told_together_and_end_the_node(self):
+    def test_bad_parameters_are_reported_together_and_end_the_node(self):
         lines = self.expect_refused('bad_values', dict(
             claims(), log_enabled=False, bd_length_m=-0.29, slider_acceleration='guess', slider_opne_m=0.6))
         self.assertEqual([line.split(':')[0] for line in lines],
@@ -61,7 +61,7 @@ class GrappleProcessTest(unittest.TestCase):
         self.assertEqual(len(lines), 1, lines)
         self.assertIn('fold at 0.733192393', lines[0])
 
-    def test_a_log_directory_that_cannot_be(self):
+    def test_an_impossible_log_directory_is_refused(self):
         lines = self.expect_refused('bad_log', dict(claims(), log_enabled=True, log_directory='/proc/no/such'))
         self.assertEqual(len(lines), 1, lines)
         self.assertIn('log_directory', lines[0])

@@ -109,7 +109,7 @@ TEST_F(GrappleNodeTest, GivesTheLibrarysValuesForEverySample) {
   }
 }
 
-TEST_F(GrappleNodeTest, RefusesEachBadSampleTellsItAndKeepsItsBranch) {
+TEST_F(GrappleNodeTest, RefusesEachBadSampleReportsItAndKeepsItsBranch) {
   ASSERT_TRUE(goodSamplePasses(0.5));
   ASSERT_TRUE(eventually([&] { return !diagnostic("refused: duplicate").empty(); }));
   const double x = right_.back().point.x;
@@ -138,7 +138,7 @@ TEST_F(GrappleNodeTest, RefusesEachBadSampleTellsItAndKeepsItsBranch) {
   EXPECT_NE(diagnostic("upper limit [m]").find("0.733192393"), std::string::npos);
 }
 
-TEST_F(GrappleNodeTest, SaysWhenTheSliderIsStaleOrWithoutVelocity) {
+TEST_F(GrappleNodeTest, ReportsASliderThatIsStaleOrWithoutVelocity) {
   ASSERT_TRUE(goodSamplePasses(0.4));
   EXPECT_TRUE(eventually([&] {
     return slider_status_.level == DiagnosticStatus::ERROR && slider_status_.message.find("stale") == 0;

@@ -114,7 +114,7 @@ TEST(GrappleDescription, StandsUprightAndHasNoOtherMovableJoint) {
   EXPECT_TRUE(KDL::Equal(up, KDL::Vector(0.0, 0.0, 1.0), 1e-15));
 }
 
-TEST(GrappleDescription, ABadFileIsToldInOneLine) {
+TEST(GrappleDescription, ReportsABadFileInOneLine) {
   const test::Outcome outcome = test::runCommand(kSource + "scripts/grapple_urdf", configDirectory() + "/log.yaml");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(test::linesOf(outcome.err).size(), 1u) << outcome.err;

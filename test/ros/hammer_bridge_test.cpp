@@ -101,7 +101,7 @@ TEST(WhoListens, ChangesNoValue) {
   }
 }
 
-TEST(WhoListens, AndComesBackGetsWhatTheOthersGot) {
+TEST(WhoListens, GetsWhatTheOthersGotAfterComingBack) {
   const Settings settings = test::settingsWith("boom: compliant\n");
   Kept all, some;
   HammerBridge with_all(settings), with_some(settings);
@@ -247,7 +247,7 @@ TEST(LoadCycles, TheFirst64MessagesNameARunAsSoonAsTheyAreThere) {
   for (const std::uint32_t other : {64U, 150U, kNone}) EXPECT_EQ(nameOfRun(200, other, true), name) << other;
 }
 
-TEST(LoadCycles, BeyondTheFullScaleNameTheirKey) {
+TEST(LoadCycles, NameTheirKeyBeyondTheFullScale) {
   HammerBridge bridge(test::settingsWith("hull_z_full_scale_greatest: 3000.0\n"));
   play(bridge, 1000.0, true, kNothing);
   const std::vector<Warning> warnings = bridge.life().warnings();
@@ -304,7 +304,7 @@ TEST(TurnLoadsMessage, ComesWithEachBlowAndNamesEveryChannel) {
   }
 }
 
-TEST(Stamps, BeyondEveryClockAreCountedAndTheNextGoodOneWorks) {
+TEST(Stamps, AreCountedBeyondEveryClockAndTheNextGoodOneWorks) {
   HammerBridge bridge(test::settingsWith("boom: auto\n"));
   SentMessages m;
   m.crank.velocity = {0.0};

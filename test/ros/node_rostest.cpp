@@ -195,7 +195,7 @@ TEST_F(NodeTest, RefusesEachBadSampleCountsItAndTakesTheNextGoodOne) {
   }
 }
 
-TEST_F(NodeTest, SaysWhenTheCrankIsStaleAndGoesOnWhenItIsBack) {
+TEST_F(NodeTest, ReportsAStaleCrankAndGoesOnWhenItIsBack) {
   settle();
   ASSERT_TRUE(goodSamplesPass(20));
   EXPECT_TRUE(eventually([this] { return crankError("stale"); }));
@@ -208,7 +208,7 @@ TEST_F(NodeTest, SaysWhenTheCrankIsStaleAndGoesOnWhenItIsBack) {
   EXPECT_TRUE(eventually([&] { return !statuses_.empty(); }));
 }
 
-TEST_F(NodeTest, SaysWhenTheAngleStandsStillWhileTheSpeedGoesOn) {
+TEST_F(NodeTest, ReportsAnAngleThatStandsStillWhileTheSpeedGoesOn) {
   settle();
   ASSERT_FALSE(crankError("stands still"));
   const std::size_t before = wrenches_.size();
@@ -223,7 +223,7 @@ TEST_F(NodeTest, SaysWhenTheAngleStandsStillWhileTheSpeedGoesOn) {
   EXPECT_TRUE(eventually([this] { return !crankError("stands still"); }));
 }
 
-TEST_F(NodeTest, SaysWhenTheCrankSeemsToBeInDegrees) {
+TEST_F(NodeTest, ReportsACrankThatSeemsToBeInDegrees) {
   settle();
   ASSERT_FALSE(crankError("degrees"));
   constexpr double kDegrees = 57.29577951308232;

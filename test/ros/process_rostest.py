@@ -88,18 +88,18 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(self.published_topics(name), [])
         return err
 
-    def test_wrong_parameters_are_told_together_and_end_the_node(self):
+    def test_wrong_parameters_are_reported_together_and_end_the_node(self):
         err = self.expect_refused('bad_values', {'stale_after_s': -1.0, 'level': 'finest', 'no_such_key': 1},
                                   'stale_after_s', 'level', 'no_such_key')
         self.assertEqual(len(err.strip().splitlines()), 3, err)
 
-    def test_a_text_where_a_number_is_wanted(self):
+    def test_a_text_in_place_of_a_number_is_refused(self):
         self.expect_refused('bad_type', {'gravity_m_s2': 'heavy'}, 'gravity_m_s2', 'heavy')
 
-    def test_an_incomplete_hammer(self):
+    def test_an_incomplete_hammer_is_refused(self):
         self.expect_refused('incomplete', {'rocker_mass_kg': 35.2}, 'crank_length_m', 'rod_mass_kg')
 
-    def test_a_log_directory_that_cannot_be(self):
+    def test_an_impossible_log_directory_is_refused(self):
         self.expect_refused('bad_log', {'log_enabled': True, 'log_directory': '/proc/no/such'}, 'log_directory')
 
     def test_the_machine_of_the_demo_publishes_where_the_node_listens_in_any_namespace(self):

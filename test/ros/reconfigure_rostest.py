@@ -91,7 +91,7 @@ class ReconfigureTest(unittest.TestCase):
         type(self).files = len(files)
         return files[-count:]
 
-    def test_1_the_output_rate(self):
+    def test_1_the_output_rate_changes(self):
         self.expect_rate(1000.0)
         announced = len(self.infos)
         self.assertEqual(self.change(output_rate_Hz=50.0), self.in_force(output_rate_Hz=50.0))
@@ -111,7 +111,7 @@ class ReconfigureTest(unittest.TestCase):
         self.assertEqual(rates, [0.0, 50.0, 0.0])
         self.log('start')
 
-    def test_2_log_off_and_on(self):
+    def test_2_the_log_is_switched_off_and_on(self):
         self.assertEqual(self.change(log_enabled=False), self.in_force(log_enabled=False))
         self.closed(1)
         self.expect_rate(1000.0)
@@ -124,7 +124,7 @@ class ReconfigureTest(unittest.TestCase):
         self.assertEqual(topics_in(path) - PER_TURN - {'/diagnostics'}, {'/crank', '/joint_states'})
         self.log('start')
 
-    def test_3_services_and_log_enabled_say_the_same(self):
+    def test_3_services_and_log_enabled_agree(self):
         self.log('stop')
         self.assertTrue(eventually(lambda: not values(self.told[-1])['log_enabled']))
         self.closed(1)
@@ -149,7 +149,7 @@ class ReconfigureTest(unittest.TestCase):
         self.assertEqual(len(self.infos), announced)
         self.log('start')
 
-    def test_5_beyond_a_bound_it_is_the_bound_and_told(self):
+    def test_5_a_value_beyond_a_bound_is_limited_and_reported(self):
         self.assertEqual(self.change(output_rate_Hz=-5.0), self.in_force())
         self.assertEqual(self.change(output_rate_Hz=1e9, tolerance=0.0, withhold_above=math.inf),
                          self.in_force(output_rate_Hz=1e4, tolerance=1e-9, withhold_above=10.0))

@@ -27,7 +27,7 @@ class RestartTest(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.directory)
         cls.a, cls.b = [NodeSession(ns + '/hammer_loads', ns + '/crank', ns + '/joint_states') for ns in ('/a', '/b')]
 
-    def test_1_two_hammers_keep_to_their_own(self):
+    def test_1_two_hammers_use_their_own_inputs(self):
         piece = recorded(3.0, 4.0)
         self.a.feed(piece)
         self.assertEqual(self.b.wrenches, [])
@@ -62,7 +62,7 @@ class RestartTest(unittest.TestCase):
             rospy.rostime.wallsleep(1e-3 * SLICE)
         return sent
 
-    def test_2_killed_at_work(self):
+    def test_2_a_killed_node_goes_on_at_its_restart(self):
         before_b = len(self.b.wrenches)
         inputs = recorded(4.0, 20.0)
         first_life = self.work(inputs, lambda sent: len(sent) > 1500)
@@ -118,7 +118,7 @@ class RestartTest(unittest.TestCase):
         self.assertIn('/a/hammer_loads/hull_wrench', topics)
         self.assertTrue(outputs(path) == outputs(process_again(path, self.a)))
 
-    def test_3_a_log_directory_that_cannot_be_written(self):
+    def test_3_an_unwritable_log_directory_costs_the_log_alone(self):
         """It costs the log, not the node, and the console says so."""
         node = NodeProcess('unwritable', {'log_directory': '/proc', 'log_min_free_mb': 0})
         self.assertTrue(eventually(lambda: '/unwritable/hull_wrench' in dict(rosgraph.Master('/t').getTopicTypes())))
@@ -127,7 +127,7 @@ class RestartTest(unittest.TestCase):
         self.assertIn("log_directory: '/proc', must be writable", err)
         self.assertIn('the node runs without a log', err)
 
-    def test_4_a_bag_that_was_not_closed(self):
+    def test_4_an_unclosed_bag_is_reported_with_its_recovery(self):
         """The console has the command that recovers it."""
         bag = os.path.join(self.directory, 'unclosed_2026-01-02-00-00-00_0.bag')
         with open(bag + '.active', 'w') as file:

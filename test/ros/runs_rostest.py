@@ -153,7 +153,7 @@ class RunsTest(unittest.TestCase):
             topics = expect_reproduced(self, path, self.session)
             self.assertEqual(sorted(topics), ['/hammer_loads/' + name for name in OUTPUTS], path)
 
-    def test_drop_out_and_bad_sample_left_their_mark(self):
+    def test_drop_out_and_bad_sample_withhold_some_wrenches(self):
         crank = len(entries(self.files[FIRST], '/crank'))
         wrenches = len(entries(self.files[FIRST], '/hammer_loads/hull_wrench'))
         self.assertGreater(crank, 1500)

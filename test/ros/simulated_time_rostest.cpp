@@ -155,7 +155,7 @@ class SimulatedTime : public testing::Test {
   std::map<std::string, std::string> values_;
 };
 
-TEST_F(SimulatedTime, EachLoopBeginsAnewAndGivesTheSame) {
+TEST_F(SimulatedTime, EachLoopRestartsAndGivesTheSame) {
   for (const double begin : {0.0, 0.0, 0.4, 0.0}) {
     SCOPED_TRACE(begin);
     const Inputs loop = from(begin, inputs_);
@@ -165,7 +165,7 @@ TEST_F(SimulatedTime, EachLoopBeginsAnewAndGivesTheSame) {
   expectDiagnostic("restarts", "4");
 }
 
-TEST_F(SimulatedTime, BeforeTheFirstClockHeaderStampsAreEnough) {
+TEST_F(SimulatedTime, NeedsHeaderStampsAloneBeforeTheFirstClock) {
   const std::size_t half = inputs_.size() / 2;
   for (std::size_t i = 0; i < half; ++i) send(inputs_[i]);
   play({inputs_.begin() + static_cast<std::ptrdiff_t>(half), inputs_.end()});
@@ -173,7 +173,7 @@ TEST_F(SimulatedTime, BeforeTheFirstClockHeaderStampsAreEnough) {
   expectDiagnostic("restarts", "1");  // the clock's is none of the machine's
 }
 
-TEST_F(SimulatedTime, WithoutClockALoopIsSeenFromItsStamps) {
+TEST_F(SimulatedTime, DetectsALoopByItsStampsWithoutAClock) {
   for (const JointState& input : inputs_) send(input);
   takeWrenches(inputs_.back().header.stamp);
   for (const JointState& input : inputs_) send(input);
@@ -201,7 +201,7 @@ TEST_F(SimulatedTime, SamplesOfTheNextLoopMayOvertakeTheClock) {
   expectWrenchesOf(rest);
 }
 
-TEST_F(SimulatedTime, FarForwardItBeginsAnewAndALateStampIsRefused) {
+TEST_F(SimulatedTime, RestartsFarForwardAndRefusesALateStamp) {
   play(inputs_);
   takeWrenches(inputs_.back().header.stamp);
   const Inputs later = from(0.0, inputs_, 1e6);

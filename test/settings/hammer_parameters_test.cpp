@@ -189,7 +189,7 @@ TEST(HammerParameters, TheRodsSpringIsOptional) {
             4U);
 }
 
-TEST(HammerParameters, TheRodIsInDoubtUnlessTheFileSaysOtherwise) {
+TEST(HammerParameters, TakesTheRodAsUncertainUnlessTheFileStatesIt) {
   const auto parametersOf = [](const std::string& more) {
     const TemporaryFile file(hammerYaml() + more);
     return loadFiles(configDirectory(), {file.path()}).value->mechanism.parameters();

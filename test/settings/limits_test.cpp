@@ -45,7 +45,7 @@ TEST(Limits, ShippedExampleHasTheLimitsOfItsComments) {
 }
 
 /// A log's run_info has the parameters in force, and no file is there when it is processed.
-TEST(Limits, InForceNeedTheFileNoMore) {
+TEST(Limits, NeedTheFileNoMoreOnceInForce) {
   const test::TemporaryFile limits("limit_peak_force_warn_N: 9000\nlimit_toe_damage_per_hour_error: 0.01\n");
   const Checked<Settings> settings =
       limitsFrom(kSpotsOfLimits + "limits_file: " + limits.path() + "\nlimit_peak_force_error_N: 9500\n");
@@ -71,7 +71,7 @@ TEST(Limits, OwnKeysGoOverThoseOfTheFile) {
   EXPECT_EQ(settings.value->limits.at(0).warn, 800.0);
 }
 
-TEST(Limits, ThatCannotBeAreNamed) {
+TEST(Limits, AreNamedIfTheyCannotBe) {
   EXPECT_EQ(limitProblems("limit_peak_force_warn_N: -1"),
             Lines{"limit_peak_force_warn_N: -1 N, must be a finite number >= 0"});
   EXPECT_EQ(limitProblems("limit_peak_force_warn_kN: 9"),

@@ -30,7 +30,7 @@ class LoadBoom : public testing::Test {
   const std::string rigid_ = "boom: rigid\n";
 };
 
-TEST_F(LoadBoom, WithoutDescriptionAndFileThereIsNone) {
+TEST_F(LoadBoom, GivesNoneWithoutDescriptionAndFile) {
   const Checked<Settings> settings = loadShippedWith({});
   ASSERT_TRUE(settings.value);
   EXPECT_FALSE(settings.value->boom);
@@ -41,7 +41,7 @@ TEST_F(LoadBoom, WithoutDescriptionAndFileThereIsNone) {
   EXPECT_EQ(settings.value->pipeline.tf_max_wait, 0.5);
 }
 
-TEST_F(LoadBoom, ShippedDescriptionAndFile) {
+TEST_F(LoadBoom, ReadsTheShippedDescriptionAndFile) {
   const Checked<Settings> settings = loaded(urdf_, boom_);
   ASSERT_EQ(settings.problems, Lines{});
   ASSERT_TRUE(settings.value->boom);
@@ -53,7 +53,7 @@ TEST_F(LoadBoom, ShippedDescriptionAndFile) {
   EXPECT_EQ(again.value->boom->cylinders().size(), 3U);
 }
 
-TEST_F(LoadBoom, FromTheDescriptionAloneItIsRigid) {
+TEST_F(LoadBoom, GivesARigidBoomFromTheDescriptionAlone) {
   for (const std::string& given : {rigid_, std::string("boom: auto\n")}) {
     const Checked<Settings> settings = loaded(urdf_, given);
     ASSERT_EQ(settings.problems, Lines{});
@@ -89,7 +89,7 @@ TEST_F(LoadBoom, DifferencesOfVelocitiesAreForARigidBoom) {
   EXPECT_EQ(loaded(urdf_, boom_, "boom_stiffness: identified\nboom: compliant").problems, Lines{});
 }
 
-TEST_F(LoadBoom, NoneIsNone) {
+TEST_F(LoadBoom, GivesNoneForBoomNone) {
   EXPECT_FALSE(loaded(urdf_, boom_, "boom: none").value.value().boom);
   EXPECT_FALSE(loaded("", boom_, "boom: none").value.value().boom);
   EXPECT_FALSE(loaded("no URDF", "boom: none").value.value().boom);
@@ -98,7 +98,7 @@ TEST_F(LoadBoom, NoneIsNone) {
             "boom_cylinder_bore_m: wide m, must");
 }
 
-TEST_F(LoadBoom, AFileOrAModelWithoutDescription) {
+TEST_F(LoadBoom, RefusesAFileOrAModelWithoutDescription) {
   expectOne(loaded("", boom_), "robot_description: missing, must be given (a URDF) with a boom file");
   expectOne(loaded("", rigid_), "robot_description: missing, must be given (a URDF)");
   expectOne(loaded("", "boom: compliant\n"), "robot_description: missing, must be given (a URDF)");
@@ -128,7 +128,7 @@ TEST_F(LoadBoom, FaultsOfOneDescriptionComeTogether) {
   EXPECT_EQ(loaded(urdf, boom_, "stale_after_s: -1").problems.size(), 3U);
 }
 
-TEST_F(LoadBoom, ItsLoadsMayBeCounted) {
+TEST_F(LoadBoom, AcceptsItsLoadsAsCountedChannels) {
   const std::string arm = "hull_x_channel: joint_loads/arm_joint/total_torque\n";
   EXPECT_EQ(loaded(urdf_, boom_, arm).problems, Lines{});
   EXPECT_EQ(loaded(urdf_, boom_, "hull_x_channel: joint_loads/arm_cylinder/force\n").problems, Lines{});

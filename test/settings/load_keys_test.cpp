@@ -15,7 +15,7 @@ struct BadPair {
   const char* problem;
 };
 
-TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
+TEST(Load, AcceptsGoodAndRefusesBadPipelineAndLogKeys) {
   const BadPair pairs[] = {
       {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage, elastic, auto"},
       {"level: auto", "tolerance: 0", "tolerance: 0, must be a number in [1.0e-09, 10.0]"},
@@ -70,7 +70,7 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
   }
 }
 
-TEST(Load, LevelAutoIsChosenAtStartAndTold) {
+TEST(Load, LevelAutoIsChosenAtStartAndReported) {
   const auto loaded = [](const std::string& text) {
     const TemporaryFile file(text);
     return *loadFiles(configDirectory(), {file.path()}).value;

@@ -133,7 +133,7 @@ arm_link_moment_z_std_kg_m: 2.0
       1U);
 }
 
-TEST_F(BoomFile, OptionalKeysOfACylinder) {
+TEST_F(BoomFile, ReadsTheOptionalKeysOfACylinder) {
   expectOne("damping_ratio:", "arm_cylinder_friction: 0.6\ndamping_ratio:",
             "arm_cylinder_friction: 0.6, must be from 0 to 0.5");
   expectOne("damping_ratio:", "arm_cylinder_joint_zero_rad: 0.9\ndamping_ratio:", "arm_cylinder_joint_zero_rad: 0.9");
@@ -181,7 +181,7 @@ TEST_F(BoomFile, TwoSectionsCannotShareAName) {
             std::vector<std::string>{"sections: a/b, must be names of letters, digits and _"});
 }
 
-TEST_F(BoomFile, UnknownAndMissingKeysAreTold) {
+TEST_F(BoomFile, ReportsUnknownAndMissingKeys) {
   expectOne("rigid_tolerance:", "spare_key: 1.0\nrigid_tolerance:", "spare_key: ");
   EXPECT_EQ(problems("damping_ratio: 0.05", "damping: 0.05").size(), 2U);  // one missing, one unknown
   const std::vector<std::string> found = problems("cylinders: [boom_cylinder,", "cylinders: [bom_cylinder,");
@@ -206,7 +206,7 @@ TEST_F(BoomFile, TwoCylindersCannotShareAJoint) {
   EXPECT_EQ(made.problems[0], "second_joint: boom_joint, has a cylinder already, must have at most one");
 }
 
-TEST_F(BoomFile, WithoutCylindersThreeKeysAreEnough) {
+TEST_F(BoomFile, NeedsThreeKeysWithoutCylinders) {
   urdf_ = withReplaced(urdf_, {{"\"base_link\"", "\"chassis\""}, {"\"hammer_hull\"", "\"breaker\""}});
   yaml_ = "root_link: chassis\ntip_link: breaker\ncylinders: []\n";
   EXPECT_TRUE(problems("chassis", "chassis").empty());
@@ -232,7 +232,7 @@ TEST_F(BoomFile, WithoutCylindersThreeKeysAreEnough) {
             "bulk_modulus_Pa: -1 Pa, must be");
 }
 
-TEST_F(BoomFile, WithoutCylindersTheBoomIsRigid) {
+TEST_F(BoomFile, GivesARigidBoomWithoutCylinders) {
   BoomParameters parameters = test::shippedBoomParameters();
   parameters.cylinders.clear();
   Checked<Boom> made = Boom::make(urdf_, parameters);

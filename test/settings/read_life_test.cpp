@@ -51,7 +51,7 @@ TEST(ReadLife, TheShippedFileCountsTheHullsWrench) {
   EXPECT_TRUE(shipped.settings.ledger.empty());
 }
 
-TEST(ReadLife, StressByModulusAreaOrCoefficient) {
+TEST(ReadLife, ReadsStressByModulusAreaOrCoefficient) {
   const Read plain = read(kToe);
   EXPECT_EQ(plain.problems, std::vector<std::string>{});
   const life::HotSpot& toe = plain.settings.hot_spots.at(0);
@@ -69,7 +69,7 @@ TEST(ReadLife, StressByModulusAreaOrCoefficient) {
   EXPECT_FALSE(read(kToe + kCurve + "toe_mean_stress: none\n").settings.hot_spots.at(0).mean_stress);
 }
 
-TEST(ReadLife, WhatIsWrongIsNamed) {
+TEST(ReadLife, NamesEachFault) {
   const auto problems = [](const std::string& yaml) { return read(yaml).problems; };
   EXPECT_EQ(problems(kToe + "toe_hull_y_MPa_per_unit: 1.0"),
             Lines{"toe_hull_y_MPa_per_unit: must be the only one beside toe_hull_y_modulus_m3 and toe_hull_y_area_m2"});

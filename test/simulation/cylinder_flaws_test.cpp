@@ -103,7 +103,7 @@ TEST(CylinderFlaws, ALeakTakesEnergyOutOfASwing) {
 }
 
 /// A force that turns around finds the pins loose: none while the rod goes through their play.
-TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirPlay) {
+TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirClearance) {
   const OilBoom boom = oilBoomEo2621();
   std::array<int, 2> idle{};
   std::array<bool, 3> both_ways{};

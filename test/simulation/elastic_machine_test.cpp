@@ -139,7 +139,7 @@ TEST(ElasticMachine, BecomesTheRigidOneWithAStiffRod) {
 
 /// With the crank held by a large inertia the rocker, which its weight sets swinging, swings on the rod at the
 /// frequency of k (dl/dpsi)^2 over I.
-TEST(ElasticMachine, RingsAtTheFrequencyOfMassAndStiffness) {
+TEST(ElasticMachine, VibratesAtTheFrequencyOfMassAndStiffness) {
   MachineSettings settings = elastic(1e9, 0.01);
   settings.drive.inertia = 1e6, settings.start_angle = 0.5, settings.drive.start_time = 1.0;
   const ElasticLinks links(settings.hammer, Level::kRocker);

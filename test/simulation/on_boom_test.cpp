@@ -55,7 +55,7 @@ TEST(OnBoom, OilAsStiffAsSteelIsAHullAtRest) {
 }
 
 /// Links' masses and places as in the robot description, arms of the cylinders from triangles.
-TEST(OnBoom, AtRestItHoldsItsWeight) {
+TEST(OnBoom, HoldsItsWeightAtRest) {
   MachineSettings m = onBoom();
   holdStill(m);
   m.drive.start_time = 100.0;
@@ -101,7 +101,7 @@ TEST(OnBoom, RestitutionIsTheToolsSpeedOverTheRockers) {
   }
 }
 
-TEST(OnBoomSession, SameSeedSameReadingsHoweverTimeIsCut) {
+TEST(OnBoomSession, GivesEqualReadingsForOneSeedHoweverTimeIsCut) {
   MachineSettings m = onBoom();
   m.on_boom.imu.acceleration_noise = 0.1, m.on_boom.pressures.noise = 1e4, m.joint_noise = 1e-4;
   m.duration = 2.0;

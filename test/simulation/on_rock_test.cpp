@@ -30,7 +30,7 @@ MachineSettings atRest(double stiffness) {
 double cross(PlanePoint r, PlanePoint f) { return r.imag() * f.real() - r.real() * f.imag(); }
 
 /// But for what the lift does to the weight's levers.
-TEST(OnRock, StandsStillWithThePressForce) {
+TEST(OnRock, StandsStillWithTheHoldDownForce) {
   HammerOnBoom machine(atRest(3e7));
   for (int i = 0; i < 50; ++i) {
     machine.advanceTo(kSettled + 0.02 * i);
@@ -41,7 +41,7 @@ TEST(OnRock, StandsStillWithThePressForce) {
 }
 
 /// Joints, and a cut of the boom: a force at the foot, its levers from the joints' places by hand.
-TEST(OnRock, ItsForceIsCarriedByCylindersAndSteel) {
+TEST(OnRock, LoadsCylindersAndSections) {
   HammerOnBoom pressed(atRest(3e7));
   pressed.advanceTo(kSettled);
   const OnBoomTruth t = pressed.truth();

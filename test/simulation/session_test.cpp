@@ -31,9 +31,9 @@ void expectSame(const Session& a, const Session& b) {
   }
 }
 
-TEST(Session, SameSeedSameReadings) { expectSame(recordSession(quietRun()), recordSession(quietRun())); }
+TEST(Session, GivesEqualReadingsForOneSeed) { expectSame(recordSession(quietRun()), recordSession(quietRun())); }
 
-TEST(Session, OtherSeedOtherNoiseSameMachine) {
+TEST(Session, ChangesTheNoiseAloneWithTheSeed) {
   MachineSettings other = quietRun();
   other.seed = 2;
   const Session a = recordSession(quietRun()), b = recordSession(other);

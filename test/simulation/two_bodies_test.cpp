@@ -90,7 +90,7 @@ TEST(TwoBodies, AStepFollowsTheAccelerations) {
 }
 
 /// No drive, no weight, no damping; energies by the simulated machine's links.
-TEST(TwoBodies, ARingKeepsItsEnergy) {
+TEST(TwoBodies, AVibrationKeepsItsEnergy) {
   const Mechanism mechanism = test::mechanismOf(heavy());
   const TwoBodies bodies(mechanism);
   const simulation::ElasticLinks links(mechanism.parameters(), Level::kLinkage);

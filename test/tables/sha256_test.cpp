@@ -16,7 +16,7 @@ TEST(Sha256, GivesThePublishedExamples) {
   EXPECT_EQ(Sha256().add("a").add("bc").hex(), Sha256().add("abc").hex());
 }
 
-TEST(Sha256, OfFilesIsThatOfTheirBytesInOrder) {
+TEST(Sha256, DigestsTheBytesOfFilesInOrder) {
   const std::string bag = HAMMER_LOADS_TEST_DATA "/mo100_1khz.bag", csv = HAMMER_LOADS_TEST_DATA "/mo100_linkage.csv";
   const std::string reference = test::runCommand("sh -c 'cat $0 $1 | sha256sum'", bag + " " + csv).out;
   EXPECT_EQ(sha256OfFiles({bag, csv}), reference.substr(0, 64));
@@ -25,7 +25,7 @@ TEST(Sha256, OfFilesIsThatOfTheirBytesInOrder) {
   EXPECT_THROW(sha256OfFiles({HAMMER_LOADS_TEST_DATA}), std::runtime_error) << "a directory";
 }
 
-TEST(Sha256, OfTextsKnowsWhereOneEnds) {
+TEST(Sha256, DistinguishesWhereATextEnds) {
   EXPECT_NE(sha256Of({"ab", "c"}), sha256Of({"a", "bc"}));
   EXPECT_NE(sha256Of({"abc"}), sha256Of({"abc", ""}));
   EXPECT_EQ(sha256Of({"ab", "c"}), sha256Of({"ab", "c"}));

@@ -38,7 +38,7 @@ void expectWhole(const TurnTrace& trace, int samples) {
   EXPECT_EQ(trace.samples.back().stamp - trace.start, samples * kMs);
 }
 
-TEST(TurnTraces, OfNothingAreNone) {
+TEST(TurnTraces, AreNoneForNothing) {
   TurnTraces traces;
   EXPECT_FALSE(traces.worst());
   EXPECT_EQ(traces.typical(), nullptr);
@@ -74,7 +74,7 @@ TEST(TurnTraces, TypicalIsNearTheMedian) {
   }
 }
 
-TEST(TurnTraces, TooLongATurnIsNotKept) {
+TEST(TurnTraces, DoNotKeepATurnThatIsTooLong) {
   TurnTraces traces;
   play(traces, {1.0, 2.0, 3.0}, 5000);
   EXPECT_FALSE(traces.worst());
