@@ -13,11 +13,11 @@ namespace hammer_loads {
 /// acceleration is asked there: one evaluation of the hammer's columns serves all three.
 class NearColumns {
  public:
-  /// Of the place itself or of one beside it on the same branch.
+  /// Columns at the place itself or at one beside it on the same branch.
   MachineColumns::OnShaft at(const ShaftModel& model, CrankAngle angle) const noexcept {
     return serves(angle) ? on_shaft_ : model.columns(angle);
   }
-  /// The same, and stands there from now on.
+  /// Columns at a place, which becomes the reference from now on.
   const MachineColumns::OnShaft& moveTo(const ShaftModel& model, CrankAngle angle) noexcept {
     if (!serves(angle)) {
       on_shaft_ = model.columns(angle);
@@ -53,8 +53,8 @@ class ColumnStep {
         offset_(from.position.angle.offset),
         m_(inertia + load.inertia),
         weight_(load.weight_torque) {}
-  /// What they are of the speed [rad/s] at its end. torque: on the crank beside its links [N m]; struck: it passed a
-  /// blow.
+  /// Changes of the speed [rad/s] at the end of the step by the columns. torque: on the crank beside its links [N m];
+  /// struck: it passed a blow.
   Columns ofSpeed(const ShaftModel& model, const ShaftState& to, double inertia, const ShaftLoad& load, double torque,
                   double dt, bool struck) noexcept {
     const MachineColumns::OnShaft& end = near_.moveTo(model, to.position.angle);

@@ -1,4 +1,4 @@
-/// Whether the innovations are as large as the filter says, and where in the turn they are larger.
+/// Ratio of the innovations to their predicted size, overall and by the place in the revolution.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-constexpr double kMostSurprise = 100.0;  ///< that one sample counts for: a single outlier is no alarm
+constexpr double kMostSurprise = 100.0;  ///< limit for one sample: a single outlier is no alarm
 
 /// Running mean of innovation^2 over its variance: 1 for a model that holds. Some 500 samples long.
 class Consistency {
@@ -27,12 +27,12 @@ class Consistency {
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
   /// The factor of variances in what the filter learns: never below 1.
   double growth() const noexcept { return samples_ < kEnough ? 1.0 : doubt(); }
-  /// The same of what is published: samples that are not there yet count as what was before them.
+  /// Factor of published variances: samples that are not there yet count as those before the restart.
   double doubt() const noexcept {
     const double known = std::min(1.0, static_cast<double>(samples_) / kEnough);
     return std::max(1.0, known * mean_ + (1.0 - known) * before_);
   }
-  /// What comes is of another belief, which is as doubtful at first.
+  /// Restarts the mean for another estimate, which is as uncertain at first.
   void restart() noexcept {
     before_ = doubt();
     samples_ = 0, mean_ = 0.0;
@@ -45,8 +45,8 @@ class Consistency {
   double before_{1.0};  ///< doubt() before the restart
 };
 
-/// The same of the half turns before the blow: the lesser of the last two, so that one disturbance is no contradiction,
-/// and one half turn that agrees ends it.
+/// Mean of innovation^2 over its variance by half revolutions before the blow: the lesser of the last two, so that one
+/// disturbance is no contradiction, and one half revolution that agrees ends it.
 class StrikeConsistency {
  public:
   void add(double squared_over_variance) noexcept {
@@ -60,7 +60,7 @@ class StrikeConsistency {
     before_ = std::exchange(last_, sum_ / samples_);
     abandon();
   }
-  /// Of a half turn that was not seen whole.
+  /// Discards a half revolution that was not seen whole.
   void abandon() noexcept { sum_ = 0.0, samples_ = 0; }
   /// NaN before two half turns.
   double mean() const noexcept { return before_ < last_ ? before_ : (before_ >= last_ ? last_ : before_); }
@@ -79,7 +79,7 @@ class StrikeConsistency {
 ///     coupling of 50 Hz            9 to 12 and 3 to 7         clean, other masses, late tool        0.9 to 1.0 and 1.0
 class RodEvidence {
  public:
-  /// Of an innovation at a place of the crank.
+  /// Adds an innovation at a place of the crank.
   void add(const CrankAngle& at, double squared_over_variance) noexcept {
     if (!std::isfinite(squared_over_variance)) return;
     const double bounded = std::min(squared_over_variance, kMostSurprise);
@@ -100,12 +100,12 @@ class RodEvidence {
   double runUp() const noexcept { return run_up_.mean(); }
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }
-  /// Of the square of a ring that is expected, and of the speed that a rocker which is let go lacks, the part that
-  /// readings leave possible; reading: standard deviation of one [rad].
+  /// Parts that readings leave possible of the square of an expected vibration, and of the speed that a released rocker
+  /// lacks; reading: standard deviation of one [rad].
   double share(double reading) const noexcept { return shareOf(picked_up_, reading); }
   double letGoShare(double reading) const noexcept { return shareOf(run_up_, reading); }
-  /// So much is struck that a rigid mechanism has lost the crank a quarter of a turn later still: rock that throws the
-  /// rocker back (8 to 20 then). What it takes for the blow is none.
+  /// True if the blow is so violent that a rigid mechanism still loses the crank a quarter of a revolution later: rock
+  /// that throws the rocker back (8 to 20 then). The blow that it identifies is wrong.
   bool isLost() const noexcept { return later_.count() > kEnough && later() > mismatch::kUnexplained; }
   bool gives() const noexcept {
     return picked_up_.count() > kEnough && pickedUp() > mismatch::kSeen && pickedUp() - 1.0 > kShare * (later() - 1.0);

@@ -29,7 +29,7 @@ class ConstantErrors {
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< of the table's alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
 
-  /// As the table has them.
+  /// Standard deviations of the table.
   static Vector priors() noexcept {
     Vector prior;
     for (int i = 0; i < kTable; ++i) prior[i] = kUnknowns[static_cast<std::size_t>(i)].prior;
@@ -58,7 +58,7 @@ class ConstantErrors {
 
   /// Standard deviation of a constant that is considered, known better now.
   void consider(int constant, double deviation) noexcept;
-  /// As it is now, of one that is considered.
+  /// Present standard deviation of a considered constant.
   double considered(int constant) const noexcept { return prior_[constant]; }
   /// The encoder's zero has been moved by what is known with this variance [rad2].
   void stepZero(double variance) noexcept;

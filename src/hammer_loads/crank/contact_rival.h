@@ -1,4 +1,4 @@
-/// Whether the rocker met the tool: a second belief for as long as it takes to know.
+/// Second hypothesis on whether the rocker met the tool, kept until one of the two is clearly likelier.
 #pragma once
 
 #include <cmath>
@@ -27,13 +27,13 @@ class ContactRival {
   }
   void drop() noexcept { belief_.reset(); }
   bool isThere() const noexcept { return belief_.has_value(); }
-  /// It is there and not set aside.
+  /// Returns true if it exists and is not set aside.
   bool isOpen() const noexcept { return belief_ && !aside_; }
   /// The estimate is clearly more likely of the wrong branch than not.
   bool isDoubtful() const noexcept { return isOpen() && evidence_ > odds::kLikely; }
-  /// That it is right and the estimate wrong; 0: it is not open.
+  /// Probability that it is right and the estimate wrong; 0: it is not open.
   double probability() const noexcept { return isOpen() ? 1.0 / (1.0 + std::exp(-evidence_)) : 0.0; }
-  /// Only where it is there.
+  /// Estimate of the hypothesis. Precondition: isThere().
   CrankBelief& belief() noexcept { return *belief_; }
 
   /// The rival, predicted to the sample, takes it too. Its own outliers and jolts count against it.
@@ -50,7 +50,7 @@ class ContactRival {
 
   std::optional<CrankBelief> belief_;
   double evidence_{};  ///< logarithm of its odds against the estimate
-  bool aside_{};       ///< it was far less likely since it began
+  bool aside_{};       ///< true if it was far less likely since it began
   double turns_with_{look_back::kManyTurns}, turns_without_{kTurnsWithout};  ///< contact, so far
 };
 

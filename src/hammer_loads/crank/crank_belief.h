@@ -20,9 +20,9 @@ constexpr double kMostInertiaChange = 0.3;
 
 /// Random walks of the variables that are not measured, and the law of the torque.
 struct CrankWalks {
-  double torque{};   ///< of the net torque [N m/sqrt(s)]
-  double speed{};    ///< of the speed [rad/s/sqrt(s)]
-  double inertia{};  ///< of the drive inertia, relative [1/sqrt(s)]
+  double torque{};   ///< random walk of the net torque [N m/sqrt(s)]
+  double speed{};    ///< random walk of the speed [rad/s/sqrt(s)]
+  double inertia{};  ///< random walk of the drive inertia, relative [1/sqrt(s)]
   SupplyLaw supply;
 };
 
@@ -40,12 +40,12 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia, kFactor };
 
   ShaftState state;
-  double factor{1.0};      ///< of the last blow
+  double factor{1.0};      ///< factor of the last blow
   double least_inertia{};  ///< bounds of the drive inertia [kg m2]
-  double most_inertia{};   ///< as above
+  double most_inertia{};   ///< upper bound of the drive inertia [kg m2]
   bool tool_met{};         ///< before the dead centre: nothing strikes there any more
   bool struck_early{};     ///< the last blow's factor acted before the dead centre
-  NearColumns near;        ///< of the hammer, where the state was last predicted
+  NearColumns near;        ///< columns of the hammer, where the state was last predicted
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
@@ -76,12 +76,12 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   void standAtBlow() noexcept { state.position.angle.offset = 0.0; }
   /// A blow's factor and its variance are drawn.
   void drawFactor(const BlowPrior& prior) noexcept;
-  /// What is expected where the next blow is passed.
+  /// Prior of the next blow at its passage.
   BlowPrior priorOf(const BlowPrior& drawn) const noexcept;
   bool isSound(double most_speed) const noexcept;
 
-  /// Where the encoder sits: angle from the blow [rad], speed [rad/s], variance and derivative by the sensor's errors
-  /// of one of these.
+  /// State of the encoder: angle from the blow [rad], speed [rad/s], variance and derivative by the sensor's errors of
+  /// one of these.
   double encoderOffset() const noexcept { return state.position.angle.offset; }
   double encoderSpeed() const noexcept { return state.speed; }
   double encoderVariance(Row row) const noexcept { return covariance(row, row); }

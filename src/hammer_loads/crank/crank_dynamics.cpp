@@ -19,7 +19,7 @@ struct Shaft {
   double drive_inertia;
 };
 
-/// Of drive, weight and the hull's acceleration, which the drive's inertia follows.
+/// Torque of drive, weight and the hull's acceleration, which the drive's inertia follows.
 double torqueOf(const ShaftLoad& load, double torque, double drive_inertia) noexcept {
   return torque + load.weight_torque - drive_inertia * load.hull_acceleration;
 }
@@ -29,7 +29,7 @@ struct Rates {
   Path first, second;
 };
 
-/// Where the load is known.
+/// Rates where the load is known.
 Rates rates(const Shaft& shaft, double h, const ShaftLoad& load) noexcept {
   const double inv = 1.0 / (shaft.drive_inertia + load.inertia), inv_root = std::sqrt(inv);
   const double speed = h * inv_root, torque = torqueOf(load, shaft.torque, shaft.drive_inertia);

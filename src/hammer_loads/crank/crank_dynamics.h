@@ -1,4 +1,4 @@
-/// How the crank moves by itself: the mechanism's own equation of motion.
+/// Motion of the crank between measurements: the mechanism's own equation of motion.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,19 +15,20 @@
 namespace hammer_loads {
 
 // A path is cut into smooth pieces that end at the blow.
-constexpr double kMaxStepAngle = 0.04;  ///< [rad] of the crank in one piece
+constexpr double kMaxStepAngle = 0.04;  ///< largest crank angle in one piece [rad]
 constexpr int kMaxSteps = 4096;         ///< bounds the work for absurd speeds; steps get longer beyond it
 // Numerical: kMaxSteps
 /// [rad/s]: a slower crank is moved by friction and stopped by the tool; nothing jumps there.
 constexpr double kSlowCrank = 5.0;
 /// [rad/s]: a crank that creeps over the blow has no defined instant of passing it.
 constexpr double kCreeping = 1.0;
-/// So often in one way: then both sides push it back to the other, and it stays at the blow.
+/// Largest number of passages of the blow in one direction. Beyond it both sides push the crank back to the other, and
+/// it stays at the blow.
 constexpr int kMostCreepingPasses = 8;
 
-/// Of the way.
+/// Piece of the path.
 struct WayPiece {
-  double used;   ///< of its time [s]
+  double used;   ///< time used [s]
   bool at_blow;  ///< ends there
 };
 
@@ -96,7 +97,7 @@ struct ShaftState {
 constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: it would be higher than long
 constexpr double kStepsToTool = 1.5;
 
-/// Whether the tool may be met within a step of length dt [s].
+/// Returns true if the tool may be met within a step of length dt [s].
 inline bool isNearTool(const ShaftState& state, double dt) noexcept {
   return std::abs(state.position.angle.offset) <
          std::clamp(kStepsToTool * std::abs(state.speed) * dt, kNearTool, kHighestTool);
@@ -142,7 +143,7 @@ void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLo
 /// linearisation of order 2 per step, within 1 % of finite differences at 1 kHz (test).
 Advance advance(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
                 ShaftLoad& load) noexcept;
-/// The same without its linearisation, which costs as much as the state.
+/// Advances the state without the linearisation, which costs as much as the state.
 void advanceState(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state) noexcept;
 
 }  // namespace hammer_loads

@@ -24,7 +24,7 @@ struct CrankEstimate {
   double acceleration{};  ///< [rad/s2]
 };
 
-/// How far an estimate may be off: by what is drawn anew at each sample, and by constants, which are off alike at all.
+/// Uncertainty of an estimate, by errors drawn for each sample and by constants, whose errors are equal in all samples.
 struct CrankUncertainty {
   enum Row : Eigen::Index { kAngle, kSpeed, kAcceleration, kInertia };
 
@@ -32,10 +32,10 @@ struct CrankUncertainty {
   /// One standard deviation each of errors that are independent of each other; by rows as above, the last relative to
   /// the drive's inertia.
   ByConstants<4, ConstantErrors::kSize> by_constant{ByConstants<4, ConstantErrors::kSize>::Zero()};
-  double inertia{};  ///< of the drive's inertia, relative, beside the constants
+  double inertia{};  ///< relative deviation of the drive's inertia, beside the constants
 
-  /// Of the speed where the crank passes an angle, which an error of its angle delays. rate: acceleration over speed
-  /// [1/s].
+  /// Errors of the speed at which the crank passes an angle; an error of its angle delays the passage. rate:
+  /// acceleration over speed [1/s].
   Eigen::Matrix<double, 1, ConstantErrors::kSize> speedAtAngle(double rate) const noexcept {
     return by_constant.row(kSpeed) - rate * by_constant.row(kAngle);
   }
@@ -53,13 +53,13 @@ struct BlowFactor {
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
   double drive_inertia{};  ///< Jc, on which the blow acts; gives the restitution [kg m2]; 0: not known
   double inertia_std{};    ///< relative [-]
-  bool early{};            ///< it acted before the dead centre, where the crank passed with its speed after
-  /// What independent errors of constants make of the factor [-] and, relatively, of the inertia, a standard deviation
-  /// each.
+  bool early{};            ///< true if it acted before the dead centre, where the crank passed with its speed after
+  /// Changes of the factor [-] and, relatively, of the inertia by independent errors of constants, one standard
+  /// deviation each.
   ByConstants<2, ConstantErrors::kSize> by_constant{ByConstants<2, ConstantErrors::kSize>::Zero()};
 };
 
-/// How a sample was taken.
+/// Result of processing a sample.
 enum class Tracking {
   kContinued,  ///< agrees with what came before
   kRestarted,  ///< restarted at this sample: what lies between is not known

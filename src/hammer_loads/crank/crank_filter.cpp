@@ -115,7 +115,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
     const double factor = (squared / square(gate::kUsual) - innovation.variance) / now_.encoderVariance(Belief::kAngle);
     now_.widen(factor);
     now_.forgetInertiaCoupling();
-    // What does not fit may be the inertia itself: leave it room to be learned again.
+    // The inertia may be the cause of the misfit: its variance is raised, so that it is learned again.
     double& inertia = now_.covariance(Belief::kInertia, Belief::kInertia);
     if (!HAMMER_LOADS_ABLATE(relearn)) inertia = std::max(inertia, square(kRelearn));
   }
@@ -132,8 +132,8 @@ bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const
          (std::abs(innovation.value) > most && innovation.exceeds(gate::kImpossible));
 }
 
-/// What lies before this sample is not known any more; a speed that was kept from there and is contradicted again is
-/// wrong itself.
+/// Restarts at this sample, before which nothing is known any more. A speed that was kept from there and is
+/// contradicted again is wrong itself.
 Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
   restart_load_ += 1.0;
   speeds_wait_ = speeds_wait_ || (has_speed_ && sample.isUnsureOfTime(now_.state.speed));
@@ -206,15 +206,15 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   hull_moved_ = true;
 }
 
-/// Of now_, with the latest motion of the hull.
+/// Computes the load at now_, with the latest motion of the hull.
 void CrankFilter::takeLoad() noexcept {
   load_ = model_(now_.state.position.angle);
   now_hull_ = model_.hullMotion();
   hull_moved_ = false;
 }
 
-/// Where the ring would throw the filter off, which knows of no rod; smaller ones it smooths. A reading that it then
-/// follows is as good a sign of a rod as one that contradicts it.
+/// Inflates the speed's variance where a rod's vibration would bias the filter, which has no rod; it smooths smaller
+/// ones. A reading that it then follows is as good a sign of a rod as one that contradicts it.
 void CrankFilter::considerRod(double angle, double speed) noexcept {
   double& of_speed = now_.covariance(Belief::kSpeed, Belief::kSpeed);
   if (HAMMER_LOADS_ABLATE(rod_considered) || !exceeds(speed, of_speed, gate::kImpossible)) return;

@@ -21,9 +21,9 @@
 
 namespace hammer_loads {
 
-/// What the filter assumes about sensors and supply.
+/// Assumptions of the filter about sensors and supply.
 struct CrankFilterSettings {
-  CrankSensor sensor;            ///< where the encoder sits
+  CrankSensor sensor;            ///< mounting of the encoder
   double angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings
   double angle_noise{};          ///< standard deviation beside the count [rad], >= 0
   double timing_noise{};         ///< standard deviation of a stamp, first guess [s], >= 0
@@ -91,7 +91,7 @@ class CrankFilter {
   bool isPlausible() const noexcept;
   /// Factor of the last blow on the crank's speed, by all samples since.
   BlowFactor blowFactor() const noexcept;
-  /// Whether the last blow was one is not clear yet: the estimate may be of the wrong branch.
+  /// Returns true while it is uncertain whether the last passage was a blow: the estimate may be on the wrong branch.
   bool isDoubtful() const noexcept { return rival_.isDoubtful(); }
   /// Probability of the other branch: no blow where the estimate has one, or a blow where it has none.
   double otherBranch() const noexcept { return rival_.probability(); }
@@ -113,18 +113,18 @@ class CrankFilter {
   void moveZero(double angle) noexcept { zero_moves_ += angle; }
 
   const ShaftState& state() const noexcept { return now_.state; }
-  /// What is known at the last accepted sample, as the filter computes it.
+  /// Estimate at the last accepted sample, as the filter computes it.
   const CrankBelief& belief() const noexcept { return now_; }
-  /// What is expected of the next blow.
+  /// Prior of the next blow.
   BlowPrior blowPrior() const noexcept { return blows_.prior(); }
-  /// Of the next step.
+  /// Random walks of the next step.
   CrankWalks walks() const noexcept {
     return {roughness_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk, supply_.law()};
   }
-  /// As learned.
+  /// Law of the supply, as learned.
   const SupplyLaw& supplyLaw() const noexcept { return supply_.law(); }
   double mostSpeed() const noexcept;  ///< from which on an estimate has diverged [rad/s]
-  /// What variances are multiplied with before they are published.
+  /// Factor by which variances are multiplied before they are published.
   double growth() const noexcept { return consistency_.growth(); }
   /// Covariance of (angle, speed, torque, logarithm of drive inertia, blow factor) at the last accepted sample, as the
   /// filter computes it; what it publishes is multiplied by the consistency where that is above 1.
@@ -134,30 +134,33 @@ class CrankFilter {
   const WeighedSample& sample() const noexcept { return sample_; }
   /// Logarithm of the likelihood of its angle before it was taken, but for a constant.
   double angleFit() const noexcept { return angle_fit_; }
-  double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
-  /// What of the angles' lag is taken off the readings.
+  double speedNoise() const noexcept {
+    return std::sqrt(speed_variance_);
+  }  ///< identified noise of measured speeds [rad/s]
+  /// Part of the angles' lag that is subtracted from the readings.
   const AngleLag& angleLag() const noexcept { return angle_lag_; }
-  /// Whether measured speeds are taken up, and why not.
+  /// Check of measured speeds, which decides whether they are used.
   const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
-  double timingNoise() const noexcept { return timing_.deviation(); }  ///< of stamps, identified [s]
+  double timingNoise() const noexcept { return timing_.deviation(); }  ///< identified noise of stamps [s]
   /// Enough samples have come, and they fit the model: until then a wrong unit may not show. A crank in degrees, which
   /// is followed as well as may be, gives a consistency of 8 to 40.
   bool isProven() const noexcept { return consistency() < mismatch::kContradicts; }
   /// Mean of innovation^2 over its variance of the last some 500 samples: near 1 where readings and model agree; NaN
   /// before 200.
   double consistency() const noexcept { return consistency_.mean(); }
-  /// The same mean of the half turns before the blow alone, the lesser of the last two: an elastic rod or a blow that
-  /// lasts changes little there, so that a contradiction is another machine or another sensor.
+  /// Consistency in the half revolutions before the blow alone, the lesser of the last two. An elastic rod or a blow
+  /// that lasts changes little there, so that a contradiction means another machine or another sensor.
   double strikeConsistency() const noexcept { return strike_consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
   const ConstantErrors& constantErrors() const noexcept { return errors_; }
   /// Steps of the encoder on its shaft, which the filter has followed.
   const EncoderSlip& encoderSlip() const noexcept { return slip_; }
-  /// Whether and where innovations say that the rod gives.
+  /// Evidence of an elastic rod in the innovations, by place.
   const RodEvidence& rodEvidence() const noexcept { return rod_evidence_; }
   /// Standard deviation of the last reading [rad].
   double readingDeviation() const noexcept { return std::sqrt(sample_.angleVariance(now_.state.speed)); }
-  /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
+  /// Returns true if it restarted so often that the model does not fit: contradictions are then followed with a low
+  /// weight instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Innovations stay far larger than the model explains, whatever the drive inertia.
   bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
@@ -240,7 +243,7 @@ class CrankFilter {
   HullMotion now_hull_;     ///< at the last sample
   HullMotion before_hull_;  ///< at the last but one sample
   CrankFilterSettings settings_;
-  double first_guess_;      ///< of the drive inertia [kg m2]
+  double first_guess_;      ///< first guess of the drive inertia [kg m2]
   double unlearn_after_{};  ///< time until it may be taken up again [s]
   Encoder encoder_;
   WeighedSample sample_;
@@ -263,10 +266,10 @@ class CrankFilter {
   std::size_t before_{};                ///< place of the former
   ShaftLoad before_load_;               ///< there, with before_hull_
   double step_{};                       ///< between these two [s]
-  ContactRival rival_;                  ///< the same samples with contact where now_ has none, or the other way round
+  ContactRival rival_;                  ///< hypothesis with contact where now_ has none, or the other way round
   bool mirrored_{};                     ///< now_ had no contact and is on the mirrored branch
   double fit_{};                        ///< logarithm of the last sample's likelihood by now_
-  double speed_variance_;               ///< of measured speeds, as identified [rad2/s2]
+  double speed_variance_;               ///< identified variance of measured speeds [rad2/s2]
   EncoderSlip slip_;
   RunningMean<> usual_step_{kSteps};  ///< [s]
   double interval_{};                 ///< of the samples, where they are taken at equal ones [s]
@@ -275,8 +278,8 @@ class CrankFilter {
   SpeedTrust speed_trust_;
   AngleLag angle_lag_;
   double zero_moves_{};                         ///< moveZero() since the last sample [rad]
-  std::optional<SpeedTrust::Witness> witness_;  ///< of the last sample
-  std::optional<Side> read_side_;               ///< of the blow, as the last reading shows it
+  std::optional<SpeedTrust::Witness> witness_;  ///< witness of the last sample
+  std::optional<Side> read_side_;               ///< side of the blow that the last reading shows
   double outlier_{};                            ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late

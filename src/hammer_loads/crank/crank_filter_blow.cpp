@@ -1,4 +1,4 @@
-// What the filter does at the blow: a tool that is met, the side that a sample is on, a turn without contact.
+// Filter at the blow: a tool that is met, the side of a sample, a revolution without contact.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// What the filter makes of a sensor that errs: lost samples, slips, speeds.
+// Filter with an erroneous sensor: lost samples, slips, speeds.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -97,7 +97,7 @@ bool CrankFilter::takesSpeeds() noexcept {
   return speed_trust_.isTrusted() && (HAMMER_LOADS_ABLATE(speeds_wait) || !speeds_wait_);
 }
 
-/// Of the speed by the blow that was struck within the step [rad/s].
+/// Jump of the speed by the blow that was struck within the step [rad/s].
 double CrankFilter::speedJump(bool struck) const noexcept {
   return struck ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
 }
@@ -122,7 +122,7 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
         (*sample.of_speed)[ConstantErrors::kSpeedLag] * (square(by - of_state) - square(before - of_state));
   }
   fit_ += innovation.logLikelihood();
-  // What lag and scale make of it passes for noise: less speed is taken up then.
+  // Effects of lag and scale pass for noise, so that the speeds get a lower weight.
   const double known = now_.encoderVariance(Belief::kSpeed) + innovation.variance;
   const double squared = std::min(square(innovation.value), square(gate::kImpossible) * known);
   if (!innovation.exceeds(gate::kImpossible))

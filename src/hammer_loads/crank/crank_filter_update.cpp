@@ -70,8 +70,8 @@ std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
   return begin(to.sample);
 }
 
-/// Whether it fits, and what of it is another contact, another blow or no sample of this crank's, which ends the
-/// update.
+/// Judges whether the sample fits; else whether another contact, another blow or a foreign sample is the cause, which
+/// ends the update.
 std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
   WeighedSample& sample = to.sample;
   Innovation& innovation = to.innovation;

@@ -35,7 +35,7 @@ Checked<CrankSensor> CrankSensor::make(const CrankSensorPlace& place) {
   return result;
 }
 
-/// Of the eccentric reading over the angle [rad].
+/// Excess of the eccentric reading over the angle [rad].
 double CrankSensor::excess(double angle) const noexcept {
   const auto& a = place_.eccentricity;
   const auto& phase = place_.eccentricity_phase;

@@ -1,4 +1,4 @@
-/// Where the crank's encoder sits: from its readings to the crank's angle and speed.
+/// Mounting of the crank's encoder: conversion of its readings to the crank's angle and speed.
 #pragma once
 
 #include "hammer_loads/util/checked.h"
@@ -38,7 +38,7 @@ class CrankSensor {
   bool isIdentity() const noexcept { return identity_; }
   /// Reading [rad] at a crank angle [rad].
   double reading(double angle) const noexcept;
-  /// It sits elsewhere: readings are larger by that angle of the crank [rad] from now on.
+  /// Moves the mounting: readings are larger by that angle of the crank [rad] from now on.
   void slip(double angle) noexcept {
     place_.zero += angle / gain_;
     identity_ = false;

@@ -56,7 +56,7 @@ struct CrankPosition {
   }
 };
 
-/// this - other [rad].
+/// Difference of two positions, a less b [rad].
 inline double difference(const CrankPosition& a, const CrankPosition& b) noexcept {
   return static_cast<double>(a.blow - b.blow) * kTwoPi + (a.angle.offset - b.angle.offset);
 }

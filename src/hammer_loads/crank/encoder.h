@@ -24,14 +24,14 @@ class Encoder {
   explicit Encoder(double given, const CrankSensor& place = {}) noexcept
       : place_(place), given_(given > 0.0), assumed_(given > 0.0 ? given : kUsual) {}
 
-  /// Of the crank [rad].
+  /// Angle of the crank [rad].
   double angle(double reading) noexcept {
     learn(reading);
     return place_.angle(reading + 0.5 * (isFiner() ? 0.0 : resolution()));
   }
-  /// Of the crank [rad/s], at its angle [rad].
+  /// Speed of the crank [rad/s], at its angle [rad].
   double speed(double angle, double measured) const noexcept { return place_.speed(angle, measured); }
-  /// It has slipped on its shaft: readings are larger by so much of the crank's angle [rad] from now on.
+  /// Follows a slip on the shaft: readings are larger by this angle of the crank [rad] from now on.
   void slip(double angle) noexcept { place_.slip(angle); }
   /// Crank angles between which a reading lies; the lower one within half a turn of the blow [rad].
   struct Edges {
@@ -44,7 +44,7 @@ class Encoder {
     return {low, low + std::abs(other - one)};
   }
 
-  const CrankSensor& place() const noexcept { return place_; }  ///< as it sits now
+  const CrankSensor& place() const noexcept { return place_; }  ///< present mounting
 
   /// Variance of angle() [rad2]: uniform over the count.
   double variance() const noexcept {
@@ -173,8 +173,8 @@ class EncoderSlip {
   }
   void endTurn() noexcept { ++quiet_turns_, ++turns_since_; }
   int count() const noexcept { return count_; }             ///< since the beginning
-  double last() const noexcept { return last_; }            ///< of the crank's angle [rad]
-  double deviation() const noexcept { return deviation_; }  ///< of that [rad]
+  double last() const noexcept { return last_; }            ///< last step of the crank's angle [rad]
+  double deviation() const noexcept { return deviation_; }  ///< standard deviation of last() [rad]
 
  private:
   /// The last one is some turns old at most: a step back belongs to it.
@@ -183,7 +183,7 @@ class EncoderSlip {
   static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
   double before_{};                        ///< innovation of the sample before [rad]
-  double seen_{};                          ///< the same where it may be a slip; else 0
+  double seen_{};                          ///< innovation that may be a slip [rad]; else 0
   double last_{}, deviation_{};
   int count_{}, quiet_turns_{}, turns_since_{};
 };
@@ -195,7 +195,7 @@ class AngleLag {
  public:
   bool isThere() const noexcept { return lag_ > 0.0; }
   double lag() const noexcept { return lag_; }              ///< taken off the readings [s]
-  double deviation() const noexcept { return deviation_; }  ///< of that, standard [s]
+  double deviation() const noexcept { return deviation_; }  ///< standard deviation of lag() [s]
   /// more: seen in readings from which lag() has been taken off [s]; deviation: of it.
   void take(double more, double deviation) noexcept {
     lag_ = std::max(0.0, lag_ + more);

@@ -20,15 +20,15 @@ void move(double apart, const CrankPosition& back, CrankPosition& position) noex
   }
 }
 
-/// Where the two ways pass the blow at different instants, each speed is taken over to the side that counts. A crank
-/// that turns back strikes nothing there.
+/// Speed of a path on the side of the blow that counts, where the two paths pass it at different instants. A crank that
+/// turns back strikes nothing there.
 double speedOn(const CrankAngle& angle, const ShaftState& way, double factor, bool forward) noexcept {
   const double speed = way.speed;
   if (way.position.angle.side == angle.side || std::abs(angle.offset) > 1.0 || !(speed > 0.0) || !forward) return speed;
   return angle.side == Side::kAfterBlow ? speed * factor : speed / factor;
 }
 
-/// Both ways after dt, at the place between them.
+/// States of both paths after dt, at the place between them.
 struct Ways {
   ShaftState forward, back;
   bool ran_away{};  ///< one of them, which the other stands for

@@ -8,7 +8,7 @@
 
 namespace hammer_loads {
 
-/// Of a state where the model has the load.
+/// Estimate of a state at which the model has the load.
 inline CrankEstimate estimateOf(const ShaftLoad& load, const ShaftState& state) noexcept {
   return {state.position, state.speed, acceleration(load, state)};
 }
@@ -30,7 +30,7 @@ struct BetweenSamples {
 /// [s].
 CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;
 
-/// Both ways, each with its own speed and torque, at the place between them. Nothing where one has run away.
+/// Crank by both paths, each with its own speed and torque, at the place between them. None where one has diverged.
 std::optional<CrankWays> waysBetween(const BetweenSamples& samples, double dt) noexcept;
 
 }  // namespace hammer_loads

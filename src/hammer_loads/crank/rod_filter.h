@@ -13,9 +13,9 @@ struct RodMotion {
   TwoBodyState state;
   double torque{};                        ///< net, on the crank [N m]
   double log_inertia{};                   ///< logarithm of Jc [kg m2]
-  double restitution{};                   ///< of the rocker on the tool [-]
+  double restitution{};                   ///< restitution of the rocker on the tool [-]
   double log_stiffness{}, log_damping{};  ///< logarithms of RodSpring's stiffness and damping ratio
-  double play{};                          ///< of the pins [m]
+  double play{};                          ///< joint clearance of the pins [m]
   double place{};                         ///< psi at which the tool is met [rad]: its contact's depth is part of it
 };
 
@@ -57,7 +57,7 @@ class RodFilter {
   bool isRunning() const noexcept { return running_; }
   /// Nothing is learned.
   void abandon() noexcept { running_ = false; }
-  /// What it learned of rod and tool counts for the coming blows, if the readings agreed; else it begins anew.
+  /// Keeps the identified values of rod and tool for the coming blows, if the readings agreed; else resets them.
   void learn() noexcept;
   /// Logarithm of the likelihood of the samples since the beginning, but for a constant.
   double fit() const noexcept { return fit_; }
@@ -65,18 +65,18 @@ class RodFilter {
   bool isProven() const noexcept { return proven_; }
 
   const RodMotion& motion() const noexcept { return motion_; }
-  /// It has moved since it began: there is a last step.
+  /// Returns true if it has moved since it began, so that there is a last step.
   bool hasMoved() const noexcept { return running_ && samples_ > 0; }
   /// Within that, by the way forward from the sample before; time after it [s].
   RodMotion between(double time) const noexcept;
-  /// Of that, its time likewise.
+  /// Blow within that step, its time likewise.
   const std::optional<TwoBodies::Blow>& blowOfStep() const noexcept { return blow_; }
   bool hasStruck() const noexcept { return motion_.state.angle.side == Side::kAfterBlow; }
   double sinceBlow() const noexcept { return since_blow_; }        ///< [s]
   double rockerBefore() const noexcept { return rocker_before_; }  ///< psi' at the tool [rad/s]
   /// Independent errors of one standard deviation each, columns; innovations larger than expected are in it.
   Belief::Matrix errors() const noexcept;
-  /// As it would be, were it off by that.
+  /// Motion displaced by an error.
   RodMotion displaced(const Belief::Vector& by) const noexcept;
   double deviation(Row row) const noexcept { return std::sqrt(growth() * belief_.covariance(row, row)); }
 
@@ -103,7 +103,7 @@ class RodFilter {
   double fit_{};
   bool running_{}, proven_{};  ///< the last blow's readings agreed
   double since_blow_{}, rocker_before_{};
-  double ratio_sum_{};  ///< of innovation^2 over its variance since the beginning
+  double ratio_sum_{};  ///< sum of innovation^2 over its variance since the beginning
   int samples_{};
 };
 

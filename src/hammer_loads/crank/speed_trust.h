@@ -1,4 +1,4 @@
-/// Whether measured speeds are of the instant that their angles are of: lag, scale and memory of their errors.
+/// Check that measured speeds belong to the instants of their angles: lag, scale and memory of their errors.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,17 +25,17 @@ namespace hammer_loads {
 /// errs is put right by them.)
 class SpeedTrust {
  public:
-  /// What came before does not continue.
+  /// Restarts after a discontinuity.
   void restart() noexcept { begun_ = false; }
   /// A speed that was measured, and what the estimate has without it.
   struct Witness {
     double measured{};      ///< [rad/s]
     double speed{};         ///< [rad/s]
     double acceleration{};  ///< there [rad/s2]
-    double by_lag{};        ///< what a lag of the speeds taken so far has made of `speed` [rad/s2]
-    double by_scale{};      ///< likewise their scale [rad/s]
-    double jump{};          ///< of the speed by a blow since the sample before [rad/s]
-    double variance{1.0};   ///< of both together, > 0 [rad2/s2]: their difference weighs by it
+    double by_lag{};        ///< change of `speed` by a lag of the speeds used so far [rad/s2]
+    double by_scale{};      ///< change of `speed` by their scale [rad/s]
+    double jump{};          ///< jump of the speed by a blow since the sample before [rad/s]
+    double variance{1.0};   ///< variance of the difference of both speeds, > 0 [rad2/s2]
   };
   /// By how much a lag of kLag would make the speed smaller now, over kLag [rad/s2]; dt, acceleration, jump: as below.
   double lateBy(double dt, double acceleration, double jump) const noexcept;
@@ -44,10 +44,10 @@ class SpeedTrust {
   /// Once a turn.
   void endTurn() noexcept;
 
-  /// They may be taken up.
+  /// Returns true if speeds may be used.
   bool isTrusted() const noexcept { return !lags() && !isOutOfScale(); }
   bool knows() const noexcept { return turns_ >= look_back::kTurnsToKnow; }  ///< lag and scale
-  /// Both are known to be less than matters.
+  /// Returns true if both are known to be negligible.
   bool areGood() const noexcept { return knows() && are_good_; }
   bool lags() const noexcept { return knows() && lags_.isEngaged(); }
   bool isOutOfScale() const noexcept { return knows() && out_of_scale_.isEngaged(); }
@@ -60,13 +60,14 @@ class SpeedTrust {
   static constexpr double kLag = kUnknowns[indexOfUnknown("speed lag")].prior;  ///< [s]
   static constexpr double kScale = kUnknowns[indexOfUnknown("speed scale")].prior;
 
-  /// Of a speed, over the deviation expected of it: what is not explained, and its derivatives by lag and scale.
+  /// Residual of a speed over its expected deviation, and its derivatives by lag and scale.
   using Row = Eigen::Vector3d;
   Row last_{Row::Zero()};
-  Eigen::Matrix3d same_{Eigen::Matrix3d::Zero()}, next_{same_};  ///< of the turn: products of a row, with that before
-  int count_{};                                                  ///< rows in them
-  double square_{};                                              ///< mean, of the residuals of the turn before
-  Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};         ///< of lag and scale, by turns
+  Eigen::Matrix3d same_{Eigen::Matrix3d::Zero()},
+      next_{same_};  ///< products of a revolution's rows with themselves, and with the row before
+  int count_{};      ///< rows in them
+  double square_{};  ///< mean, of the residuals of the turn before
+  Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};  ///< information on lag and scale, by revolutions
   Eigen::Vector2d score_{Eigen::Vector2d::Zero()};
   double scatter_{},
       seen_turns_{};  ///< mean squares of the turns' own fits over those expected, summed; number of turns
@@ -76,7 +77,7 @@ class SpeedTrust {
   bool begun_{}, are_good_{};
   double behind_{}, by_lag_{};  ///< at the last sample: speed - y [rad/s], and its derivative by the lag
   double late_{};               ///< lateBy() at the last sample [rad/s2]
-  double acceleration_{};       ///< likewise
+  double acceleration_{};       ///< acceleration at the last sample [rad/s2]
   int turns_{};
 };
 

@@ -84,13 +84,13 @@ class StampRounding {
     return rest <= kTolerance || step - rest <= kTolerance;
   }
 
-  std::size_t step_{};  ///< of kSteps, the largest that all stamps are multiples of
+  std::size_t step_{};  ///< index in kSteps of the largest one that divides all stamps
   std::int64_t last_{};
   int stamps_{}, uneven_{};
   bool rounded_{};
 };
 
-/// Which instants the samples get.
+/// Instants that the samples get.
 enum class CrankStamps {
   kAuto,    ///< header stamps as they are, unless they repeat or change places
   kHeader,  ///< header stamps; what does not follow them is refused
@@ -107,26 +107,26 @@ class StampSequence {
  public:
   enum class Kind {
     kPlaced,      ///< the instant holds
-    kDuplicate,   ///< the same message again: it changes nothing; of a crank at rest it may be one of a burst. Or
-                  ///< another one with the same stamp: when it was taken is not known yet
+    kDuplicate,   ///< repetition of the message, which changes nothing; of a crank at rest it may be one of a burst. Or
+                  ///< another one with the same stamp, whose instant is not known yet
     kOutOfOrder,  ///< with kHeader: not after the last; else: so far back that the next one shows whether time ran back
     kRestart,     ///< placed, but nothing before it continues: a gap, or time ran back
   };
   struct Place {
     Kind kind{Kind::kPlaced};
     std::int64_t stamp{};  ///< instant [ns]
-    bool refitted{};       ///< it is not the header stamp
+    bool refitted{};       ///< true if it is not the header stamp
   };
 
   /// stale_after: gap or way back from which on a sample starts anew [s].
   StampSequence(CrankStamps mode, double stale_after) noexcept;
 
-  /// Whether all values of a message are those of the message before.
+  /// Comparison of a message's values with those of the message before.
   enum class Repeats {
     kNo,
-    kAtRest,       ///< they are, as of a crank that rests
-    kWithinCount,  ///< they are, as of a crank that turns by less than a count meanwhile
-    kAtWork,  ///< they are, and no crank that turns so gives them twice: a measured speed, or an angle that moves on
+    kAtRest,       ///< equal, as of a crank that rests
+    kWithinCount,  ///< equal, as of a crank that turns by less than a count meanwhile
+    kAtWork,       ///< equal though the crank turns: a measured speed, or an angle that moves on, cannot repeat
   };
   /// header: stamp of the message that arrives [ns].
   Place place(std::int64_t header, Repeats repeats) noexcept;
@@ -152,8 +152,8 @@ class StampSequence {
 
   CrankStamps mode_;
   std::int64_t stale_;                   ///< [ns]
-  std::optional<std::int64_t> header_;   ///< of the last message taken [ns]
-  std::optional<std::int64_t> rewound_;  ///< of the last message, if it was refused as out of order
+  std::optional<std::int64_t> header_;   ///< header stamp of the last accepted message [ns]
+  std::optional<std::int64_t> rewound_;  ///< header stamp of the last message, if it was refused as out of order
   std::int64_t newest_{};                ///< latest header stamp since the beginning [ns]
   std::int64_t placed_{};                ///< instant of the last message [ns]
   double irregularity_{};                ///< irregular stamps of late

@@ -1,4 +1,4 @@
-/// How the drive's torque follows the crank within a turn, and how rough it is beside that.
+/// Law by which the drive's torque follows the crank within a revolution, and its roughness.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace hammer_loads {
 /// walk.
 struct SupplyLaw {
   double stiffness{};   ///< [N m/rad]
-  double mean_speed{};  ///< of the uniform rotation [rad/s]; 0: not known, nothing leads
-  double unit{};        ///< of the stiffness' error among ConstantErrors [N m/rad]
+  double mean_speed{};  ///< mean speed of the uniform rotation [rad/s]; 0: not known, nothing leads
+  double unit{};        ///< unit of the stiffness' error among ConstantErrors [N m/rad]
 
-  /// Of a crank that turned so far [rad] in dt [s]: lead [rad].
+  /// Lead of a crank that turned by an angle [rad] in dt [s] over the uniform rotation [rad].
   double lead(double turned, double dt) const noexcept { return mean_speed > 0.0 ? turned - mean_speed * dt : 0.0; }
 };
 
@@ -77,10 +77,10 @@ class SupplyRoughness {
     factor_ = jitter > 0.0 ? std::clamp(factor_ * (1.0 + kGain * jitter * now * sum_), kLeast, kMost) : 1.0;
     sum_ = now + kFading * sum_;
   }
-  /// Of the given walk [-].
+  /// Factor on the given walk [-].
   double factor() const noexcept { return factor_; }
-  /// What the part of the torque's deviation that is real is multiplied with: a smaller walk has a smaller deviation,
-  /// while the supply stays what it is. Measured: the coverage is that of exact stamps then.
+  /// Factor on the real part of the torque's deviation. A smaller walk has a smaller deviation, while the supply is
+  /// unchanged. With this factor the measured coverage is that of exact stamps.
   double deviationFactor() const noexcept { return 1.0 / std::sqrt(std::sqrt(std::min(1.0, factor_))); }
 
  private:

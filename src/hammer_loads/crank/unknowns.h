@@ -12,7 +12,7 @@
 
 namespace hammer_loads {
 
-/// Where a reading is taken, on the shaft of the encoder.
+/// Place of a reading on the shaft of the encoder.
 struct ReadingPlace {
   double offset{};        ///< from the blow, within half a turn [rad]
   double speed{};         ///< [rad/s]
@@ -33,17 +33,19 @@ struct Unknown {
     kTakenUp,     ///< shows there as well, by itself; its owner corrects the constant
     kConsidered,  ///< is as large as its prior says, whatever the innovations are
   };
-  const char* name;  ///< of its warning; rows of one name in a row are parts of one amount, the root of their squares
-  const char* key;   ///< of the parameter file
+  const char*
+      name;  ///< name of its warning; consecutive rows of one name are parts of one amount, the root of their squares
+  const char* key;  ///< key in the parameter file
   Use use;
   double prior;                                        ///< standard deviation where nothing else is said
-  double unmodelled;                                   ///< what a clean machine shows of it, standard: kSeen
+  double unmodelled;                                   ///< standard deviation that a clean machine shows: kSeen
   double (*of_angle)(const ReadingPlace&);             ///< d(read angle)/dp
   double (*of_speed)(const ReadingPlace&);             ///< d(read speed)/dp
   double (*of_torque)(const SupplyLaw&, double lead);  ///< d(the filter's torque after a step less before it)/dp
   double notable;                                      ///< from there on a warning names it
   std::string (*warning)(double amount, double deviation);
-  bool of_reading{};  ///< its key is a reading's: the amount there is that of the crank's angle over the sensor's gain
+  bool of_reading{};  ///< true if its key is a reading's: the amount there is that of the crank's angle over the
+                      ///< sensor's gain
 };
 
 namespace unknown {
@@ -69,10 +71,10 @@ inline std::string ofEccentricity(double amount, double deviation) {
 
 }  // namespace unknown
 
-/// Those that are seen come first. Readings of the sensor's place: angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1)
-/// [rad], so that b0 alone says where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of these; from 0.3 and
-/// 0.5 deg on the wrench is some 0.9 % worse. Of speeds, what a drive is off that filters: with a quarter of it the
-/// first second of a lag of 10 ms costs twice what it may.
+/// Table of the constants; those that are seen come first. Readings of the sensor's place: angle + b0 + b1 sin(angle) +
+/// b2 (cos(angle) - 1) [rad], so that b0 alone says where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of
+/// these; from 0.3 and 0.5 deg on the wrench is some 0.9 % worse. Of speeds, what a drive is off that filters: with a
+/// quarter of it the first second of a lag of 10 ms costs twice what it may.
 inline constexpr std::array<Unknown, 7> kUnknowns{{
     {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
      unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero, true},
@@ -95,13 +97,13 @@ inline constexpr std::array<Unknown, 7> kUnknowns{{
      [](const ReadingPlace& at) { return at.speed; }, unknown::notOfTorque, 0.0, nullptr},
 }};
 
-/// That are seen: the first of them.
+/// Number of constants that are seen; they come first.
 constexpr int countSeen() noexcept {
   int count = 0;
   for (const Unknown& u : kUnknowns) count += u.use == Unknown::Use::kSeen;
   return count;
 }
-/// Its place in the table; a name that is not there does not compile where that is asked for at compile time.
+/// Index in the table; an unknown name does not compile where the index is needed at compile time.
 constexpr int indexOfUnknown(const char* name) {
   std::size_t i = 0;
   for (bool found = false; i < kUnknowns.size() && !found; i += !found) {

@@ -13,7 +13,7 @@ namespace hammer_loads {
 /// A measurement less its prediction.
 struct Innovation {
   double value{};                                             ///< measured less predicted
-  double total{};                                             ///< its variance
+  double total{};                                             ///< variance of the innovation
   double variance{};                                          ///< the measurement's part of that
   ConstantErrors::Row by_error{ConstantErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
 
@@ -26,9 +26,9 @@ struct Innovation {
 struct WeighedSample {
   double angle{};               ///< from the nearest blow [rad]
   std::optional<double> speed;  ///< [rad/s]
-  double angle_variance{};      ///< of count and noise [rad2]
-  double timing_variance{};     ///< of the stamp [s2]
-  double speed_variance{};      ///< of the speed's noise [rad2/s2]
+  double angle_variance{};      ///< variance of count and noise [rad2]
+  double timing_variance{};     ///< variance of the stamp [s2]
+  double speed_variance{};      ///< variance of the speed's noise [rad2/s2]
   /// Variances of the constants that a speed is weighed by; none: they count as right.
   std::optional<ConstantErrors::Row> of_speed{};
 
@@ -36,12 +36,12 @@ struct WeighedSample {
   double angleVariance(double speed_there) const noexcept {
     return angle_variance + speed_there * speed_there * timing_variance;
   }
-  /// It is less sure when it was taken than where the crank was.
+  /// Returns true if its instant is less certain than the crank's place.
   bool isUnsureOfTime(double speed_there) const noexcept {
     return speed_there * speed_there * timing_variance > angle_variance;
   }
   Innovation ofAngle(const CrankBelief& belief) const noexcept;
-  /// Only where a speed was measured.
+  /// Innovation of the speed. Precondition: a speed was measured.
   Innovation ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept;
 };
 

@@ -58,7 +58,7 @@ void ZeroSearch::add(double angle, double step, const HullMotion& hull) noexcept
   }
 }
 
-/// Of a place between the second and the third of the last samples: a cubic where the steps are long.
+/// Time at a place between the second and the third of the last samples: a cubic where the steps are long.
 double ZeroSearch::timeAt(double angle) const noexcept {
   const Point &from = last_[1], &to = last_[2];
   const bool grows = last_[1].angle - last_[0].angle > 1e-4 && last_[3].angle - last_[2].angle > 1e-4;

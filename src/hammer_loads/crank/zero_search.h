@@ -28,24 +28,24 @@ class ZeroSearch {
   /// The crank's angle by the zero in force [rad], and the time since the sample before [s]; 0: that is not known.
   /// hull: its motion, for the weight. Allocates nothing; 0.2 ms in a turn that is evaluated.
   void add(double angle, double step, const HullMotion& hull) noexcept;
-  /// Whether the fit is computed where it is due; the times are gathered all the same.
+  /// Sets whether the fit is computed where it is due; the times are gathered all the same.
   void setWanted(bool wanted) noexcept { wanted_ = wanted; }
   /// The present turn does not count: its times are not those of a blow.
   void skipTurn() noexcept { skips_ = true; }
   /// The encoder sits elsewhere from now on; turns are collected again.
   void restart() noexcept;
   struct Found {
-    double error{};      ///< of the zero in force: the crank's angle by it at the blow [rad], in (-pi, pi]
+    double error{};      ///< error of the zero in force: the crank's angle by it at the blow [rad], in (-pi, pi]
     double deviation{};  ///< standard deviation by the scatter of the times alone [rad]
   };
   /// Nothing before three turns, and where no place of the blow explains the times, as at constant speed.
   const std::optional<Found>& found() const noexcept { return found_; }
   /// Mean way of the crank from sample to sample [rad].
   double stepAngle() const noexcept { return turn_time_ > 0.0 ? kTwoPi * step_ / turn_time_ : kTwoPi; }
-  int evaluations() const noexcept { return evaluations_; }  ///< so far
+  int evaluations() const noexcept { return evaluations_; }  ///< number of fits so far
 
  private:
-  static constexpr int kPlaces = 48;  ///< of a turn
+  static constexpr int kPlaces = 48;  ///< number of places of a revolution
   static constexpr double kWidth = kTwoPi / kPlaces;
   static constexpr int kFrom = kPlaces / 4;  ///< first place after the blow that is compared
   static constexpr int kUnknowns = 6;        ///< logarithm of Jc, E0, tau, K, zero, time of the first place
@@ -90,7 +90,7 @@ class ZeroSearch {
   ShaftModel model_;
   double drive_inertia_;
   std::array<Point, 4> last_;  ///< the latest samples, the oldest first
-  int samples_{};              ///< of these, up to 4
+  int samples_{};              ///< number of these, up to 4
   std::int64_t place_{};       ///< the last one that was passed
   std::optional<double> place_time_;
   std::array<double, kPlaces> turn_{}, times_{};  ///< from place to place [s]: of this turn, mean of the last ones
