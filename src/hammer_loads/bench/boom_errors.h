@@ -16,8 +16,7 @@ namespace hammer_loads::accuracy {
 /// The torques are those of hammer, motion, vibration and rock, without weight; the sections those of the shipped file.
 struct BoomErrors {
   SignalError force_x, force_z, moment, torque[3], section[3], contact;
-  LifeError life_force_z, life_torque[3],
-      life_section[3];  ///< errors of force and of torques with weight, as they are counted
+  LifeError life_force_z, life_torque[3], life_section[3];  ///< errors of loads with weight, as they are counted
   std::size_t samples{}, refused{}, within{}, blows{};
   std::size_t wrench_within[3]{};         ///< number of force x, force z, moment within two standard deviations
   double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]

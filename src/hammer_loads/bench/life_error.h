@@ -9,8 +9,7 @@
 
 namespace hammer_loads::accuracy {
 
-constexpr double kLifeSlope =
-    5.0;  ///< slope of the S-N line; the error of the damage is about this many times as large
+constexpr double kLifeSlope = 5.0;  ///< slope of the S-N line; the damage errs about this many times as much
 
 /// Error of the damage-equivalent range over the true one, > 0 too large, and its stated standard deviations, of single
 /// revolutions and of the part equal in all of them; NaN: none.

@@ -59,11 +59,10 @@ class ModeHistory {
 
  private:
   struct Step {
-    double duration{};  ///< [s]
-    ModeVector from_x = ModeVector::Zero(), from_v = from_x, to_x = from_x,
-               to_v = from_x;                           ///< states at both ends, as ModeState
-    ModeVector force_from = from_x, force_to = from_x;  ///< modal, of the hammer
-    ModeVector jump = from_x;                           ///< jump of the velocity by a blow at the end [m sqrt(kg)/s]
+    double duration{};                                                                      ///< [s]
+    ModeVector from_x = ModeVector::Zero(), from_v = from_x, to_x = from_x, to_v = from_x;  ///< both ends
+    ModeVector force_from = from_x, force_to = from_x;                                      ///< modal, of the hammer
+    ModeVector jump = from_x;  ///< jump of the velocity by a blow at the end [m sqrt(kg)/s]
   };
 
   /// The last but `newer`.

@@ -280,8 +280,7 @@ class ModeIdentifier {
   std::optional<ModeVector> struck_;       ///< by a blow that has just been: of the velocities
   bool moving_known_{};                    ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
-  alignas(64) Covariance covariance_ =
-      Covariance::Zero();  ///< aligned to cache lines, which saves a tenth of the time of a reading
+  alignas(64) Covariance covariance_ = Covariance::Zero();  ///< aligned to cache lines: saves 10 % of a reading
   std::array<Seals, kMaxJoints> seals_;
   /// Modal, at the present time; and by the second.
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
@@ -289,10 +288,9 @@ class ModeIdentifier {
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
   std::array<double, kMaxJoints> ratio_{}, damping_{};  ///< ratios of frequency and of damping by state_
-  LogOil stiffness_ratio_ = LogOil::Ones(),
-         used_oil_ = LogOil::Zero();  ///< ratios of stiffness by state_, and their logarithms
-  std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};  ///< logarithms of these
-  int channels_{};                                                    ///< in use
+  LogOil stiffness_ratio_ = LogOil::Ones(), used_oil_ = LogOil::Zero();  ///< stiffness ratios; their logarithms
+  std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};     ///< logarithms of these
+  int channels_{};                                                       ///< in use
   std::array<int, kMaxChannels> slot_{};          ///< state of each channel's offset; -1: not in use
   std::array<double, kMaxChannels> age_{};        ///< since the channel's last reading [s]
   std::array<Clock, kMaxChannels> clock_{};       ///< whose stamps it has

@@ -124,8 +124,7 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
-  double oilDoubt(
-      int cylinder) const noexcept;  ///< standard deviation of its logarithm of stiffness by damping beside the oil's
+  double oilDoubt(int cylinder) const noexcept;        ///< standard deviation of its log stiffness
   OilFound oilFound(const LogOil& by) const noexcept;  ///< weighted sum over the cylinders
   LogOil oilToTake() const noexcept;
   void useMotion() noexcept;

@@ -64,9 +64,8 @@ class VibrationSpread {
   std::array<Factors, kMaxJoints> factor_;
   BoomModes modes_;
   bool waits_{};
-  std::array<std::array<Mode, kMaxJoints>, kLoads + 1>
-      mode_;                                         ///< modes of the first runs; last: those of the vibration
-  std::array<JointVector, kMaxRuns> x_, v_, force_;  ///< modal, of each run
+  std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< modes of the first runs; last: the vibration's
+  std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
   LoadSpread load_;
   JointVector swing_;                                              ///< empty: none
   std::array<std::array<KeptStep, kMaxJoints>, kLoads + 1> step_;  ///< last steps, index as mode_

@@ -15,9 +15,8 @@ struct HammerPart {
   std::vector<std::string> names;  ///< keys of the constants; a level for what that leaves out
   Eigen::VectorXd errors;  ///< errors of the constants, true less file's [their standard deviations], with the signs of
                            ///< MachineColumns
-  Eigen::MatrixXd
-      covariance;         ///< covariance of shared parameters, then constants [rad, ..., as above], by the noise alone
-  Eigen::VectorXd prior;  ///< inverse variances of the same before any reading
+  Eigen::MatrixXd covariance;  ///< by the noise alone: shared parameters, then constants [rad, ..., as above]
+  Eigen::VectorXd prior;       ///< inverse variances of the same before any reading
 
   bool has(const std::string& constant) const;
   /// Name of a row of the covariance.

@@ -63,11 +63,10 @@ class SpeedTrust {
   /// Residual of a speed over its expected deviation, and its derivatives by lag and scale.
   using Row = Eigen::Vector3d;
   Row last_{Row::Zero()};
-  Eigen::Matrix3d same_{Eigen::Matrix3d::Zero()},
-      next_{same_};  ///< products of a revolution's rows with themselves, and with the row before
-  int count_{};      ///< rows in them
-  double square_{};  ///< mean, of the residuals of the turn before
-  Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};  ///< information on lag and scale, by revolutions
+  Eigen::Matrix3d same_{Eigen::Matrix3d::Zero()}, next_{same_};  ///< sums of products of rows; of neighbouring rows
+  int count_{};                                                  ///< rows in them
+  double square_{};                                              ///< mean, of the residuals of the turn before
+  Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};         ///< information on lag and scale, by revolutions
   Eigen::Vector2d score_{Eigen::Vector2d::Zero()};
   double scatter_{},
       seen_turns_{};  ///< mean squares of the turns' own fits over those expected, summed; number of turns

@@ -33,9 +33,8 @@ struct Unknown {
     kTakenUp,     ///< shows there as well, by itself; its owner corrects the constant
     kConsidered,  ///< is as large as its prior says, whatever the innovations are
   };
-  const char*
-      name;  ///< name of its warning; consecutive rows of one name are parts of one amount, the root of their squares
-  const char* key;  ///< key in the parameter file
+  const char* name;  ///< name of its warning; adjacent rows of one name are one amount, root of their squares
+  const char* key;   ///< key in the parameter file
   Use use;
   double prior;                                        ///< standard deviation where nothing else is said
   double unmodelled;                                   ///< standard deviation that a clean machine shows: kSeen

@@ -11,9 +11,8 @@ namespace {
 constexpr int kMostIterations = 20;
 constexpr double kLargestPrediction = 0.3;  ///< largest predicted step along the branch [rad]
 constexpr double kLargestCorrection = 0.1;  ///< by Newton after the prediction [rad]: more may mean another branch
-constexpr double kSlopeMismatch =
-    0.1;  ///< largest mismatch of a step against the mean of the slopes at its ends, relative
-constexpr double kSlopeNoise = 1e-6;  ///< [rad]
+constexpr double kSlopeMismatch = 0.1;      ///< largest relative mismatch of a step and the mean slope of its ends
+constexpr double kSlopeNoise = 1e-6;        ///< [rad]
 constexpr int kMostSteps = 400;
 /// Closer to a limit than this [m] two branches lie within the square root of rounding of each other: which is which
 /// does not show (4096 eps at one metre).

@@ -24,8 +24,7 @@ struct RockerBlow {
   double support_impulse_y{};    ///< BY the links ON the hull about D [N m s]; 0 of blowInSupport
   double drive_impulse_y{};      ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
   double restitution_std{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
-  double energy_std{
-      std::numeric_limits<double>::quiet_NaN()};  ///< standard deviation of the energy [J], where R was measured
+  double energy_std{std::numeric_limits<double>::quiet_NaN()};       ///< standard, where R was measured [J]
   /// restitution or energy are what no blow has, by more than two deviations: both are NaN
   bool impossible{};
 };

@@ -34,12 +34,11 @@ struct HammerParameters {
   double rod_inertia_about_com{};       ///< [kg m2], >= 0
   double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
   double drive_reaction_ratio{1.0};     ///< r of DriveReaction [-], finite
-  RodSpring rod;           ///< spring and damping of the connecting rod; 0 stands for unknown, see priorOf()
-  RodSpring rod_std;       ///< standard deviations of it, >= 0
-  double hull_mass{};      ///< housing and what is fixed to it [kg]; 0: hullMass() assumes it
-  double hull_mass_std{};  ///< standard deviation [kg], >= 0; counts with hull_mass > 0
-  HammerDeviations
-      deviations{};  ///< standard deviations of the constants above except the spring; 0 (exact) by default
+  RodSpring rod;                  ///< spring and damping of the connecting rod; 0 stands for unknown, see priorOf()
+  RodSpring rod_std;              ///< standard deviations of it, >= 0
+  double hull_mass{};             ///< housing and what is fixed to it [kg]; 0: hullMass() assumes it
+  double hull_mass_std{};         ///< standard deviation [kg], >= 0; counts with hull_mass > 0
+  HammerDeviations deviations{};  ///< standard deviations of the constants above but the spring; 0: exact
 };
 
 /// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism

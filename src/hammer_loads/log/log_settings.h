@@ -22,8 +22,7 @@ struct LogSettings {
   std::string prefix;          ///< file names begin with it; without /; empty: name of the node
   std::string node;            ///< name of the node that logs, not from a file: see forNode()
   std::uint64_t split_size{};  ///< a bag larger than this is closed and a new one begun [byte], > 0
-  std::uint64_t
-      total_size{};  ///< total size of the bags of this process; beyond it the oldest is deleted [byte], 0: no limit
+  std::uint64_t total_size{};  ///< size of all bags of this process; the oldest is deleted above it [byte]; 0: no limit
   std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
   /// Messages waiting for the disk; beyond it they are dropped and counted [byte], > 0.
   std::uint64_t queue_size{};

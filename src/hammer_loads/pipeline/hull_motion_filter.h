@@ -67,8 +67,7 @@ class HullMotionFilter {
   StampedImuReading last_;
   WrenchPath::Instant at_last_;
   HullWrench beside_;
-  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns,
-                                            Eigen::Vector3d::Zero()};  ///< mean square of the samples' loads
+  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< mean square
   int readings_{};
   double greatest_load_{};
 };

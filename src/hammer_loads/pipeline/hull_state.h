@@ -89,19 +89,16 @@ class HullState {
 
   HullMotionSource source_;
   UnmeasuredHull prior_;
-  RunningMean<Eigen::Vector3d> load_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< carry()
-  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns,
-                                            Eigen::Vector3d::Zero()};  ///< mean squares of the load's components
+  RunningMean<Eigen::Vector3d> load_{look_back::kTenTurns, Eigen::Vector3d::Zero()};         ///< carry()
+  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< mean squares
   HullGravity weight_;
   HullImu imu_;
   HullMotionFilter filter_;
   std::optional<HullMobility> mobility_;  ///< mobility of the boom; none: followsLoad() is not wanted, or no boom
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
-  std::optional<HullMotion>
-      vibration_;  ///< motion of the boom's tip at the last sample, without weight; none: not known
-  std::optional<HullMotionCovariance>
-      vibration_doubt_;  ///< covariance of vibration_; none: not requested while the IMU was in use
+  std::optional<HullMotion> vibration_;  ///< boom's tip at the last sample, without weight; none: not known
+  std::optional<HullMotionCovariance> vibration_doubt_;  ///< none: not requested while an IMU was in use
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
   bool known_{true}, by_imu_{};

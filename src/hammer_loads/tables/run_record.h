@@ -32,10 +32,9 @@ struct RunRecord {
   std::string level;                                    ///< pulse, rocker or linkage
   std::uint64_t samples{}, published{}, restarts{}, turns{}, blows{}, backward_passes{};
   std::uint64_t blank_firings{}, judged_blows{};
-  std::optional<std::uint64_t>
-      blows_without_hold_down;  ///< number among the judged ones; none where no blow was judged
-  double still_time{kUnknown};  ///< hammering without penetration [s]
-  double hull_pitch{kUnknown};  ///< at the end of the run [rad]
+  std::optional<std::uint64_t> blows_without_hold_down;  ///< part of the judged ones; none where none was
+  double still_time{kUnknown};                           ///< hammering without penetration [s]
+  double hull_pitch{kUnknown};                           ///< at the end of the run [rad]
   double consistency{kUnknown};
   double timing_noise{kUnknown};                ///< [s]
   double speed_noise{kUnknown};                 ///< [rad/s]
