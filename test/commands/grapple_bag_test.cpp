@@ -85,7 +85,7 @@ TEST_F(GrappleBag, ReportsRefusedSamplesWithTheLimit) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err,
             "slider samples without a jaw edge, across fold: 1; the last one: grapple_slider_joint: 0.74 m, across "
-            "fold: must lie between the dead point at -0.27 m and the fold at 0.7331923934967 m\n");
+            "fold: must lie between the dead centre at -0.27 m and the fold at 0.7331923934967 m\n");
   EXPECT_EQ(counts(path("out.bag")).at("/grapple/jaw_edge/left"), kSamples - 1u);
 }
 

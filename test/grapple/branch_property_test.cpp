@@ -168,7 +168,7 @@ TEST(RandomGrapples, KeepTheirLengths) {
 
 TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
   test::Random random(44);
-  int across_fold = 0, across_dead_point = 0, out_of_reach = 0;
+  int across_fold = 0, across_dead_centre = 0, out_of_reach = 0;
   for (int i = 0; i < 3000; ++i) {
     const auto grapple = test::randomGrapple(random);
     if (!grapple) continue;
@@ -184,13 +184,13 @@ TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
         EXPECT_FALSE(grapple->follow(*inside, slider));
         EXPECT_NE(grapple->explain(refusal, slider).find("must"), std::string::npos);
         across_fold += refusal == SliderRefusal::kAcrossFold;
-        across_dead_point += refusal == SliderRefusal::kAcrossDeadPoint;
+        across_dead_centre += refusal == SliderRefusal::kAcrossDeadCentre;
         out_of_reach += refusal == SliderRefusal::kOutOfReach;
       }
     }
   }
   EXPECT_GT(across_fold, 100);
-  EXPECT_GT(across_dead_point, 5);
+  EXPECT_GT(across_dead_centre, 5);
   EXPECT_GT(out_of_reach, 100);
 }
 

@@ -181,7 +181,7 @@ TEST(GrappleTable, NamesTheOptionThatPassesALimit) {
   request.to = 0.74;
   request.steps = 10;
   EXPECT_EQ(printTable(grapple, request, out).value_or(""),
-            "--to: 0.74 m, across fold: must lie between the dead point at -0.27 m and the fold at 0.7331923934967 m");
+            "--to: 0.74 m, across fold: must lie between the dead centre at -0.27 m and the fold at 0.7331923934967 m");
   EXPECT_TRUE(out.str().empty());
   request.to = 0.733;
   EXPECT_FALSE(printTable(grapple, request, out));
@@ -195,7 +195,7 @@ TEST(GrappleTable, SummaryAndOpening) {
   EXPECT_FALSE(printTable(grapple, request, summary));
   for (const char* line :
        {"slider_open_m: 0.656\n", "scoop_height_m: 0.070706", "straight_share_within_3pct: 1\n",
-        "lower_limit_kind: dead point\n", "upper_limit_m: 0.733192393497\n", "upper_limit_kind: fold\n"})
+        "lower_limit_kind: dead centre\n", "upper_limit_m: 0.733192393497\n", "upper_limit_kind: fold\n"})
     EXPECT_NE(summary.str().find(line), std::string::npos) << line << summary.str();
   TableRequest inverse;
   inverse.opening = 0.2;

@@ -106,7 +106,7 @@ TEST(Folds, AreSingularAndEndTheBranchOfRandomLinkages) {
 
 TEST(SliderLimits, AreThoseOfBothSets) {
   const Grapple claims = test::grappleOf(test::claimsParameters());
-  EXPECT_EQ(claims.lowerLimit().kind, SliderLimit::Kind::kDeadPoint);
+  EXPECT_EQ(claims.lowerLimit().kind, SliderLimit::Kind::kDeadCentre);
   EXPECT_NEAR(claims.lowerLimit().slider, -0.27, 1e-15);
   EXPECT_EQ(claims.upperLimit().kind, SliderLimit::Kind::kFold);
   EXPECT_NEAR(claims.upperLimit().slider, 0.7331923934966, 1e-13);

@@ -26,7 +26,7 @@ TEST(GrappleTracker, BadSamplesAreRefusedCountedAndForgotten) {
        {Bad{{kNan, 0.0, 0.0}, SliderRefusal::kNotFinite}, Bad{{0.3, kInfinity, 0.0}, SliderRefusal::kNotFinite},
         Bad{{0.3, 0.0, kNan}, SliderRefusal::kNotFinite}, Bad{{0.74, 0.1, 0.0}, SliderRefusal::kAcrossFold},
         Bad{{0.88, 0.1, 0.0}, SliderRefusal::kAcrossFold}, Bad{{0.9, 0.1, 0.0}, SliderRefusal::kOutOfReach},
-        Bad{{-0.3, 0.1, 0.0}, SliderRefusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, SliderRefusal::kAcrossDeadPoint},
+        Bad{{-0.3, 0.1, 0.0}, SliderRefusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, SliderRefusal::kAcrossDeadCentre},
         Bad{{0.7, 0.1, 0.0}, SliderRefusal::kOutsideStroke}, Bad{{0.0, 0.1, 0.0}, SliderRefusal::kOutsideStroke}}) {
     // Good: accepted, and the channel is proven.
     const double good = 0.3 + 0.01 * static_cast<double>(accepted);

@@ -172,7 +172,7 @@ TEST(GrappleMotion, DerivativesGrowAsTheyMustBesideTheFold) {
   }
 }
 
-TEST(GrappleMotion, IsStillRegularBesideTheZeroMomentArm) {
+TEST(GrappleMotion, IsStillRegularBesideTheDeadCentre) {
   const auto m = test::grappleOf(test::claimsParameters()).at(-0.26);
   ASSERT_TRUE(m);
   expectClose(m->p, {-1.0858388224, -2.1317411179}, 1e-10, "P");

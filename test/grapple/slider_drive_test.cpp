@@ -46,8 +46,8 @@ TEST(SliderDrive, EqualsTheLawOfCosinesToHundredDigits) {
     // Rounding of |O1G| and of the four lengths' sums moves the flat triangle by some 1e-16: divided by its height.
     const auto reach = drive.reachAround(slider);
     ASSERT_TRUE(reach);
-    const double from_dead_point = std::min(slider - reach->low, reach->high - slider);
-    const double amplification = 1.0 + 1.0 / from_dead_point;
+    const double from_dead_centre = std::min(slider - reach->low, reach->high - slider);
+    const double amplification = 1.0 + 1.0 / from_dead_centre;
     worst_angle = std::max(worst_angle, static_cast<double>(abs(sine)) / amplification);
     worst_first = std::max(worst_first, relative(m->dtheta1, exact.first) / amplification);
     worst_second = std::max(worst_second, relative(m->ddtheta1, exact.second) / amplification);
@@ -57,14 +57,14 @@ TEST(SliderDrive, EqualsTheLawOfCosinesToHundredDigits) {
   EXPECT_LT(worst_second, 1e-13);
 }
 
-TEST(SliderDrive, ReachEndsWhereTheMomentArmIsZero) {
+TEST(SliderDrive, ReachEndsInTheDeadCentres) {
   const SliderDrive drive(test::claimsParameters());
   const auto upper = drive.reachAround(0.3);
   ASSERT_TRUE(upper);
   EXPECT_NEAR(upper->low, -0.27, 1e-15);  // |O1G| = gh - o1h
   EXPECT_NEAR(upper->high, 0.89, 1e-15);  // |O1G| = gh + o1h
   EXPECT_TRUE(drive.at(-0.2699999));
-  // The root of the distance: 1e-12 m from the dead point theta1 is some 1e-6 rad from its value there.
+  // The root of the distance: 1e-12 m from the dead centre theta1 is some 1e-6 rad from its value there.
   EXPECT_NEAR(drive.theta1(-0.27 + 1e-12) * 180.0 / kPi, -147.2958, 2e-4);
   EXPECT_FALSE(drive.at(-0.2701));
   EXPECT_FALSE(drive.at(0.8901));

@@ -124,7 +124,7 @@ TEST_F(GrappleFlowTest, RefusesEachBadSampleCountsItAndStaysOnItsBranch) {
     EXPECT_NEAR(kept_.edges[kRight].back().second.point.x, x, kRounding);
   }
   EXPECT_EQ(last("across fold"),
-            "grapple_slider_joint: 0.88 m, across fold: must lie between the dead point at -0.27 m and the fold at "
+            "grapple_slider_joint: 0.88 m, across fold: must lie between the dead centre at -0.27 m and the fold at "
             "0.7331923934967 m");
   EXPECT_EQ(last("short array"), "");
 }

@@ -59,7 +59,7 @@ inline std::vector<BadSample> badSamples(const ros::Time& last, double position)
           {"across fold", sliderMessage(next, 0.74, 0.1)},
           {"across fold", sliderMessage(next, 0.88, 0.1)},
           {"out of reach", sliderMessage(next, 0.9, 0.1)},
-          {"across dead point", sliderMessage(next, -2.0, 0.1)},
+          {"across dead centre", sliderMessage(next, -2.0, 0.1)},
           {"outside stroke", sliderMessage(next, 0.7, 0.1)}};
 }
 

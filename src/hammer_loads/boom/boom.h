@@ -47,7 +47,7 @@ struct WrenchSpread {
   std::array<Wrench, 4> part;  ///< on the tip, as the load
 };
 
-/// Standard deviations; at a dead centre as SteelLoads.
+/// Standard deviations; at a zero moment arm as SteelLoads.
 struct BoomDeviations {
   JointVector torque;                         ///< standard deviation of BoomLoads::total [N m]
   std::array<double, kMaxJoints> cylinder{};  ///< standard deviation of the cylinder's force [N]
@@ -108,7 +108,7 @@ class Boom {
   /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
   /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. links: of
   /// chainLoads(rigid), found here where they are not given. False: the input is so large that a result is not finite
-  /// and must not be used; a cylinder at its dead centre does not count as that.
+  /// and must not be used; a cylinder with a zero moment arm does not count as that.
   bool loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomLoads& result) const noexcept;
   bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
     return loads(w_tip, rigid, chainLoads(rigid), result);

@@ -15,7 +15,7 @@ namespace hammer_loads {
 /// Neglects: flexibility of links, pins, machine and ground; that the cylinders' pre-load turns with them (0.2 % of a
 /// stiffness of the EO-2621); oil moving between chambers (valves shut).
 struct BoomModes {
-  int count{};                          ///< modes = joints with a cylinder; 0 at a dead centre or without inertia
+  int count{};                          ///< modes = joints with a cylinder; 0 at a zero moment arm or without inertia
   bool zero_moment_arm{};               ///< some cylinder does not hold its joint: there are no modes
   std::array<int, kMaxJoints> joint{};  ///< index in the chain of the joints that vibrate
   JointVector stiffness;                ///< stiffness of these joints' cylinders [N m/rad]

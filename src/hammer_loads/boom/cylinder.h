@@ -54,7 +54,7 @@ struct CylinderPosition {
   Eigen::Vector2d rod_pin{0.0, 0.0}, driven_pin{0.0, 0.0};
 };
 
-/// Load of the cylinder. At a dead centre force and pressure are NaN.
+/// Load of the cylinder. At a zero moment arm force and pressure are NaN.
 struct CylinderForce {
   double force{};     ///< BY the cylinder ON both anchors [N], positive pushes them apart
   double pressure{};  ///< in the chamber that carries it, above the other chamber's, >= 0 [Pa]
@@ -71,7 +71,7 @@ struct OilVolumes {
 class Cylinder {
  public:
   /// Arms below this share of the shortest fixed side (joint to either anchor; of a linkage: joint to the coupler's
-  /// pin, or the guide link) are a dead centre: the force would be 50 times the torque over that side.
+  /// pin, or the guide link) are a zero moment arm: the force would be 50 times the torque over that side.
   static constexpr double kZeroMomentArmRatio = 0.02;
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, a linkage that

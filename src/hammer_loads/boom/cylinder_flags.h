@@ -21,7 +21,7 @@ struct ChamberPressures {
 
 /// The steady load is carried by one chamber, the other is without pressure; what changes quickly is shared by both as
 /// the oil's stiffness is. Negative: the chamber runs empty. Torques of the load on the joint [N m]: steady, as of
-/// weight and slow motion, and total. Not at a dead centre.
+/// weight and slow motion, and total. Not at a zero moment arm.
 ChamberPressures chamberPressures(const Cylinder& cylinder, const CylinderPosition& position, double steady_torque,
                                   double total_torque) noexcept;
 

@@ -23,7 +23,7 @@ struct Supports {
 struct HoldDown {
   double machine{};                           ///< before the machine tips over an edge of its supports or lifts
   int edge{};                                 ///< edge of machine: 0 front, 1 left, 2 rear, 3 right
-  std::array<double, kMaxJoints> cylinder{};  ///< before a relief valve opens or a dead centre lets go, per cylinder
+  std::array<double, kMaxJoints> cylinder{};  ///< before a relief valve opens or at a zero moment arm, per cylinder
   double least{};                             ///< smallest of all factors
   bool holds() const noexcept { return least >= 1.0; }
 };

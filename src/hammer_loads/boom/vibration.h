@@ -19,7 +19,7 @@ struct VibrationSettings {
 
 /// Vibration of the joints about the pose that joint_states report. Between refreshes the modes stay; at a refresh
 /// displacements and velocities of the joints carry over, so that what the boom's own motion does to the energy is kept
-/// to first order. At a dead centre there is no answer (known() is false) and the boom comes to rest.
+/// to first order. At a zero moment arm there is no answer (known() is false) and the boom comes to rest.
 ///
 /// The load must be the part that comes from motion relative to the hull, the links' mass being in the hull's already.
 class Vibration {

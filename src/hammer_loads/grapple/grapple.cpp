@@ -31,7 +31,7 @@ SliderRefusal Grapple::judge(double slider) const noexcept {
   if (inside(slider)) return SliderRefusal::kNone;
   if (!drive_.at(slider)) return SliderRefusal::kOutOfReach;
   const SliderLimit& passed = slider < reference_.slider ? lower_ : upper_;
-  return passed.kind == SliderLimit::Kind::kDeadPoint ? SliderRefusal::kAcrossDeadPoint : SliderRefusal::kAcrossFold;
+  return passed.kind == SliderLimit::Kind::kDeadCentre ? SliderRefusal::kAcrossDeadCentre : SliderRefusal::kAcrossFold;
 }
 
 SliderRefusal Grapple::judgeInStroke(double slider) const noexcept {

@@ -1,7 +1,7 @@
 /// The straight-line grapple: from slider position to every pin and to the jaw edge, on one branch.
 ///
 /// Neglects play, elasticity and masses: geometry only. The same slider position admits several poses; the working
-/// branch is the one through the reference pose, from the fold or dead point below it to the one above. There the pose
+/// branch is the one through the reference pose, from the fold or dead centre below it to the one above. There the pose
 /// is a function of the slider position, and nothing else is ever returned. Derivation and errata: doc/grapple.md.
 #pragma once
 
@@ -21,26 +21,26 @@ namespace hammer_loads {
 /// End of the working branch.
 struct SliderLimit {
   enum class Kind {
-    kDeadPoint,  ///< O1, H and G in line: the slider cannot move rocker 1 further
-    kFold,       ///< det J = 0: the lever group reaches no further
-    kSingular,   ///< branches cross or the pose moves by itself
+    kDeadCentre,  ///< O1, H and G in line: the slider cannot move rocker 1 further
+    kFold,        ///< det J = 0: the lever group reaches no further
+    kSingular,    ///< branches cross or the pose moves by itself
   };
   Kind kind{};
   double slider{};  ///< [m]; of a fold to some 1e-15
 };
 
-/// "dead point", "fold" or "crossing of branches".
+/// "dead centre", "fold" or "crossing of branches".
 const char* nameOf(SliderLimit::Kind kind) noexcept;
 
 /// Reason why there is no pose for a slider position.
 enum class SliderRefusal {
   kNone,
-  kNotFinite,        ///< NaN or infinite
-  kOutOfReach,       ///< the drive does not close: beyond a dead point
-  kAcrossDeadPoint,  ///< the drive closes again, but only on the other side of a dead point
-  kAcrossFold,       ///< beyond the fold that ends the branch, whether or not another branch exists there
-  kOutsideStroke,    ///< a regular pose, but the jaws overlap or open too far
-  kNotFound,         ///< numerical failure; not known to happen
+  kNotFinite,         ///< NaN or infinite
+  kOutOfReach,        ///< the drive does not close: beyond a dead centre
+  kAcrossDeadCentre,  ///< the drive closes again, but only on the other side of a dead centre
+  kAcrossFold,        ///< beyond the fold that ends the branch, whether or not another branch exists there
+  kOutsideStroke,     ///< a regular pose, but the jaws overlap or open too far
+  kNotFound,          ///< numerical failure; not known to happen
 };
 inline constexpr int kSliderRefusalKinds = 7;
 

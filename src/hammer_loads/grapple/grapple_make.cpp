@@ -62,8 +62,8 @@ double apart(double angle, double other) { return std::abs(std::remainder(angle 
 
 const char* nameOf(SliderLimit::Kind kind) noexcept {
   switch (kind) {
-    case SliderLimit::Kind::kDeadPoint:
-      return "dead point";
+    case SliderLimit::Kind::kDeadCentre:
+      return "dead centre";
     case SliderLimit::Kind::kFold:
       return "fold";
     case SliderLimit::Kind::kSingular:
@@ -80,8 +80,8 @@ const char* nameOf(SliderRefusal refusal) noexcept {
       return "not finite";
     case SliderRefusal::kOutOfReach:
       return "out of reach";
-    case SliderRefusal::kAcrossDeadPoint:
-      return "across dead point";
+    case SliderRefusal::kAcrossDeadCentre:
+      return "across dead centre";
     case SliderRefusal::kAcrossFold:
       return "across fold";
     case SliderRefusal::kOutsideStroke:
@@ -154,7 +154,7 @@ void Grapple::findLimits() {
 }
 
 SliderLimit Grapple::limit(const Reach& reach, const std::array<BranchEnd, 2>& ends, int side) const {
-  SliderLimit nearest{SliderLimit::Kind::kDeadPoint, side < 0 ? reach.low : reach.high};
+  SliderLimit nearest{SliderLimit::Kind::kDeadCentre, side < 0 ? reach.low : reach.high};
   for (const BranchEnd& end : ends) {
     if (end.kind == BranchEnd::Kind::kNone) continue;
     const SliderDrive::Candidates candidates = drive_.slidersAt(end.point.theta1);
@@ -207,7 +207,7 @@ std::string Grapple::explain(SliderRefusal refusal, double slider, const std::st
     case SliderRefusal::kNotFinite:
       return given + "be a finite number";
     case SliderRefusal::kOutOfReach:
-    case SliderRefusal::kAcrossDeadPoint:
+    case SliderRefusal::kAcrossDeadCentre:
     case SliderRefusal::kAcrossFold:
       return given + format("lie between the %s at %.13g m and the %s at %.13g m", nameOf(lower_.kind), lower_.slider,
                             nameOf(upper_.kind), upper_.slider);

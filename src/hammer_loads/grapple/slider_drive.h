@@ -16,7 +16,7 @@ struct DriveMotion {
   double ddtheta1{};  ///< d2theta1/ds2 [rad/m2]
 };
 
-/// Slider positions that one assembly of the dyad reaches [m]; at both ends O1, H and G are in line (dead points).
+/// Slider positions that one assembly of the dyad reaches [m]; at both ends O1, H and G are in line (dead centres).
 struct Reach {
   double low{};
   double high{};
@@ -29,10 +29,10 @@ class SliderDrive {
   explicit SliderDrive(const GrappleParameters& parameters);
 
   /// Nothing where the triangle G-H-O1 does not close or is flat. Relative error of o1h some 1e-16; of the derivatives
-  /// as well, also beside the dead points (Heron's product instead of arccos).
+  /// as well, also beside the dead centres (Heron's product instead of arccos).
   std::optional<DriveMotion> at(double slider) const noexcept;
 
-  /// The interval without dead point around a slider position; nothing if the slider is out of reach.
+  /// The interval without dead centre around a slider position; nothing if the slider is out of reach.
   std::optional<Reach> reachAround(double slider) const noexcept;
 
   /// Direction of O1A [rad], continuous within one interval of reach. Precondition: at(slider) has a value.

@@ -32,7 +32,7 @@ struct BoomHealth {
 int modeOfOddDamping(const Boom& boom) noexcept;
 
 /// Nothing where sensors do not show it: before its frequencies are known with their delay, while the hull bounces on
-/// rock as no oil makes it, at a dead centre, with joints that are not known.
+/// rock as no oil makes it, at a zero moment arm, with joints that are not known.
 std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept;
 
 }  // namespace hammer_loads

@@ -75,7 +75,7 @@ void LoadDisplay::onReactions(const JointReactions& loads) {
   for (const JointReaction& joint : loads.joint) show("joint/" + joint.name, loads.header.stamp, joint.load);
 }
 
-/// At a dead centre a load is not a number: no arrow.
+/// At a zero moment arm a load is not a number: no arrow.
 void LoadDisplay::show(const std::string& frame, const ros::Time& stamp, const geometry_msgs::Wrench& load) {
   const auto found = shown_.find(frame);
   if (found == shown_.end() || !std::isfinite(sizeOf(load.force)) || !std::isfinite(sizeOf(load.torque))) return;

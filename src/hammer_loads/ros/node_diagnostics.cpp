@@ -227,7 +227,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
   } else if (state.fault && state.fault->kind == JointFault::Kind::kRunAway) {
     status.summary(DiagnosticStatus::WARN, "no joint loads: the vibration ran away and began anew");
   } else if (state.zero_moment_arm) {
-    status.summary(DiagnosticStatus::WARN, "a cylinder is at its dead centre: taken as rigid");
+    status.summary(DiagnosticStatus::WARN, "a cylinder has a zero moment arm: the boom is taken as rigid");
   } else {
     status.summary(DiagnosticStatus::OK, state.choice.compliant ? "compliant" : "rigid");
   }
