@@ -1,4 +1,4 @@
-"""Which bags there are: from a list (CSV or YAML) or a folder."""
+"""List of the bags, from a file (CSV or YAML) or a folder."""
 import csv
 import hashlib
 import os
@@ -23,7 +23,7 @@ def file_name(machine, bag, parameters):
 
 
 def page_name(machine):
-    """Of the machine's page; another one for another machine."""
+    """File name of the machine's page, unique for each machine."""
     readable = re.sub(r"[^A-Za-z0-9._-]", "_", machine)
     if readable == machine and machine not in ("all", ".", ".."):
         return machine
@@ -62,7 +62,7 @@ def from_rows(rows, path):
 
 
 def why_no_entry(row):
-    """What is wrong with an entry of a list, or nothing."""
+    """Fault of a list's entry, or nothing."""
     if not isinstance(row, dict) or not row.get("machine") or not row.get("bag"):
         return "machine and bag must be given"
     parameters = row.get("parameters") or []

@@ -70,7 +70,7 @@ class Loader:
         return True
 
     def _look_for_twin(self, outcome, keys):
-        """The same recording under another name counts once."""
+        """Refuses a recording that is loaded under another name: it counts once."""
         for key in keys:
             other = self.store.row("SELECT bags.machine, bag FROM bags JOIN runs USING(bag_id) WHERE run_key = ?", key)
             if other is not None and tuple(other) != (outcome["machine"], outcome["bag"]):
@@ -86,7 +86,7 @@ class Loader:
             "SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])]
 
     def _remove(self, outcome):
-        """What the bag gave before it or its parameters changed."""
+        """Removes the rows of the bag from before it or its parameters changed."""
         found = self.store.row("SELECT bag_id FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
         if found is None:
             return
@@ -142,7 +142,7 @@ class Loader:
                               "SELECT key, value, shipped FROM parameters WHERE run_id = ?", run["run_id"])])
 
     def _columns_of(self, table):
-        """As SQLite spells them; PostgreSQL has all in lower case."""
+        """Columns in the spelling of SQLite; PostgreSQL has all in lower case."""
         if table not in self._columns:
             self._columns[table] = {name.lower() for name in self.store.columns(table)}
         return self._columns[table]
@@ -171,7 +171,7 @@ class Loader:
 
 
 def figures(source, own, run_id):
-    """Of each quantity over all turns: count, least, mean, greatest, total."""
+    """Figures of each quantity over all revolutions: count, least, mean, greatest, total."""
     for table in ("turns", "blows"):
         quantities = [q for q in QUANTITIES if q.table == table]
         values = [value_of(q) for q in quantities]

@@ -41,7 +41,7 @@ def channel_of(store, machine, row):
 
 
 def write_sums(store, machine):
-    """Anew for one machine."""
+    """Recomputes the sums of one machine."""
     for table in ("machine_equivalents", "machine_cycles", "machine_residues"):
         store.execute(f"DELETE FROM {table} WHERE machine_channel IN "
                       "(SELECT machine_channel FROM machine_channels WHERE machine = ?)", machine)

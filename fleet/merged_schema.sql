@@ -45,10 +45,10 @@ CREATE TABLE run_figures(
   run_id INTEGER NOT NULL,    -- [-] number of the run
   quantity TEXT NOT NULL,     -- [-] blow_rate [Hz], or a column of turns or blows
   count BIGINT NOT NULL,      -- [-] number of turns with a value
-  least DOUBLE PRECISION,     -- [quantity] least value of a turn
-  mean DOUBLE PRECISION,      -- [quantity] mean over the turns
-  greatest DOUBLE PRECISION,  -- [quantity] greatest value of a turn
-  total DOUBLE PRECISION,     -- [quantity] sum over the turns
+  least DOUBLE PRECISION,     -- [quantity] least value of a revolution
+  mean DOUBLE PRECISION,      -- [quantity] mean over the revolutions
+  greatest DOUBLE PRECISION,  -- [quantity] greatest value of a revolution
+  total DOUBLE PRECISION,     -- [quantity] sum over the revolutions
   PRIMARY KEY(run_id, quantity));
 
 CREATE TABLE run_cylinders(
@@ -57,7 +57,7 @@ CREATE TABLE run_cylinders(
   turns BIGINT NOT NULL,                 -- [-] number of turns
   stiffness_ratio DOUBLE PRECISION,      -- [-] mean stiffness of its oil over that of the boom file
   stiffness_ratio_std DOUBLE PRECISION,  -- [-] mean standard deviation
-  doubtful DOUBLE PRECISION,             -- [-] share of the turns whose damping is not that of oil
+  doubtful DOUBLE PRECISION,             -- [-] share of the revolutions whose damping is not that of oil
   PRIMARY KEY(run_id, cylinder));
 
 CREATE TABLE channels(
@@ -79,7 +79,7 @@ CREATE TABLE stale_machines(
   machine TEXT PRIMARY KEY  -- [-] name of the machine
 );
 
--- Sums of a machine over all its runs: written anew for each machine that got a bag. Another hammer, boom or grid
+-- Sums of a machine over all its runs: written again for each machine that got a bag. Another hammer, boom or grid
 -- (identity, least, greatest, classes) is another row. remaining_hours NULL: no end in sight, or no S-N curve.
 CREATE TABLE machine_channels(
   machine_channel INTEGER PRIMARY KEY, machine TEXT NOT NULL, identity TEXT NOT NULL, name TEXT NOT NULL, unit TEXT,

@@ -1,4 +1,4 @@
-"""Where the package's programs are, beside the source's build or installed, and its Python modules."""
+"""Locations of the package's programs, in the source's build or installed, and of its Python modules."""
 import os
 import pathlib
 import sys

@@ -26,7 +26,7 @@ def sha256(paths):
 
 
 def reason_of(done):
-    """First line that the program says; its end where it says nothing."""
+    """First line of the program's output; its exit code where there is none."""
     if done.returncode < 0:
         return f"process_bag ended by signal {-done.returncode}"
     lines = [line for line in done.stderr.splitlines() if line and not line.startswith("note: ")]

@@ -22,7 +22,7 @@ def processor():
 
 
 def draw_blow(blow, path):
-    """Force z around a blow: the truth and what the levels say, with bands of two deviations."""
+    """Force z around a blow: the truth and the levels' results, with bands of two deviations."""
     figure, axes = plt.subplots(figsize=(9.5, 5.0), dpi=110)
     most = 0.0
     for level, color, marker in (("linkage", "#d1602b", "s"), ("elastic", "#1f5fa8", "o")):
@@ -47,7 +47,7 @@ def draw_blow(blow, path):
 def recorded_table(recorded):
     shipped = [line for line in recorded.strip().splitlines() if " 0 % |" in line]
     lines = ["Recorded sessions with clean sensors (`test/data`), as shipped, from 3 s after the start to 3 s before",
-             "the end; root-mean-square errors are of the peak of each quantity, all others the worst of all turns:",
+             "the end; root-mean-square errors are of the peak of each quantity, all others the worst of all revolutions:",
              "", f"| session | drive inertia wrong by | {SESSION_HEAD}", "|---" * 9 + "|"] + shipped
     return "\n".join(lines) + "\n"
 
@@ -77,7 +77,7 @@ LIFE = [("oil as in the file", "none", "oil as in the boom file, no sensor on th
 
 
 def life_excerpt(boom):
-    """What fatigue is judged by."""
+    """Rows by which fatigue is judged."""
     rows = {(row["machine"], row["sensors"]): row for row in boom}
     lines = ["| machine | force on the hull | joint torque | bending |", "|---|---|---|---|"]
     lines += ["| " + text + " | " + " | ".join(f"{100 * rows[machine, sensors][key]['error']:+.1f} %"
@@ -92,7 +92,7 @@ BUDGETED = [("blow/energy", "energy of a blow", 1.0, "J"),
 
 
 def budget_excerpt(machine):
-    """Where the uncertainty of a recording's figures comes from."""
+    """Uncertainty budget of a recording's figures."""
     figures = {figure["quantity"]: figure for figure in machine["figures"]}
     lines = ["| result | value | standard deviation | standard deviation with the largest source halved | largest parts of the variance |", "|---|---|---|---|---|"]
     for quantity, text, factor, unit in BUDGETED:

@@ -30,7 +30,7 @@ Constant = collections.namedtuple("Constant", "path line name value type")
 
 
 def without_comments(text):
-    """The same length: positions stay."""
+    """Text without comments, of equal length, so that positions stay."""
     return re.sub(r"//[^\n]*|/\*.*?\*/", lambda found: re.sub(r"[^\n]", " ", found.group()), text, flags=re.S)
 
 

@@ -45,7 +45,7 @@ class Log:
 
 
 class Truth:
-    """What simulate_hammer wrote below its truth_prefix, times as in Log."""
+    """Truth that simulate_hammer wrote below its truth_prefix, times as in Log."""
 
     def __init__(self, prefix):
         samples, blows = ([line.split(",") for line in pathlib.Path("%s_%s.csv" % (prefix, kind)).read_text().split()[1:]]

@@ -1,4 +1,4 @@
--- Misuse by machine: strokes that found no tool, blows without press force and seconds beyond 15 s at one place, per hour.
+-- Misuse by machine: blank firing, blows without hold-down force and seconds beyond 15 s at one place, per hour.
 SELECT b.machine, count(*) AS runs, sum(r.duration) / 3600 AS hours,
   3600.0 * sum(r.blank_firings) / sum(r.duration) AS blank_firings_per_hour,
   3600.0 * sum(r.blows_without_hold_down) / sum(CASE WHEN r.blows_without_hold_down IS NULL THEN 0 ELSE r.duration END)

@@ -15,7 +15,7 @@ class Press : public testing::Test {
  protected:
   Press() : boom_(test::shippedBoom()) { pose(test::workingPosition()); }
   void pose(const JointVector& q) { boom_.move({q, kZero, kZero}, kLevel); }
-  /// Mean press force along +z of the hull at the striking line.
+  /// Mean hold-down force along +z of the hull at the striking line.
   static Wrench press(double force) {
     constexpr double kStrikingLine = -0.1975;
     return {Eigen::Vector3d(0.0, 0.0, force), Eigen::Vector3d(0.0, -kStrikingLine * force, 0.0)};
@@ -31,7 +31,7 @@ TEST_F(Press, TheShippedMachineHoldsTheMeanForceOfFiveBlowsASecond) {
 }
 
 TEST_F(Press, MachineTipsByHand) {
-  // Straight ahead, hull vertical: the press force lifts the machine about its far edge.
+  // Straight ahead, hull vertical: the hold-down force lifts the machine about its far edge.
   pose(test::joints({0.0, -0.35, 1.20, -0.85}));
   const HoldDown hold = boom_.holdDown(press(1000.0));
   const PointMass all = massFrom(boom_.chain(), boom_.pose(), 0);

@@ -93,7 +93,7 @@ TEST_F(CalibrateBoom, StatesTheWeightOfAKnownMass) {
   const Outcome outcome = calibrate(path("free.bag") + kBoomFiles + " --weight 500 --at -0.2 -0.9 --weighed " +
                                     path("loaded.bag") + " --write " + path("boom.yaml"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const std::string says = "a boom weighed without it says that ";
+  const std::string says = "a boom weighed without it gives ";
   const std::size_t at = outcome.out.find(says);
   ASSERT_NE(at, std::string::npos) << outcome.out;
   EXPECT_NEAR(std::stod(outcome.out.substr(at + says.size())), 500.0, 10.0);

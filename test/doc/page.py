@@ -45,7 +45,7 @@ def parts_of(page):
 
 
 def agrees(shown, said):
-    """Whether a line of the page is in a line that a command said: words as they are, `...` for anything, numbers to one
+    """Returns True if a line of the page is in a line of a command's output: words as they are, `...` for anything, numbers to one
     of the last digit shown."""
     shown, said = " ".join(shown.split()), " ".join(said.split())
     pattern = re.escape(NUMBER.sub("\0", shown)).replace(re.escape("\0"), "\0").replace(re.escape("..."), ".*")

@@ -163,7 +163,7 @@ class Stranger:
 
 
 def values(bags, topic, *fields):
-    """Of a directory: stamps since the machine's start, and a column for each field."""
+    """Values of a directory: stamps since the machine's start, and a column for each field."""
     rows = []
     for bag in sorted(bags.iterdir()):
         for _, message, _ in rosbag.Bag(str(bag)).read_messages("/loader2/hammer_loads/" + topic):

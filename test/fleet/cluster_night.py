@@ -114,7 +114,7 @@ class Cluster(unittest.TestCase):
         self.check_postgres(out)
 
     def check_postgres(self, out):
-        """The same loader, two of them at once, half of the bags each: the same figures as the file."""
+        """Two loaders at once, half of the bags each, give the figures of the file."""
         outcomes = sorted(str(path) for path in (out / "bags").glob("*.json"))
         halves = [subprocess.Popen([sys.executable, str(FLEET / "merge.py"), self.postgres.url], stdin=subprocess.PIPE,
                                    stdout=subprocess.PIPE, universal_newlines=True) for _ in range(2)]

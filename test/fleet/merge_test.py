@@ -121,7 +121,7 @@ class Merge(MergeTest):
         self.assertTrue(os.path.getsize(page))
 
     def test_a_page_of_the_merged_file_has_the_same_figures(self):
-        """Of one bag: as the bag's own."""
+        """The page of one bag has the figures of the bag's own page."""
         self.merge(self.add("a"))
         own = subjects_of(Database(self.directory / "bags" / "a.sqlite"))[0].counted_channels()
         merged = subjects_of(Database(self.directory / "merged.sqlite"))[0].counted_channels()

@@ -8,7 +8,7 @@ from fleet_support import FleetTest
 
 
 def snakemake_version():
-    """Of Snakemake; 0 without it."""
+    """Version of Snakemake; 0 without it."""
     done = subprocess.run([sys.executable, "-m", "snakemake", "--version"], stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, universal_newlines=True)
     return int(done.stdout.split(".")[0]) if done.returncode == 0 else 0

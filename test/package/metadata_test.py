@@ -1,4 +1,4 @@
-"""What package indexes, archives and citation tools read: package.xml, CHANGELOG.rst, CITATION.cff, debian/."""
+"""Files that package indexes, archives and citation tools read: package.xml, CHANGELOG.rst, CITATION.cff, debian/."""
 import datetime
 import re
 

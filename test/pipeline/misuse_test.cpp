@@ -39,7 +39,7 @@ TEST(Misuse, CountsTheBlankFiringsOfTheMachine) {
   EXPECT_NEAR(of_good.work_time, 20.0, 1.0);
 }
 
-/// Without boom and pressures nothing is known of the press force and the place: not zero.
+/// Without boom and pressures nothing is known of the hold-down force and the place: not zero.
 TEST(Misuse, TakesAnUnmeasuredCountAsNotKnown) {
   const Counts alone = misuseOf(atWork(0.0), test::settingsWith("level: rocker\n", false), false);
   EXPECT_FALSE(alone.withoutHoldDown());

@@ -23,7 +23,7 @@ simulation::MachineSettings drawnOnRock(unsigned seed) {
 
 /// Links that bend, worn pins, seals, air and a leak move the mean of what pressures show. Rock does not pull: where it
 /// seems to, that is the pressures'. Without that three of these had 91 to 94 % of the force wrong, and the flag of a
-/// press force that is lost was right in 21 to 26 % of the samples.
+/// hold-down force that is lost was right in 21 to 26 % of the samples.
 TEST(RocksForce, IsNoneBetweenLandings) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     simulation::MachineSettings m = drawnOnRock(seed);

@@ -55,7 +55,7 @@ class Independent:
         return newton_euler.loads(self.p, np.atleast_1d(angle), w, e, massless=True)[name][0]
 
     def momentum(self, angle):
-        """Of the rocker along x and z [N s]."""
+        """Momentum of the rocker along x and z [N s]."""
         u, _, w, _ = self.motion(angle)
         linkage = newton_euler.Linkage(self.p, np.atleast_1d(angle), 1.0, 0.0)
         psi = np.angle(linkage.c - linkage.d)
@@ -130,7 +130,7 @@ class Printed(unittest.TestCase):
 
 @unittest.skipUnless("HAMMER_LOADS_PROGRAMS" in os.environ, "no process_bag and grapple_table: built without ROS")
 class Documents(unittest.TestCase):
-    """What a user's run of the example writes is what the documents show."""
+    """A user's run of the example writes the values that the documents show."""
 
     @classmethod
     def setUpClass(cls):

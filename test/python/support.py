@@ -1,4 +1,4 @@
-"""What the tests of the module share."""
+"""Helpers of the module's tests."""
 import os
 import pathlib
 import sys

@@ -23,7 +23,7 @@ class Bags(ReportTest):
         parameters.write_text("a: 1\n")
         page = self.page_of(self.bag, options=["--params", parameters])
         self.assertIn("work", [title for title in page.text.split("\n") if title])
-        self.assertIn("Over all turns", page.tables)
+        self.assertIn("Over all revolutions", page.tables)
         self.assertEqual(sorted(os.listdir(self.directory)), ["hammer.yaml", "page.html", "programs", "work.bag"])
 
     def test_two_bags_are_compared(self):

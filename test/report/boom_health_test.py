@@ -35,7 +35,7 @@ class BoomHealth(ReportTest):
 
     def test_a_value_damped_by_something_else_is_no_trend(self):
         rows = self.rows(2, arm_cylinder=(0.9, -0.3, 1))
-        self.assertEqual(rows["arm_cylinder"]["Verdict"], "doubtful: something else than oil damps the boom")
+        self.assertEqual(rows["arm_cylinder"]["Verdict"], "uncertain: something else than oil damps the boom")
 
     def test_one_run_has_nothing_to_compare(self):
         rows = self.rows(1, arm_cylinder=(0.9, 0.0, 0))

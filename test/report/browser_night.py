@@ -56,7 +56,7 @@ class Browser(ReportTest):
         return out
 
     def seen(self, page, width):
-        """What the probe says, at a window of this width; the picture beside."""
+        """Result of the probe at a window of this width, and the picture."""
         probed = page.with_name(page.stem + "_probed.html")
         probed.write_text(page.read_text(encoding="utf-8").replace("</body>", PROBE + "</body>"), encoding="utf-8")
         frame = page.with_name("frame.html")

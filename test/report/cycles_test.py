@@ -171,7 +171,7 @@ class Ledger(ReportTest):
         other = self.directory / "rec.sqlite"
         sample.make(other, seconds=20.0, boom=False)
         page = self.page_of(other, self.file)
-        self.assertIn("Over all turns", page.tables)
+        self.assertIn("Over all revolutions", page.tables)
         self.assertEqual(len(page.tables["Damage-equivalent loads"]), 2)
 
     def test_an_empty_ledger_has_no_epoch(self):

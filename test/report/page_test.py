@@ -1,4 +1,4 @@
-"""What a page shows, read as a browser without JavaScript reads it, against the database asked by other ways."""
+"""Content of a page, read as a browser without JavaScript reads it, against independent queries of the database."""
 import sqlite3
 import statistics
 import unittest
@@ -28,7 +28,7 @@ class Page(ReportTest):
         self.assertEqual(places, sorted(places))
 
     def test_statistics_are_those_of_all_turns(self):
-        rows = self.page_of(self.file).table("Over all turns")
+        rows = self.page_of(self.file).table("Over all revolutions")
         peaks = [row[0] / 1000 for row in self.ask("SELECT amplitude FROM turns")]
         shown = rows["Peak force along the tool [kN]"]
         self.assertAlmostEqual(number(shown["Median"]), statistics.median(peaks), delta=1e-3 * max(peaks))
@@ -66,27 +66,27 @@ class Page(ReportTest):
 
     def test_loads_of_joints_and_sections_are_shown(self):
         page = self.page_of(self.file)
-        rows = page.table("Loads over all turns")
+        rows = page.table("Loads over all revolutions")
         least, mean, greatest = self.ask(
             "SELECT min(t.minimum), avg(mean), max(t.maximum) FROM turn_loads t JOIN channels USING(run_id, channel) "
             "WHERE name = 'section_loads/boom_foot/torque_y'")[0]
         shown = rows["section boom_foot, torque y"]
-        for name, value in (("Least", least), ("Mean of turns", mean), ("Greatest", greatest)):
+        for name, value in (("Least", least), ("Mean of revolutions", mean), ("Greatest", greatest)):
             self.assertAlmostEqual(number(shown[name]), value / 1000, delta=1e-3 * abs(greatest) / 1000)
         for kind, count in self.ask("SELECT rtrim(name, replace(name, '/', '')), count(*) FROM channels GROUP BY 1"):
             self.assertEqual(sum(len(p.classes("line")) for p in page.pictures if p.title == kind.rstrip("/")), count, kind)
 
     def test_turns_are_shown_with_half_sine_and_band(self):
         page = self.page_of(self.file)
-        for kind in ("Typical turn", "Worst turn"):
+        for kind in ("Typical revolution", "Worst revolution"):
             self.assertIn(kind + ", number", page.text)
             for drawn in ("line first", "line second", "line third", "band first"):
                 self.assertEqual(len(page.drawn(kind).curves(drawn)), 1, drawn)
 
     def test_the_typical_turn_is_the_first_picture(self):
-        """Its curve is that of the table."""
+        """The curve is that of the table."""
         picture = self.page_of(self.file).pictures[0]
-        self.assertTrue(picture.title.startswith("Typical turn"), picture.title)
+        self.assertTrue(picture.title.startswith("Typical revolution"), picture.title)
         forces = [force / 1000 for force, in self.ask("SELECT force_z FROM traces WHERE kind = 'typical' AND run_id = 1")]
         curve, = picture.curves("line first")
         self.assertAlmostEqual(max(y for _, y in curve), max(forces), delta=2e-3 * max(forces))
@@ -192,8 +192,8 @@ class LittleData(ReportTest):
     def test_a_file_without_a_revolution_is_reported(self):
         file = self.directory / "idle.sqlite"
         sample.make(file, seconds=0.0, boom=False)
-        page = self.page_of(file, note="idle: no whole turn")
-        self.assertIn("no whole turn", page.text)
+        page = self.page_of(file, note="idle: no whole revolution")
+        self.assertIn("no whole revolution", page.text)
         self.assertIn("The crank's sensor", page.tables)
 
     def test_a_file_without_a_run_is_reported(self):
@@ -219,7 +219,7 @@ class LittleData(ReportTest):
             db.execute(f"UPDATE {table} SET " + ", ".join(f"{n} = NULL" for n in names if n not in kept))
         db.commit()
         db.close()
-        self.assertIn("Load cycles", self.page_of(file, note="null: no whole turn").text)
+        self.assertIn("Load cycles", self.page_of(file, note="null: no whole revolution").text)
 
 
 class Hostile(ReportTest):

@@ -19,9 +19,9 @@ class Recorded(ReportTest):
         page = Reader(out.read_text(encoding="utf-8"))
         with open(DATA / "mo100_1khz_blows.csv", newline="") as file:
             energies = [float(row["blow_energy_J"]) for row in csv.DictReader(file)]
-        shown = float(page.table("Over all turns")["Blow energy [J]"]["Median"])
+        shown = float(page.table("Over all revolutions")["Blow energy [J]"]["Median"])
         self.assertAlmostEqual(shown, statistics.median(energies), delta=0.02 * max(energies))
-        for kind in ("Typical turn, number", "Worst turn, number"):
+        for kind in ("Typical revolution, number", "Worst revolution, number"):
             self.assertIn(kind, page.text)
         self.assertIn("force along the tool, Fz", page.table("Damage-equivalent loads"))
 

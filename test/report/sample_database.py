@@ -123,7 +123,7 @@ def sha(text):
 
 
 class Machine:
-    """What differs between two machines of a fleet."""
+    """Properties that differ between two machines of a fleet."""
 
     def __init__(self, name="mo100", peak_N=40600.0, rate_Hz=5.0, noise=0.04, consistency=0.9, jitter_s=2e-5,
                  stiff=1.0, curve=True, parameters=None, misuse=(0, 0, None, None), oil=None):
@@ -208,7 +208,7 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
 
 
 def write_oil(db, run_id, machine, turns, rng):
-    """As a boom that is watched gives it: every turn a value near the last one, and its modes."""
+    """Writes the rows of a watched boom: every revolution a value near the last one, and its modes."""
     for name, (stiffness, change, doubtful) in machine.oil.items():
         db.executemany("INSERT INTO boom_cylinders VALUES(?,?,?,?,?,?,?)",
                        [(run_id, turn, name, -0.5, stiffness + change * (run_id - 1) + rng.gauss(0.0, 0.002), 0.01, doubtful)

@@ -97,7 +97,7 @@ class Drawn:
         return self._scaled(self.y, max(frame)), self._scaled(self.y, min(frame))
 
     def classes(self, kind):
-        """Of what is drawn of this kind, each once."""
+        """Classes of everything drawn of this kind, each once."""
         classes = [group.get("class") or "" for group in elements(self.tree, "g")]
         return list(dict.fromkeys(c for c in classes if c.startswith(kind)))
 

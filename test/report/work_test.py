@@ -34,7 +34,7 @@ class Work(ReportTest):
         return [text for name, text in page.pieces if name == tag]
 
     def test_nothing_is_drawn_where_there_was_no_work(self):
-        """Of two runs, one with a pause: no line from a blow before a pause to the one after it."""
+        """Two runs, one with a pause, have no line from a blow before the pause to the one after it."""
         sample.make(self.file, seconds=100.0, runs=2)
         self.ask(*(f"DELETE FROM {t} WHERE run_id = 1 AND turn BETWEEN 200 AND 260" for t in ("turns", "blows", "turn_loads")))
         page = self.page_of(self.file)
@@ -57,7 +57,7 @@ class Work(ReportTest):
         self.assertAlmostEqual(number(figures["energy of all blows"]), energy / 1e3, delta=1e-3 * energy / 1e3)
 
     def page_after(self, name, *sql):
-        """Of a file of its own: what was read is not written again."""
+        """Page of a new file: a file that was read is not written again."""
         self.file = self.directory / name
         sample.make(self.file, seconds=20.0)
         self.ask("SELECT 1", *sql)
@@ -139,7 +139,7 @@ class Work(ReportTest):
         self.ask(*IMPOSSIBLE)
         page = self.page_of(self.file)
         self.assertGreater(min(y for piece in page.drawn("Blow energy:").curves("band first") for _, y in piece), 0.0)
-        rows = page.table("Over all turns")
+        rows = page.table("Over all revolutions")
         good = self.ask("SELECT count(*), min(energy), sum(energy) FROM blows WHERE energy > 0")[0]
         self.assertEqual(number(rows["Blow energy [J]"]["Values"]), good[0])
         self.assertAlmostEqual(number(rows["Blow energy [J]"]["Least"]), good[1], delta=1e-3 * good[1])
@@ -173,7 +173,7 @@ class Work(ReportTest):
         self.assertEqual([row[at].endswith("?") for row in rows], [False, True, False])
 
     def test_local_time_is_the_readers(self):
-        """Its script writes it: the page's bytes hold UTC alone, wherever it is made."""
+        """The page's script writes it: the page's bytes hold UTC alone, wherever it is made."""
         pages = []
         for zone in ("UTC", "Asia/Bishkek"):
             out = self.directory / (zone[:4].strip("/") + ".html")
@@ -207,7 +207,7 @@ class Costs(ReportTest):
         page = self.page_of(self.file)
         said = page.text.split("; 3 % of the blows did ")[1].split(" %")[0]
         self.assertAlmostEqual(float(said), share, delta=0.1)
-        dearest = page.table("Dearest turns")
+        dearest = page.table("Most damaging revolutions")
         self.assertEqual({int(row["Turn"]) <= 30 for row in dearest.values()}, {True})
 
     def test_damage_is_shown_by_hour(self):
@@ -242,7 +242,7 @@ class Costs(ReportTest):
         self.assertIn(f"slope 10: {2 ** -0.1:.3f} of the load", self.page_of(self.file, options=["--force"]).text)
 
     def test_life_follows_a_curve_of_two_slopes(self):
-        """Where cycles fall below the knee the life grows faster than by the steep slope, slower than by the other."""
+        """The life grows, where cycles fall below the knee, faster than by the steep slope, slower than by the other."""
         file = self.directory / "curve.sqlite"
         sample.make(file, seconds=100.0)
         db = sqlite3.connect(str(file))
@@ -271,9 +271,9 @@ class Misuse(ReportTest):
         rows = self.page_of(file).table("Misuse")
         self.assertEqual(number(rows["Blank firing"]["Count"]), 12)
         self.assertAlmostEqual(number(rows["Blank firing"]["Per hour"]), 12 / sum(hours), delta=0.5)
-        self.assertEqual(number(rows["Blows without press force"]["Count"]), 20)
-        self.assertAlmostEqual(number(rows["Blows without press force"]["Per hour"]), 20 / hours[0], delta=1.0)
-        self.assertIn("of 500 blows", rows["Blows without press force"]["Meaning"])
+        self.assertEqual(number(rows["Blows without hold-down force"]["Count"]), 20)
+        self.assertAlmostEqual(number(rows["Blows without hold-down force"]["Per hour"]), 20 / hours[0], delta=1.0)
+        self.assertIn("of 500 blows", rows["Blows without hold-down force"]["Meaning"])
         self.assertAlmostEqual(number(rows["Hammering at one place [s]"]["Count"]), 12.5)
 
     def test_unmeasured_values_are_not_zero(self):
@@ -281,7 +281,7 @@ class Misuse(ReportTest):
         sample.make(file, sample.Machine(misuse=(0, 0, None, None)), seconds=50.0)
         rows = self.page_of(file).table("Misuse")
         self.assertEqual(rows["Blank firing"]["Count"], "0")
-        self.assertEqual(rows["Blows without press force"]["Count"], "not known")
+        self.assertEqual(rows["Blows without hold-down force"]["Count"], "not known")
         self.assertEqual(rows["Hammering at one place [s]"]["Count"], "not known")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What rviz draws of the boom's loads, and that the node uses every sensor of the simulated machine."""
+"""Boom loads that rviz draws; checks also that the node uses every sensor of the simulated machine."""
 import sys
 import unittest
 

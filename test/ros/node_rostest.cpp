@@ -164,7 +164,7 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   EXPECT_NEAR(blows_.back().energy, session.blows.back().strike.energy, 0.02 * blows_.back().energy);
   EXPECT_GT(blows_.back().mean_hold_down_force, 500.0);
   EXPECT_TRUE(eventually([&] { return diagnostic("blank firing, per hour", "misuse") == "0"; }));
-  EXPECT_EQ(diagnostic("blows without press force on the rock", "misuse"), "not known: needs cylinder pressures");
+  EXPECT_EQ(diagnostic("blows without hold-down force on the rock", "misuse"), "not known: needs cylinder pressures");
 }
 
 TEST_F(NodeTest, RefusesEachBadSampleCountsItAndTakesTheNextGoodOne) {

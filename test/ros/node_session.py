@@ -17,7 +17,7 @@ WITHHELD = 50  # samples, more than are withheld anywhere after a start or a dro
 
 
 def recorded(begin, end):
-    """What was recorded between two instants [s] of the 1 kHz session: (is_crank, message) in order of arrival."""
+    """Messages recorded between two instants [s] of the 1 kHz session: (is_crank, message) in order of arrival."""
     limits = {'start_time': rospy.Time.from_sec(START + begin), 'end_time': rospy.Time.from_sec(START + end)}
     with rosbag.Bag(os.path.join(DATA, 'mo100_1khz.bag')) as bag:
         return [(topic == '/hammer/crank', message) for topic, message, _ in bag.read_messages(**limits)]
@@ -51,7 +51,7 @@ class NodeSession:
                           self.subscriber.get_num_connections() > 0)
 
     def connections(self):
-        """Of each topic; a node that starts again has others."""
+        """Connections of each topic; a node that starts again has others."""
         return [set(topic.impl.connections) for topic in (self.crank, self.joints, self.subscriber)]
 
     def stamps(self):
@@ -84,7 +84,7 @@ def active_bags(directory):
 
 
 def closed_bags(directory, count):
-    """So many, none being written any more; whatever there is at the deadline."""
+    """Closed bags, once there are this many and none is being written; else those at the deadline."""
     eventually(lambda: len(bags(directory)) == count and not active_bags(directory))
     return bags(directory)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What may change while the node runs, and what may not."""
+"""Parameters that may change while the node runs, and those that may not."""
 import math
 import shutil
 import sys
@@ -56,7 +56,7 @@ class ReconfigureTest(unittest.TestCase):
         assert eventually(lambda: not active_bags(cls.directory))
 
     def change(self, **changes):
-        """What the node answers."""
+        """Answer of the node."""
         return values(rospy.ServiceProxy('/hammer_loads/set_parameters', Reconfigure)(request(**changes)).config)
 
     def in_force(self, **changes):

@@ -44,14 +44,14 @@ class RestartTest(unittest.TestCase):
             self.assertEqual([name for name in names if not name.startswith(ns + '/hammer_loads/')], [])
 
     def kill(self):
-        """What tells when the next life is there, however long roslaunch takes for it."""
+        """Kills the node. Returns a function that reports whether the next one runs, however long roslaunch takes."""
         before = self.a.connections()
         uri = rosgraph.Master('/test').lookupNode('/a/hammer_loads')
         os.kill(ServerProxy(uri).getPid('/test')[2], signal.SIGKILL)
         return lambda: all(now - old for now, old in zip(self.a.connections(), before))
 
     def work(self, inputs, enough):
-        """Both machines at work at about their pace until it is enough. What was sent."""
+        """Runs both machines at about their pace until it is enough. Returns the messages sent."""
         sent = []
         while not enough(sent):
             piece = inputs[len(sent):len(sent) + SLICE]
@@ -119,7 +119,7 @@ class RestartTest(unittest.TestCase):
         self.assertTrue(outputs(path) == outputs(process_again(path, self.a)))
 
     def test_3_an_unwritable_log_directory_costs_the_log_alone(self):
-        """It costs the log, not the node, and the console says so."""
+        """The console reports it."""
         node = NodeProcess('unwritable', {'log_directory': '/proc', 'log_min_free_mb': 0})
         self.assertTrue(eventually(lambda: '/unwritable/hull_wrench' in dict(rosgraph.Master('/t').getTopicTypes())))
         code, _, err = node.end()

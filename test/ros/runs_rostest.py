@@ -161,7 +161,7 @@ class RunsTest(unittest.TestCase):
         self.assertGreater(wrenches, 0.97 * crank)
 
     def test_a_run_begins_without_memory_of_the_one_before(self):
-        """The same samples are taken, once at the start of the node and once after time ran back."""
+        """Equal samples are taken, once at the start of the node and once after time ran back."""
         def beginning(path):
             return [m for m in messages(path, '/hammer_loads/hull_wrench') if m.header.stamp.to_sec() < START + 3.4]
         first, again = beginning(self.files[FIRST]), beginning(self.files[REWOUND])

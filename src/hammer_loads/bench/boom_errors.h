@@ -22,7 +22,7 @@ struct BoomErrors {
   double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]
   double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
   std::size_t sections_within{};          ///< bending moments within two deviations
-  std::size_t lost_as_shown{};            ///< the flag of a press force that is lost is right
+  std::size_t lost_as_shown{};            ///< the flag of a hold-down force that is lost is right
   bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_pressure_fit{}, warned_of_imu_stamps{},
       warned_of_damping{};
   std::size_t unknown{};  ///< the rock's force is said not to be known

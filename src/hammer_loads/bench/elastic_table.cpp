@@ -147,8 +147,8 @@ std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer, std::uint6
   return {{"elastic damped: 1e9 N/m, 0.6", rod(1e9, 0.6, 0.0)},
           {"elastic average: 1e9 N/m, 0.2", rod(1e9, 0.2, 0.0)},
           {"elastic dead: 1e9 N/m, 3", rod(1e9, 3.0, 0.0)},
-          {"elastic dead, play 0.2 mm", rod(1e9, 3.0, 2e-4)},
-          {"elastic, 0.3, play 0.5 mm", rod(1e9, 0.3, 5e-4)},
+          {"elastic dead, clearance 0.2 mm", rod(1e9, 3.0, 2e-4)},
+          {"elastic, 0.3, clearance 0.5 mm", rod(1e9, 0.3, 5e-4)},
           {"elastic, lively rock: 1e9 N/m, 0.6", lively},
           {"elastic together", together}};
 }

@@ -28,8 +28,8 @@ struct HoldDown {
   bool holds() const noexcept { return least >= 1.0; }
 };
 
-/// w_mean: mean load of the hammer on the tip, such as the mean press force along +z at the striking line. Static; no
-/// sliding; supports on level ground carry pressure only. g_B: gravity in the root's axes [m/s2].
+/// w_mean: mean load of the hammer on the tip, such as the mean hold-down force along +z at the striking line. Static;
+/// no sliding; supports on level ground carry pressure only. g_B: gravity in the root's axes [m/s2].
 HoldDown holdDown(const Chain& chain, const ChainPose& pose, const JointVector& position,
                   const std::vector<Cylinder>& cylinders, const std::optional<Supports>& supports, const Wrench& w_mean,
                   const Eigen::Vector3d& g_B) noexcept;

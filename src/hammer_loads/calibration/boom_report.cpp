@@ -134,7 +134,7 @@ std::string textOf(const BoomCalibration& c) {
     text += format("%-40s %.6g%s%s +- %.2g, before +- %.2g; %s\n", e.key.c_str(), e.value, e.unit.empty() ? "" : " ",
                    e.unit.c_str(), e.deviation, e.limit, e.meaning.c_str());
   if (c.weight_check)
-    text += format("a boom weighed without it says that %.1f +- %.1f kg hang on the tip; %s\n", c.weight_check->value,
+    text += format("a boom weighed without it gives %.1f +- %.1f kg on the tip; %s\n", c.weight_check->value,
                    c.weight_check->deviation, c.weight_check->meaning.c_str());
   for (const Correlation& r : c.correlations)
     text += format("cannot be separated (correlation %+.2f): %s and %s\n", r.value, r.first.c_str(), r.second.c_str());

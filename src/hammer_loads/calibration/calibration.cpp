@@ -120,7 +120,8 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   std::vector<BlowSegment> segments = cutAtBlows(track, guess->zero);
   result.blows = segments.size();
   if (segments.size() < kLeastBlows) {
-    result.problem = format("%zu whole turns over a blow in it, must be %zu or more", segments.size(), kLeastBlows);
+    result.problem =
+        format("%zu whole revolutions over a blow in it, must be %zu or more", segments.size(), kLeastBlows);
     return result;
   }
   Globals start = Globals::Zero();

@@ -40,7 +40,7 @@ void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatri
   const std::string key = format("crank_eccentricity_%d", n);
   result.estimates.push_back(
       {key + "_rad", "rad", seen ? amount : 0.0, larger, limit,
-       format("%s a turn; its sine and cosine are known to %.2g and %.2g rad%s", n == 1 ? "once" : "twice",
+       format("%s per revolution; its sine and cosine are known to %.2g and %.2g rad%s", n == 1 ? "once" : "twice",
               std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
               seen ? "" : format(", %.2g rad is hardly more than that", amount).c_str()),
        by_blows});
@@ -93,8 +93,9 @@ void addEstimates(const Found& found, Calibration& result) {
     addEccentricity(result, fit, of_blows, 2, kEccentricity2Limit);
   }
   if (result.facts.count > 0.0) {
-    result.estimates.push_back({"crank_angle_resolution_rad", "rad", result.facts.count, 0.0, 1.0,
-                                format("%.0f counts a turn, read off the readings", kTwoPi / result.facts.count)});
+    result.estimates.push_back(
+        {"crank_angle_resolution_rad", "rad", result.facts.count, 0.0, 1.0,
+         format("%.0f counts per revolution, found from the readings", kTwoPi / result.facts.count)});
   }
   double samples = 0.0;
   for (const SegmentFit& one : fit.fits) samples += static_cast<double>(one.size());

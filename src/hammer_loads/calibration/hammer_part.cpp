@@ -16,10 +16,10 @@ constexpr int kReplicas = 4;        // of the recording, by which the bias is fo
 constexpr double kBiasDoubt = 0.5;  // of the bias, left over when it is removed
 
 constexpr const char* kNames[kGlobals] = {"zero",
-                                          "sine of the eccentricity once a turn",
-                                          "cosine of the eccentricity once a turn",
-                                          "sine of the eccentricity twice a turn",
-                                          "cosine of the eccentricity twice a turn",
+                                          "sine of the eccentricity once per revolution",
+                                          "cosine of the eccentricity once per revolution",
+                                          "sine of the eccentricity twice per revolution",
+                                          "cosine of the eccentricity twice per revolution",
                                           "drive inertia",
                                           "stiffness of the oil",
                                           "drag of the drive"};

@@ -84,8 +84,8 @@ void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
 
 std::string whereReadingsDiffer(const RodEvidence& rod) {
   return format(
-      "just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of a turn "
-      "later by %.2g",
+      "just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of a "
+      "revolution later by %.2g",
       rod.pickedUp(), rod.later());
 }
 

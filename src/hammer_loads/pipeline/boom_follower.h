@@ -75,7 +75,7 @@ struct BoomState {
   /// By vibration (a rigid boom has none), mean of before and after the step's last blow; none: no blow.
   std::optional<TipVelocity> at_blow;
   BoomChoice choice;
-  std::optional<HoldDown> hold_down;  ///< against the mean press force of the last turn that had one
+  std::optional<HoldDown> hold_down;  ///< against the mean hold-down force of the last turn that had one
 };
 
 /// Owns the boom and its joints' states. Vibration is followed from the first sample on, wherever a verdict could want

@@ -50,7 +50,7 @@ bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& fi
 }
 
 const char* ElasticFollower::whyNotUsed() const noexcept {
-  if (!wanted_) return "the hammer file says that the connecting rod is rigid";
+  if (!wanted_) return "the connecting rod is rigid in the hammer file";
   if (too_coarse_) return "readings are too coarse or jitter too much to show the connecting rod";
   if (blows_ == 0) return "no blow has been followed yet";
   return lost_ ? "readings contradict the model of an elastic connecting rod"

@@ -44,7 +44,7 @@ def process(splits, options, database, **streams):
 
 
 def database_of(splits, options, folder):
-    """Path of a new database in the folder, named as the recording's first bag; what process_bag says goes to stderr.
+    """Path of a new database in the folder, named as the recording's first bag; the messages of process_bag go to stderr.
     options: of process_bag, for parameters and topics."""
     for bag in splits:
         if not os.path.isfile(bag):

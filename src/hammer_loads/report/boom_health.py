@@ -28,7 +28,7 @@ def verdict(runs):
     """Comparison of the last run with the first."""
     first, last = runs.iloc[0], runs.iloc[-1]
     if max(first.doubtful, last.doubtful) > MOST:
-        return "doubtful: something else than oil damps the boom"
+        return "uncertain: something else than oil damps the boom"
     if len(runs) < 2:
         return "one run: nothing to compare"
     if abs(last.stiffness - first.stiffness) <= CHANGED * math.hypot(first.deviation, last.deviation):

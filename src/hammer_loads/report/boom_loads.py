@@ -1,4 +1,4 @@
-"""Loads of hull, boom joints, cylinders and sections, a value per turn each."""
+"""Loads of hull, boom joints, cylinders and sections, a value per revolution each."""
 import pandas
 
 from report.formats import Table, in_unit, scaled
@@ -45,7 +45,7 @@ def loads_table(rows):
         mean = (some.middle * some.turns).sum() / some.turns.sum()
         result.append([in_words(name), shown, *(scaled(v, factor) for v in (some.least.min(), mean, some.greatest.max())),
                        int(some.turns.sum())])
-    return Table("Loads over all turns", ["Channel", "Unit", "Least", "Mean of turns", "Greatest", "Turns"], result)
+    return Table("Loads over all revolutions", ["Channel", "Unit", "Least", "Mean of revolutions", "Greatest", "Turns"], result)
 
 
 def groups_of(rows):

@@ -1,4 +1,4 @@
-"""Where the uncertainty of a machine's figures comes from, and what to measure next (JCGM 100, 5): section and command."""
+"""Uncertainty budget of a machine's figures, and the quantity to measure next (JCGM 100, 5): section and command."""
 import csv
 import json
 import math
@@ -86,7 +86,7 @@ def budget(subject):
 def parser():
     result = Parser(
         prog="budget", description="Where the uncertainty of a machine's figures comes from, and what to measure next.",
-        epilog="Shares are those of the variance and sum to 1 (JCGM 100, 5.1.2). Deviations are those of one turn's "
+        epilog="Shares are those of the variance and sum to 1 (JCGM 100, 5.1.2). Deviations are those of one revolution's "
                "figures. Errors are one line each; exit code 1, or 2 for wrong usage.")
     result.add_argument("files", nargs="+", metavar="FILE",
                         help="bags, or a database of process_bag --db; splits of one recording count as one")
@@ -104,7 +104,7 @@ def budgets_of(database):
         raise Problem(f"{database.path}: is a ledger, which keeps no sources; give the bags or process_bag --db")
     budgets = [(subject.label, budget_of(subject)) for subject in subjects_of(database)]
     if not any(figures for _, figures in budgets):
-        raise Problem(f"{database.path}: holds no budget; it has no whole turn, or is of an older process_bag --db")
+        raise Problem(f"{database.path}: holds no budget; it has no whole revolution, or is of an older process_bag --db")
     return budgets
 
 
@@ -119,7 +119,7 @@ def share_lines(shares):
 def as_text(budgets):
     lines = []
     for machine, figures in budgets:
-        lines.append(f"{machine}: standard deviations of one turn, by source")
+        lines.append(f"{machine}: standard deviations of one revolution, by source")
         for f in figures:
             unit = f" {f.unit}" if f.unit != "-" else ""
             lines.append(f"{in_words(f.quantity)}: {f.value:.5g} +- {f.deviation:.2g}{unit}; "

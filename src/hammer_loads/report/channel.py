@@ -44,7 +44,7 @@ class Channel:
             self._deviations += samples
 
     def add_range_deviations(self, own, common, weight):
-        """Of the ranges of turns, over the range: drawn anew in each turn, and of constants, which does not average out."""
+        """Adds relative standard deviations of the ranges: of single revolutions, and of constants, which do not average out."""
         if own is not None and common is not None and weight:
             self._range_sums = [before + weight * part for before, part in zip(self._range_sums, (own, common))]
             self._range_weight += weight

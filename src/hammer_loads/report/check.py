@@ -1,4 +1,4 @@
-"""Whether a recording can be used: a line for each thing that must be right, with ok, look or wrong, and what to do."""
+"""Check of a recording: a line for each condition, with ok, look or wrong, and the action."""
 import json
 import os
 import re

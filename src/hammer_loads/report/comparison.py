@@ -75,7 +75,7 @@ def channel_figures(channels):
 
 
 def figures_of(subject, series):
-    """{name: Figure} of one machine. Figures of the sensor have no kind: no warning puts them in doubt."""
+    """{name: Figure} of one machine. Figures of the sensor have no kind: no warning affects them."""
     def found():
         yield Figure("From (UTC)", moment(subject.first_ns, "minutes"), None, None)
         yield Figure("At work", duration(subject.total("duration")), subject.total("duration"), COUNTS)

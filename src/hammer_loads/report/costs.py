@@ -1,4 +1,4 @@
-"""Which work cost what: shares of the damage by turn, hour, day and recording; what another load would do to the life."""
+"""Costs of work: shares of the damage by revolution, hour, day and recording; life under another load."""
 import numpy
 import pandas
 
@@ -43,7 +43,7 @@ def damage_of(channel):
 
 
 def turn_costs(subject, channel):
-    """Turns with loads: damage by the range of the turn alone, stamp_ns, run, turn, peak [kN]."""
+    """Revolutions with loads: damage by the range of the revolution alone, stamp_ns, run, turn, peak [kN]."""
     if subject.total("turns") > MOST_TURNS_ONE_BY_ONE or "turn_loads" not in subject.database.tables():
         return pandas.DataFrame({"damage": []})
     rows = subject.frame(
@@ -54,7 +54,7 @@ def turn_costs(subject, channel):
 
 
 def dearest_share(damages, part):
-    """Share of the damage that is due to the most damaging part of the turns."""
+    """Share of the damage that is due to the most damaging part of the revolutions."""
     ordered = numpy.sort(damages)[::-1]
     return ordered[:max(1, round(part * len(ordered)))].sum() / ordered.sum()
 
@@ -82,11 +82,11 @@ def dearest_turns(subject, turns):
     dearest = turns.sort_values(["damage", "stamp_ns"], ascending=[False, True]).head(DEAREST)
     rows = [[moment(turn.stamp_ns), names[subject.runs[turn.run]["run_id"]], int(turn.turn),
              number(100.0 * turn.damage / turns.damage.sum(), 2), turn.peak] for turn in dearest.itertuples()]
-    return Table("Dearest turns", ["End (UTC)", "Recording", "Turn", "Damage [%]", "Peak force [kN]"], rows)
+    return Table("Most damaging revolutions", ["End (UTC)", "Recording", "Turn", "Damage [%]", "Peak force [kN]"], rows)
 
 
 def by_turns(subject, channel):
-    """Tables and sentences about the turns; empty where none did damage."""
+    """Tables and sentences about the revolutions; empty where none did damage."""
     turns = turn_costs(subject, channel)
     held, counted = turns.damage.sum(), damage_of(channel)
     if not held > 0.0:

@@ -28,7 +28,7 @@ def file_name(database, table):
 
 
 def write_tables(databases, directory):
-    """Same tables of several files go into one CSV; a column that a file lacks stays empty."""
+    """Writes equal tables of several files into one CSV; a column that a file lacks stays empty."""
     tables = {}
     for database in databases:
         for table in database.tables():

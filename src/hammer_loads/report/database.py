@@ -25,7 +25,7 @@ class Interrupt:
 
 
 def quoted(name):
-    """As a name in SQL."""
+    """Name quoted for SQL."""
     return '"' + name.replace('"', '""') + '"'
 
 
@@ -44,7 +44,7 @@ class Database:
         self._check_tables()
 
     def _check_tables(self):
-        """Only tables: what a name stands for must be what it says, and end."""
+        """Refuses views: a name must stand for a table, whose rows end."""
         for name, kind in self.rows("SELECT name, type FROM sqlite_master WHERE type IN ('view', 'trigger') OR "
                                     "sql LIKE 'CREATE VIRTUAL%' ORDER BY name"):
             if self.kind == FLEET and (kind, name) == ("view", "parameters"):

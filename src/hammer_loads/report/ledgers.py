@@ -10,7 +10,7 @@ DEVIATION_UNITS = 1024.0  # per class width, in tallies.deviation_sum
 
 
 class Epoch:
-    """Same hammer, boom and grids. `days`: (ids, date, hours, blows), one id for each run of the date."""
+    """Period of work with one hammer, boom and set of grids. `days`: (ids, date, hours, blows), one id for each run of the date."""
 
     def __init__(self, database, row):
         self.number, self.machine = row["epoch"], row["machine"]
@@ -33,7 +33,7 @@ class Epoch:
         return [self._channel(row) for row in self._rows]
 
     def channels_of_day(self, day):
-        """Of the cycles that closed on the day; the residue belongs to the total alone."""
+        """Channels with the cycles that closed on the day; the residue belongs to the total alone."""
         return [self._channel(row, day) for row in self._rows]
 
     def _channel(self, row, day=None):

@@ -19,7 +19,7 @@ def farthest(group):
 
 
 def given(subject):
-    """Whether any parameter of any run is a limit."""
+    """Returns True if any parameter of any run is a limit."""
     return not subject.frame("key FROM parameters WHERE {runs} AND key LIKE 'limit\\_%' ESCAPE '\\' LIMIT 1",
                              text=["key"]).empty
 

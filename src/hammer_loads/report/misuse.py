@@ -5,8 +5,8 @@ UNKNOWN = "not known"
 COUNTERS = [
     ("blank_firings", "Blank firing", "the rocker went through where the tool should have been",
      "the database is of an older version"),
-    ("blows_without_hold_down", "Blows without press force", "the rock did not press on the hull since the blow before: a blow "
-     "on the retainer, or too little press force", "needs cylinder pressures"),
+    ("blows_without_hold_down", "Blows without hold-down force", "the rock did not press on the hull since the blow before: a blow "
+     "on the retainer, or too small a hold-down force", "needs cylinder pressures"),
     ("still_time", "Hammering at one place [s]", "beyond 15 s without the hull moving by 20 mm: no penetration",
      "needs the boom's joints and its description"),
 ]
@@ -30,6 +30,6 @@ def misuse(subject):
             continue
         if name == "blows_without_hold_down":
             judged = sum(run["judged_blows"] or 0 for run in subject.runs if run.get(name) is not None)
-            meaning += f"; of {number(judged)} blows whose press force was measured"
+            meaning += f"; of {number(judged)} blows whose hold-down force was measured"
         rows.append([title, number(count), number(per_hour, 3), meaning])
     return Table("Misuse", ["What", "Count", "Per hour", "Meaning"], rows, "words figures-first")

@@ -35,8 +35,8 @@ def recording_of(subject):
 WORDS = {
     "pulse/amplitude": "peak force along the tool",
     "pulse/impulse": "impulse of the pulse",
-    "pulse/turn_impulse_x": "impulse of a turn across the tool",
-    "pulse/turn_impulse_z": "impulse of a turn along the tool",
+    "pulse/turn_impulse_x": "impulse of a revolution across the tool",
+    "pulse/turn_impulse_z": "impulse of a revolution along the tool",
     "blow/energy": "blow energy",
     "blow/restitution": "restitution",
     "hull_wrench/force_x": "force across the tool, Fx",

@@ -43,7 +43,7 @@ def check_existing(name, force, is_expected, expected, keep):
 
 
 def inside(place, folder):
-    """Whether a path is the folder or lies below it, whatever links lead there."""
+    """Returns True if a path is the folder or lies below it, whatever links lead there."""
     place, folder = os.path.realpath(place), os.path.realpath(folder)
     return place == folder or os.path.commonpath([place, folder]) == folder
 
@@ -99,7 +99,7 @@ def publish_file(name, data, force):
 
 @contextlib.contextmanager
 def signals_wait():
-    """Those that end the command come after the block: it does all or nothing."""
+    """Delays signals that end the command until after the block: it does all or nothing."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
     try:
         yield

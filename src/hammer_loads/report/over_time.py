@@ -26,7 +26,7 @@ def summary_table(series):
         if len(values):
             rows.append([titled(quantity.title, quantity.unit), *values.statistics(), number(values.spread(), 2),
                          number(values.deviation, 2), len(values)])
-    return Table("Over all runs: least and greatest of all turns, between them means of runs" if of_runs else "Over all turns",
+    return Table("Over all runs: least and greatest of all revolutions, between them means of runs" if of_runs else "Over all revolutions",
                  ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Spread", "Deviation",
                   "Runs" if of_runs else "Values"], rows)
 

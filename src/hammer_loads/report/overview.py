@@ -18,7 +18,7 @@ def warnings_of(subject):
     if not subject.runs:
         found["no run at all: the recording holds no sample of a crank"] = []
     elif subject.total("turns") == 0:
-        found["no whole turn: there is nothing about blows, pulses and turns"] = []
+        found["no whole revolution: there is nothing about blows, pulses and revolutions"] = []
     withheld = subject.blows_without_energy()
     if withheld:
         found[f"blows whose energy and restitution are withheld: {withheld} of {subject.total('blows')}; they are in no "
@@ -88,7 +88,7 @@ def truth_of(subject):
 
 
 def key_figures(subject, series):
-    """(name, value); of turns the medians."""
+    """(name, value); medians for revolutions."""
     energy, rate, true = total_energy(subject, series), blows_per_hour(subject), truth_of(subject)
     figures = [("at work", duration(subject.total("duration"))),
                ("blows", number(subject.total("blows")) + true.get("blows", ""))]
@@ -115,7 +115,7 @@ def runs_table(subject):
 
 
 def parameters_table(subject):
-    """Those that are not as shipped, each combination once."""
+    """Parameters that differ from the shipped ones, each combination once."""
     changed = subject.frame("key, value, shipped FROM parameters WHERE {runs} AND value IS NOT shipped",
                             text=["key", "value", "shipped"])[["key", "value", "shipped"]]
     combinations = sorted(set(changed.itertuples(index=False, name=None)), key=lambda row: tuple(map(str, row)))

@@ -1,4 +1,4 @@
-"""Quantities that are shown over time, with a value for each turn."""
+"""Quantities that are shown over time, with a value for each revolution."""
 from collections import namedtuple
 
 # expression: of the table's columns; factor: from its unit to the one shown; deviation: column of the measurement's.
@@ -12,7 +12,7 @@ QUANTITIES = [
     Quantity("restitution", "Restitution", "blows", "restitution", "", 1.0, "restitution_std",
              "rocker's speed after the blow over that before"),
     Quantity("amplitude", "Peak force along the tool", "turns", "amplitude", "kN", 1e-3, "amplitude_std",
-             "largest force along the tool in a turn"),
+             "largest force along the tool in a revolution"),
     Quantity("mean_hold_down_force", "Hold-down needed", "blows", "mean_hold_down_force", "kN", 1e-3,
              "mean_hold_down_force_std",
              "mean force that keeps the hull on the tool: tool impulse times blow rate"),

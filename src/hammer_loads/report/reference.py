@@ -3,7 +3,7 @@ from report.formats import Table, in_unit, number
 
 
 def reference(subject):
-    """Of all runs with a measured load; None where none has."""
+    """Comparison over all runs with a measured load; None where none has."""
     if "reference" not in subject.database.tables() or not subject.runs:
         return None
     rows = subject.frame("component, unit, samples, rms, rms_error, bias, scale, correlation, within_two_std FROM reference "

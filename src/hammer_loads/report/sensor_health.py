@@ -1,4 +1,4 @@
-"""Whether the crank's sensor is sound."""
+"""Health of the crank's sensor."""
 from report.formats import Table, number, scaled
 
 CONSISTENT = 3.0   # times the variance; a sound sensor has 0.9

@@ -38,7 +38,7 @@ class Subject:
         return rows.astype({name: float for name in rows if name not in ("run", *text)}).sort_values("run", kind="mergesort")
 
     def has_rows(self, table):
-        """Whether values are those of turns; else of runs, as a merged file has them."""
+        """Returns True if values are those of revolutions; else of runs, as in a merged file."""
         tables = self.database.tables()
         if "run_figures" not in tables:
             return True
@@ -153,5 +153,5 @@ def notes(databases):
     """Notes for the user of the command, one line each."""
     subjects = [s for database in databases for s in subjects_of(database)]
     lines = mixed_machines(databases, subjects)
-    return lines + [f"{s.label}: {'no whole turn' if s.runs else 'no run at all'}" for s in subjects
+    return lines + [f"{s.label}: {'no whole revolution' if s.runs else 'no run at all'}" for s in subjects
                     if not s.total("turns")]

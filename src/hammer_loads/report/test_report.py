@@ -19,7 +19,7 @@ LISTED = 0.01  # of the variance of a measurand: a source that makes more is an 
 
 
 def rounded(value, uncertainty):
-    """Both with the last digit of the uncertainty's two (JCGM 100, 7.2.6)."""
+    """Value and uncertainty, rounded to the second digit of the uncertainty (JCGM 100, 7.2.6)."""
     if is_nothing(value) or is_nothing(uncertainty) or not uncertainty > 0.0:
         return number(value), number(uncertainty)
     places = places_of(uncertainty)
@@ -33,7 +33,7 @@ def results(figures):
         value, expanded = rounded(scaled(figure.value, factor), scaled(COVERAGE * figure.deviation, factor))
         largest = ", ".join(f"{source} {100 * share:.0f} %" for source, share in figure.shares[:2] if share >= 0.1)
         rows.append([in_words(figure.quantity), value, expanded, unit, largest])
-    return Table(f"Mean of the turns; U = k u, k = {COVERAGE}",
+    return Table(f"Mean of the revolutions; U = k u, k = {COVERAGE}",
                  ["Measurand", "Estimate", "U", "Unit", "Largest contributions to u\u00b2"], rows)
 
 
@@ -68,7 +68,7 @@ def test_report(subject, version, site=""):
     """The page's bytes: the same for the same file."""
     figures = budget_of(subject)
     if not figures:
-        raise Problem(f"{subject.database.path}: holds no budget; it has no whole turn, or is of an older process_bag --db")
+        raise Problem(f"{subject.database.path}: holds no budget; it has no whole revolution, or is of an older process_bag --db")
     checks = [row for row in health_rows(subject) if row[2]]
     return rendered(
         "test_report.html", version=version, label=subject.label, site=site, run=subject.runs[0], first=utc(subject.first_ns),

@@ -1,10 +1,10 @@
-"""The typical and the worst turn: force, its deviation, the half-sine pulse."""
+"""The typical and the worst revolution: force, its deviation, the half-sine pulse."""
 import numpy
 
 from report.formats import Table, number, utc
 from report.pictures import Picture
 
-KINDS = [("typical", "Typical turn"), ("worst", "Worst turn")]
+KINDS = [("typical", "Typical revolution"), ("worst", "Worst revolution")]
 FORCES = ["force_x", "force_z", "force_z_std"]
 MOST_ROWS = 20
 KEYS = [("line first", "along the tool, Fz"), ("band first", "\u00b1 one standard deviation"),

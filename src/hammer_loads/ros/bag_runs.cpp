@@ -200,7 +200,7 @@ Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, 
   std::string topics;
   for (const std::string& topic : infos.topics) topics += (topics.empty() ? "" : ", ") + topic;
   result.problems.push_back(inputs.names() + ": run_info of several hammers (" + topics +
-                            "), --params FILE.yaml must say which parameters apply");
+                            "), --params FILE.yaml must give the parameters that apply");
   return result;
 }
 

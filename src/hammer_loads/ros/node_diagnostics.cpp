@@ -165,7 +165,7 @@ void NodeDiagnostics::describePitch(Status& status) {
 void NodeDiagnostics::describeImu(Status& status) {
   const ImuCounts& counts = bridge_.pipeline().hull().imuCounts();
   if (bridge_.pipeline().hull().imuTrust().isLost()) {
-    status.summary(DiagnosticStatus::WARN, "not used: readings do not fit an IMU mounted as imu_* says");
+    status.summary(DiagnosticStatus::WARN, "not used: readings do not fit an IMU mounted as in imu_*");
   } else if (counts.missed > last_imu_counts_.missed) {
     status.summary(
         DiagnosticStatus::WARN,
@@ -201,10 +201,10 @@ void NodeDiagnostics::describeMisuse(Status& status) {
   status.add("time at work [s]", counts.work_time);
   add("blank firing", static_cast<double>(counts.blank_firings));
   if (counts.withoutHoldDown()) {
-    add("blows without press force on the rock", static_cast<double>(*counts.withoutHoldDown()));
-    status.add("blows whose press force is measured", counts.judged_blows);
+    add("blows without hold-down force on the rock", static_cast<double>(*counts.withoutHoldDown()));
+    status.add("blows whose hold-down force is measured", counts.judged_blows);
   } else {
-    status.add("blows without press force on the rock", "not known: needs cylinder pressures");
+    status.add("blows without hold-down force on the rock", "not known: needs cylinder pressures");
   }
   if (counts.still())
     add("hammering without penetration [s]", *counts.still());
@@ -225,7 +225,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
     for (const std::string& complaint : complaints) text += "; " + complaint;
     status.summary(DiagnosticStatus::WARN, "no joint loads" + text);
   } else if (state.fault && state.fault->kind == JointFault::Kind::kRunAway) {
-    status.summary(DiagnosticStatus::WARN, "no joint loads: the vibration ran away and began anew");
+    status.summary(DiagnosticStatus::WARN, "no joint loads: the vibration was implausible and was reset");
   } else if (state.zero_moment_arm) {
     status.summary(DiagnosticStatus::WARN, "a cylinder has a zero moment arm: the boom is taken as rigid");
   } else {
@@ -238,7 +238,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
   status.add("pulse length [s]", state.choice.pulse_length);
   status.add("lowest natural frequency [Hz]", state.choice.lowest_frequency);
   if (state.hold_down) {
-    status.add("mean press force may grow by the factor [-]", state.hold_down->least);
+    status.add("mean hold-down force may grow by the factor [-]", state.hold_down->least);
     status.add("gives first", boom.firstToGive());
   }
   const JointRefusals& refusals = boom.joints().refusals();

@@ -32,7 +32,7 @@ HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
   return foot;
 }
 
-/// The oil of all cylinders gives way to the press force, and so does the rock.
+/// The oil of all cylinders gives way to the hold-down force, and so does the rock.
 double HammerOnBoom::rockHeight(const Hold& hold) const {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return 0.0;

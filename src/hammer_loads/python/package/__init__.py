@@ -59,7 +59,7 @@ def _gravity(hammer, gravity):
 
 
 def _weight(hammer, pitch, gravity):
-    """Of one pitch: components along the hull's axes x and z [m/s2]."""
+    """Gravity at one pitch: components along the hull's axes x and z [m/s2]."""
     if pitch is None:
         return 0.0, 0.0
     g, pitch = _gravity(hammer, gravity), _number("pitch", pitch, "rad")
@@ -176,7 +176,7 @@ def count_cycles(series, *, full_scale=None, classes=4096):
 
 
 def _file_problem(path):
-    """Why it is no SQLite file, as the command report says it; empty for one."""
+    """Reason why a file is no SQLite file, in the words of the command report; empty if it is one."""
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):
             return "is no regular file"
@@ -187,7 +187,7 @@ def _file_problem(path):
 
 
 def _column(declared, values):
-    """As an array, by the type that its table declares."""
+    """Column as an array, by the type that its table declares."""
     if "INT" in declared and None not in values:
         return np.array(values, dtype=np.int64)
     if "INT" in declared or "REAL" in declared:
