@@ -18,7 +18,7 @@ class Lists(unittest.TestCase):
         path.write_text(text)
         return bag_list.read(str(path))
 
-    def test_csv_and_yaml_say_the_same(self):
+    def test_csv_and_yaml_agree(self):
         as_csv = self.listed("a.csv", "machine,bag,parameters\nred,x.bag,h.yaml;b.yaml\nblue,/abs/y.bag,\n")
         as_yaml = self.listed("a.yaml", "- {machine: red, bag: x.bag, parameters: [h.yaml, b.yaml]}\n"
                                         "- {machine: blue, bag: /abs/y.bag}\n")

@@ -105,7 +105,7 @@ class Queries(MergeTest):
         self.assertEqual((rows["white"]["runs"], rows["white"]["warnings"]), ("2", "2"))
         self.assertEqual(rows["white"]["a_warning"], "crank_zero_rad: run calibrate")
 
-    def test_every_shipped_question_runs_and_says_what_it_asks(self):
+    def test_every_shipped_question_runs_and_states_its_subject(self):
         shipped = sorted(FLEET.glob("queries/*.sql"))
         self.assertGreaterEqual(len(shipped), 10)
         for path in shipped:

@@ -76,7 +76,7 @@ def test_table_and_page_state_the_truth(demo):
     assert ", true %.4g J" % energy in page
 
 
-def test_the_picture_shows_as_many_revolutions_as_its_title_says(demo):
+def test_the_picture_shows_as_many_revolutions_as_its_title_states(demo):
     sys.path.insert(0, str(SOURCE / "scripts"))
     import demo_report as report
     truth = report.Truth(str(demo[0] / "true"))

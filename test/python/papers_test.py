@@ -119,7 +119,7 @@ class Printed(unittest.TestCase):
         np.testing.assert_allclose(x, truth["force_x"], atol=1e-9 * size.max())
         np.testing.assert_allclose(z, truth["force_z"], atol=1e-9 * size.max())
 
-    def test_impulses_hold_where_the_errata_say_so(self):
+    def test_impulses_hold_where_the_errata_state_it(self):
         rocker, paper, lk, before = papers_impact.striking_rocker(SHIPPED)
         for z in (0.0, -0.005, -0.03):
             ours = papers_impact.impulses(rocker, lk, z, 0.2, before, 0.0)

@@ -43,7 +43,7 @@ class Check(ReportTest):
         self.assertGreaterEqual(len(statuses), 10)
         self.assertTrue(verdict.startswith("usable"), verdict)
 
-    def test_text_fits_one_screen_and_says_what_to_do(self):
+    def test_text_fits_one_screen_and_states_the_action(self):
         outcome = self.check(self.altered("deg", lambda p, v: (math.degrees(p), math.degrees(v))))
         self.assertEqual(outcome.returncode, 1)
         self.assertLessEqual(len(outcome.stdout.splitlines()), 14)

@@ -183,7 +183,7 @@ class Tables(ReportTest):
                 running.wait()
             self.assertEqual({path.name: path.read_bytes() for path in tables.iterdir()}, before)
 
-    def test_it_fails_half_way(self):
+    def test_a_failure_half_way_leaves_the_old_directory(self):
         """The directory that was to be replaced is as it was."""
         tables = self.directory / "tables"
         tables.mkdir()

@@ -220,7 +220,7 @@ class Costs(ReportTest):
         damage = (30 * 2.0 ** self.SLOPE + turns - 30) / (30 * 2.0 ** self.SLOPE + 970)
         self.assertAlmostEqual(number(first["Damage [%]"]), 100.0 * damage, delta=0.1)
 
-    def test_by_recording_is_by_its_cycles(self):
+    def test_damage_by_recording_is_by_its_cycles(self):
         sample.make(self.file, sample.Machine(curve=False), seconds=100.0, runs=2)
         db = sqlite3.connect(str(self.file))
         totals = []

@@ -133,7 +133,7 @@ class ReconfigureTest(unittest.TestCase):
         self.assertEqual(self.change(log_enabled=True, tolerance=0.5), self.in_force())
         self.assertEqual(len(active_bags(self.directory)), 1)
 
-    def test_4_what_cannot_be_changed_changes_nothing(self):
+    def test_4_an_unchangeable_parameter_changes_nothing(self):
         self.expect_rate(1000.0)
         announced = len(self.infos)
         self.assertEqual(self.change(crank_length_m=0.01, stale_after_s=5.0, no_such_key=1.0), self.in_force())

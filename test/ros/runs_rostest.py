@@ -113,7 +113,7 @@ class RunsTest(unittest.TestCase):
         cls.call('start')
         os.rename(aside, cls.directory)
 
-    def test_services_say_what_they_did_or_why_not(self):
+    def test_services_report_their_action_or_the_reason_against_it(self):
         self.assertEqual(
             [(act, success) for act, success, _ in self.answers],
             [('split', True), ('start', False), ('stop', True), ('stop', False), ('split', False), ('start', False),

@@ -113,7 +113,7 @@ TEST(Blows, RestitutionThatKeepsTheSpeedIsThePlainBlow) {
   EXPECT_NEAR(drawn.linkage_loss, 0.0, 1e-9);
 }
 
-TEST(Blows, RestitutionIsDrawnAnewBetweenItsBounds) {
+TEST(Blows, RestitutionIsDrawnBetweenItsBounds) {
   MachineSettings s = flawedRun();
   s.duration = 20.0;
   s.blow.restitution_drawn = true;

@@ -51,7 +51,7 @@ class ModeIdentifier {
   static constexpr int kMaxChannels = 12;
   static constexpr double kMostOil = 2.0;  ///< largest identified log stiffness: a frequency of e times the given one
   // Prior: kMostOil
-  /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
+  /// Remaining errors of log frequency and log damping of an identified mode: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
   // Prior: kLeftFrequency, kLeftDamping
 

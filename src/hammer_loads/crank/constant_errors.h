@@ -26,7 +26,7 @@ class ConstantErrors {
                        kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
                        kSpeedScale = indexOfUnknown("speed scale");
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
-  using Vector = Eigen::Matrix<double, kTable, 1>;  ///< of the table's alone
+  using Vector = Eigen::Matrix<double, kTable, 1>;  ///< errors of the table alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
 
   /// Standard deviations of the table.
@@ -107,7 +107,7 @@ class ConstantErrors {
   Vector prior_;
   ConstantFit<kTable> fit_;
   ByConstants<kPlace, kMachineColumns> beside_{
-      ByConstants<kPlace, kMachineColumns>::Zero()};  ///< what the hammer's errors make of fit_'s score
+      ByConstants<kPlace, kMachineColumns>::Zero()};  ///< derivatives of fit_'s score by the hammer's errors
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
   double zero_looks_{};  ///< [rad]

@@ -15,7 +15,7 @@ namespace hammer_loads {
 
 constexpr double kNoiseStep = 2e-3;  ///< [s] over which the process noise is spread
 // Numerical: kNoiseStep
-/// Of the inertia's logarithm by one sample: beyond it the linearisation is worth nothing.
+/// Largest change of the inertia's logarithm by one sample: beyond it the linearisation is invalid.
 constexpr double kMostInertiaChange = 0.3;
 
 /// Random walks of the variables that are not measured, and the law of the torque.

@@ -148,7 +148,7 @@ double CrankFilter::timeLost(double dt, const Innovation& innovation) const noex
   return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
 }
 
-/// What a rod that gives may have done to the crank: all but a large step of a crank that has calmed down.
+/// Returns true if an elastic rod may have caused the innovation: any but a large step of a crank that has calmed down.
 bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
   const CrankAngle& at = now_.state.position.angle;
   const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;

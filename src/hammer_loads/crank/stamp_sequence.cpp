@@ -26,7 +26,7 @@ constexpr double kNoLoss = 3.0;             // likewise that none was: 20 to 1
 constexpr double kLeastScatter = 0.15;      // of the interval: a run's beginning is not known better
 constexpr double kGrown = 2.0;              // scatter about the line over that of white jitter with such steps
 
-// Of the sequence.
+// Limits of the sequence.
 constexpr double kMany = 5.0;              // irregular stamps of a thousand: not a single late message
 constexpr double kSingle = 1.5;            // likewise
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known

@@ -25,7 +25,7 @@ class SteadyClockFit {
   /// The last stamp is where it must be without a loss before it, though one would show.
   bool contradictsLoss() const noexcept;
   double interval() const noexcept { return interval_; }  ///< [ns]
-  /// Of stamps about the line, root of mean square [ns].
+  /// Root mean square of the stamps about the line [ns].
   double scatter() const noexcept { return std::sqrt(end_square_); }
   int runs() const noexcept { return runs_; }  ///< stamps after the first one
   bool isKnown() const noexcept;               ///< stamps enough for a line and for how many samples have one stamp
@@ -45,7 +45,7 @@ class SteadyClockFit {
   double instant_{};       ///< on the line, of the last sample [ns]
   double interval_{};      ///< [ns]
   double residual_{};      ///< stamp less instant, of the last sample [ns]
-  double end_residual_{};  ///< of the last sample of the run before [ns]
+  double end_residual_{};  ///< residual of the last sample of the run before [ns]
   int run_length_{};       ///< samples with the last stamp
   double mean_length_{1.0};
   double end_square_{}, step_square_{};     ///< of residuals at the runs' ends and of their steps, running means [ns2]
