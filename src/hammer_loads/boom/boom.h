@@ -1,4 +1,4 @@
-/// The boom as one: from its motion and the hammer's wrench to the loads of joints and cylinders.
+/// Boom: loads of joints and cylinders from its motion and the hammer's wrench.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace hammer_loads {
 
-/// The boom file; keys of the same names with the unit appended. Physical values have no defaults.
+/// Parameters of the boom file; keys of the same names with the unit appended. Physical values have no defaults.
 struct BoomParameters {
   ChainRequest chain;                         ///< root_link, tip_link; joints are those of the cylinders
   std::vector<CylinderParameters> cylinders;  ///< at most one per joint
@@ -47,7 +47,7 @@ struct WrenchSpread {
   std::array<Wrench, 4> part;  ///< on the tip, as the load
 };
 
-/// Standard deviations; at a zero moment arm as SteelLoads.
+/// Standard deviations of the boom's loads; at a zero moment arm as SteelLoads.
 struct BoomDeviations {
   JointVector torque;                         ///< standard deviation of BoomLoads::total [N m]
   std::array<double, kMaxJoints> cylinder{};  ///< standard deviation of the cylinder's force [N]
@@ -61,16 +61,17 @@ struct RigidVerdict {
   bool suffices{};  ///< true if the error is within rigid_tolerance
 };
 
-/// Per sample: move() when the boom moved, advance() for the vibration if wanted, then loads(). After make() nothing
-/// allocates or throws; loads() reports an input whose results are not finite.
+/// Boom with its vibration. For each sample call move() when the boom moved, advance() for the vibration if wanted,
+/// then loads(). After make() nothing allocates or throws; loads() reports an input whose results are not finite.
 class Boom {
  public:
-  /// Every problem of description and boom file at once, one line each.
+  /// Makes a boom, or reports every problem of description and boom file at once, one line each.
   static Checked<Boom> make(const RobotDescription& description, const BoomParameters& parameters);
-  /// From the description alone: rigid, no cylinders, supports not known.
+  /// Makes a boom from the description alone: rigid, no cylinders, supports not known.
   static Checked<Boom> make(const RobotDescription& description, const ChainRequest& request = {});
 
-  /// Joint motion of the chain's joints, g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level base.
+  /// Moves the boom. motion: of the chain's joints; g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level
+  /// base.
   void move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
   /// Moves the boom and brings the vibration to this pose; modes are found only then.
   void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
@@ -81,9 +82,9 @@ class Boom {
   const ChainPose& pose() const noexcept { return pose_; }
   /// Motion of the joints at this pose, displaced by the vibration where moveVibrating() was called.
   const JointMotion& motion() const noexcept { return joints_; }
-  /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
+  /// Gravity g_B in the tip's axes [m/s2], for the hammer's weight.
   Eigen::Vector3d gravityAtTip() const noexcept;
-  /// tipJacobian() of the pose.
+  /// Jacobian of the tip at the pose, see tipJacobian().
   const Jacobian& tipJacobian() const noexcept { return jacobian_; }
   HAMMER_LOADS_INLINE JointVector hammerTorque(const Wrench& w_tip) const noexcept {
     return jointTorqueOfTipLoad(jacobian_, w_tip);
@@ -100,15 +101,16 @@ class Boom {
     Eigen::Matrix<double, 6, 1> displacement, velocity, acceleration;
   };
   TipVibration tipVibration() const noexcept;
-  /// Along a unit vector in the tip's axes, at the pose of the modes.
+  /// Reduced mass and stiffness at the hull along a unit vector in the tip's axes, at the pose of the modes.
   ReducedHull reducedHull(const Eigen::Vector3d& direction) const noexcept;
 
   /// Loads by inertia and weight of the links in the present motion; rigid: without vibration.
   ChainLoads chainLoads(bool rigid) const noexcept;
-  /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
-  /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. links: of
-  /// chainLoads(rigid), found here where they are not given. False: the input is so large that a result is not finite
-  /// and must not be used; a cylinder with a zero moment arm does not count as that.
+  /// Computes the loads. w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull.
+  /// Their weight, and the effect of the boom's motion on them, are not in it, as the hull's mass in the description
+  /// includes theirs. links: result of chainLoads(rigid), computed here if it is not given. Returns false if the input
+  /// is so large that a result is not finite and must not be used; a cylinder with a zero moment arm does not count as
+  /// that.
   bool loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomLoads& result) const noexcept;
   bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
     return loads(w_tip, rigid, chainLoads(rigid), result);
@@ -118,7 +120,7 @@ class Boom {
   bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
     return steelLoads(w_tip, chainLoads(rigid), result);
   }
-  /// Joint torques of the errors of a load: what VibrationSpread::advance() takes.
+  /// Joint torques by the errors of a load, as input of VibrationSpread::advance().
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
   /// Finds the standard deviations of loads() and steelLoads() by errors of the hammer's load and, unless rigid, of the
   /// oil. Errors of masses, dimensions, weight and motion are not in them. They hold for the pose within four times
@@ -130,15 +132,18 @@ class Boom {
   /// Finds the standard deviations by errors of the load in the boom's plane alone (force x, z, moment y): one standard
   /// deviation a column.
   void deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexcept;
-  /// Standard deviations of the weight's torques on the joints by the masses and centres of the links and the zeros of
-  /// the joints' sensors [N m]: the same in all samples at a pose. As of the last deviations(), zero before.
+  /// Standard deviations of the weight's torques on the joints [N m], by the masses and centres of the links and the
+  /// zeros of the joints' sensors. They are equal in all samples at a pose. Values of the last deviations(), zero
+  /// before.
   const JointVector& weightDeviation() const noexcept { return weight_std_; }
-  /// Standard deviations of the joints' torques by links that bend as the boom vibrates [N m]: what is beyond a link's
-  /// middle moves as its joints say, its own mass less. Nothing without vibration. As of the last deviations().
+  /// Standard deviations of the joints' torques by bending of the links as the boom vibrates [N m]: a mass beyond the
+  /// middle of a link follows the joints, the link's own mass less. Zero without vibration. Values of the last
+  /// deviations().
   JointVector bendingDeviation() const noexcept;
   /// Faults of a cylinder under these loads, sum of CylinderFlag. The steady part is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
-  /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
+  /// Verdict for half-sine pulses of that peak and length [s], at the pose of the modes. It takes some 0.1 ms, too long
+  /// for each sample.
   RigidVerdict rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept;
   /// Factors by which weight and cylinders hold the hull down against a mean load of the hammer on the tip.
   HoldDown holdDown(const Wrench& w_mean) const noexcept;

@@ -1,4 +1,4 @@
-/// A robot description (URDF), read once.
+/// Robot description (URDF), read once.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,18 @@ class ModelInterface;
 
 namespace hammer_loads {
 
-/// Every complaint is in our own words, and none on the console. Copies share what was read.
+/// Text and tree of a URDF. All complaints are worded here, and none goes to the console. Copies share the tree.
 class RobotDescription {
  public:
   RobotDescription() : RobotDescription(std::string()) {}
   RobotDescription(const std::string& text);
   RobotDescription(const char* text) : RobotDescription(std::string(text)) {}
 
-  /// Null when the text is no URDF, passes a limit (UrdfLimits) or is no tree.
+  /// Tree of the URDF; null when the text is no URDF, passes a limit (UrdfLimits) or is no tree.
   const urdf::ModelInterface* model() const noexcept;
-  /// One line each: why it is null, or a link whose mass or inertia no body can have (negative, not finite, beyond
-  /// every machine, or principal moments that violate the triangle inequality), or a joint whose place or axis is none.
+  /// Problems, one line each: the reason for a null tree, or a link whose mass or inertia no body can have (negative,
+  /// not finite, beyond every machine, or principal moments that violate the triangle inequality), or a joint whose
+  /// place or axis is invalid.
   const std::vector<std::string>& problems() const noexcept;
 
  private:

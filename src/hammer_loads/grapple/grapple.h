@@ -1,8 +1,9 @@
-/// The straight-line grapple: from slider position to every pin and to the jaw edge, on one branch.
+/// Straight-line grapple: from slider position to every pin and to the jaw edge, on one branch.
 ///
-/// Neglects play, elasticity and masses: geometry only. The same slider position admits several poses; the working
-/// branch is the one through the reference pose, from the fold or dead centre below it to the one above. There the pose
-/// is a function of the slider position, and nothing else is ever returned. Derivation and errata: doc/grapple.md.
+/// Neglects joint clearance, elasticity and masses: geometry only. The same slider position admits several poses; the
+/// working branch is the one through the reference pose, from the fold or dead centre below it to the one above. There
+/// the pose is a function of the slider position, and nothing else is ever returned. Derivation and errata:
+/// doc/grapple.md.
 #pragma once
 
 #include <array>
@@ -29,7 +30,7 @@ struct SliderLimit {
   double slider{};  ///< [m]; of a fold to some 1e-15
 };
 
-/// "dead centre", "fold" or "crossing of branches".
+/// Name of a limit: "dead centre", "fold" or "crossing of branches".
 const char* nameOf(SliderLimit::Kind kind) noexcept;
 
 /// Reason why there is no pose for a slider position.
@@ -44,32 +45,32 @@ enum class SliderRefusal {
 };
 inline constexpr int kSliderRefusalKinds = 7;
 
-/// One or two words for counters in diagnostics.
+/// Name of a refusal in one or two words, for counters in diagnostics.
 const char* nameOf(SliderRefusal refusal) noexcept;
 
 class Grapple {
  public:
-  /// Reports every violated rule at once; keys as in the grapple file.
+  /// Makes a grapple, or reports every violated rule at once; keys as in the grapple file.
   static Checked<Grapple> make(const GrappleParameters& parameters);
 
   const GrappleParameters& parameters() const noexcept { return parameters_; }
   const SliderLimit& lowerLimit() const noexcept { return lower_; }
   const SliderLimit& upperLimit() const noexcept { return upper_; }
 
-  /// kNone inside the working branch; the stroke is not considered.
+  /// Judges a slider position: kNone inside the working branch; the stroke is not considered.
   SliderRefusal judge(double slider) const noexcept;
   /// Judges as judge(), and returns kOutsideStroke beyond the stroke by more than slider_margin.
   SliderRefusal judgeInStroke(double slider) const noexcept;
-  /// One line: name, slider position, unit, what is allowed.
+  /// Explains a refusal in one line: name, slider position, unit, allowed range.
   std::string explain(SliderRefusal refusal, double slider, const std::string& name = "slider position") const;
 
-  /// From nothing: all branches by their polynomial, the working one of them. Nothing unless judge() says kNone.
+  /// Motion at a slider position, found among all branches by their polynomial. None unless judge() returns kNone.
   std::optional<GrappleMotion> at(double slider) const noexcept;
-  /// From a motion on the working branch: predictor and Newton, shorter steps where those do not settle, at() as a last
-  /// resort. The same value as at() to rounding. Nothing unless judge() says kNone.
+  /// Motion at a slider position near another motion on the working branch: predictor and Newton, shorter steps where
+  /// those do not settle, at() as a last resort. It equals at() to rounding. None unless judge() returns kNone.
   std::optional<GrappleMotion> follow(const GrappleMotion& from, double slider) const noexcept;
 
-  /// Links 1 to 6 of the paper, right jaw: O1A, AB, BD, CE, OD, GH. For pictures, not for the hot path.
+  /// Directions of the paper's links 1 to 6, right jaw: O1A, AB, BD, CE, OD, GH. For pictures, not for the hot path.
   std::array<LinkDirection, 6> linkDirections(const GrappleMotion& motion) const noexcept;
 
  private:

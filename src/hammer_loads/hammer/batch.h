@@ -11,7 +11,7 @@
 
 namespace hammer_loads {
 
-/// `count` states, each array of that length.
+/// Array of `count` states; each pointer refers to an array of that length.
 struct CrankStates {
   const double* angle{};  ///< crank angle from A->D [rad], any winding up to 4e8 rad; just below 0: before a blow
   const double* speed{};  ///< [rad/s]
@@ -19,14 +19,14 @@ struct CrankStates {
   std::size_t count{};
 };
 
-/// Results, see HullWrench; arrays of the states' length, none overlapping another or the states.
+/// Wrenches of the states, see HullWrench; arrays of the states' length, none overlapping another or the states.
 struct WrenchArrays {
   double* force_x{};   ///< [N]
   double* force_z{};   ///< [N]
   double* torque_y{};  ///< [N m]
 };
 
-/// Results, see PinReactions; as above.
+/// Pin forces of the states, see PinReactions; arrays as in the wrenches.
 struct PinArrays {
   double* hull_on_crank_x{};   ///< R01 [N]
   double* hull_on_crank_z{};   ///< [N]

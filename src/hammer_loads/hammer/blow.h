@@ -40,13 +40,13 @@ struct CrankBlow {
   bool early{};            ///< the tool was met before the dead centre
 };
 
-/// A point in hammer_hull axes, from the pivot D [m].
+/// Point in hammer_hull axes, from the pivot D [m].
 struct HullPoint {
   double x{};
   double z{};
 };
 
-/// A rocker at the instant of its blow; any shape, P1 fig. 1.
+/// Rocker at the instant of its blow; any shape, P1 fig. 1.
 struct StrikingRocker {
   double mass{};                 ///< [kg], > 0
   double inertia_about_pivot{};  ///< J about D [kg m2], > 0
@@ -57,14 +57,14 @@ struct StrikingRocker {
   double friction{};             ///< f between rocker and tool [-], >= 0
 };
 
-/// The mechanism's rocker at psi = 0: S on -x, K at the striking offset over that line, joint C at the angle C-D-S.
+/// Rocker of the mechanism at psi = 0: S on -x, K at the striking offset over that line, joint C at the angle C-D-S.
 /// Level linkage: m_n = J2/l2^2 (J2: rod about B): crank and B keep their speed, C's jumps. Else the rod is massless.
 /// Neglects the impulse along rod and rocker that a rod's centre of mass off its line needs (A and D share it).
 StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept;
 
-/// P1 (1)-(9) for given rocker speeds psi' before and after [rad/s], x_K of the sign of the speed before and
-/// f |z_K| < |x_K| (else the tool jams the rocker). Coulomb's friction opposes the sliding of K, which ends together
-/// with the approach and runs back in the rebound; a face that does not slide (z_K = 0) transmits no impulse along x.
+/// Blow by P1 (1)-(9) for given rocker speeds psi' before and after [rad/s], x_K of the sign of the speed before and f
+/// |z_K| < |x_K| (else the tool jams the rocker). Coulomb's friction opposes the sliding of K, which ends together with
+/// the approach and runs back in the rebound; a face that does not slide (z_K = 0) transmits no impulse along x.
 /// Deviates: P1 keeps the direction of friction in the rebound (equal for R = 0), loses its sign in (3)-(5), (8), (9),
 /// and keeps friction in (10), where nothing slides (model.md 5, 7).
 RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
@@ -74,23 +74,21 @@ RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, doub
 /// case f = 0, z_K = 0, m_n = 0.
 HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
 
-/// Blow of a crank that passes the blow forward at a speed w > 0 [rad/s]: the crank keeps its speed, the rocker's jumps
-/// from u(2 pi -) w to u(0 +) w (model.md 1).
+/// Blow of a crank that passes it forward at a speed w > 0 [rad/s]: the crank keeps its speed, the rocker's jumps from
+/// u(2 pi -) w to u(0 +) w (model.md 1).
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept;
 
-/// The blow by its factor on the crank's speed. Restitution, speeds of the rocker, tool impulse and energy are
+/// Blow measured by its factor on the crank's speed. Restitution, speeds of the rocker, tool impulse and energy are
 /// those of rocker and tool, before the linkage takes the rocker up (BlowInertia); the support's impulse is that of the
-/// links' whole change of momentum, to u+ k w-. Level pulse: as rocker.
-/// A tool met early slows the rocker together with the crank, by which the rod holds it: it gets what both lose, and a
-/// restitution is not known.
+/// links' whole change of momentum, to u+ k w-. Level pulse: as rocker. A tool met early slows the rocker together with
+/// the crank, by which the rod holds it: it gets what both lose, and a restitution is not known.
 RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept;
 
 /// Blow of a crank that does not keep its speed: [rad/s] before, > 0, and after.
 RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept;
 
-/// Impossible by more than two deviations: a restitution outside [0, 1], or an energy outside [0, what the
-/// rocker had]. Restitution and energy of such a one are NaN, and it is impossible. Does nothing to one without
-/// deviations.
+/// Voids an impossible blow: restitution outside [0, 1] or energy outside [0, energy of the rocker] by more than two
+/// deviations. Its restitution and energy become NaN and `impossible` true. A blow without deviations stays as it is.
 void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) noexcept;
 
 /// Blow at a crank speed [rad/s] at level rocker (massless rod).

@@ -5,18 +5,18 @@
 
 namespace hammer_loads {
 
-/// Half-sine of the machine's nominal turn: constant speed, without weight, where Fz grows with w^2 and its shape is a
-/// function of the crank angle alone. P0 (15), (16) with time times w as angle.
+/// Half-sine pulse of the machine's nominal revolution: constant speed, without weight. Fz is then proportional to w^2,
+/// with a shape that depends on the crank angle alone. P0 (15), (16) with time times w as angle.
 struct NominalPulse {
   double amplitude{};  ///< H/w^2 [kg m]
   double frequency{};  ///< mu/w [-], half-sine periods per half turn
   double length{};     ///< pi w/mu: crank angle from its start to the blow [rad]
 };
 
-/// A mechanism and a level; refers to the mechanism, which must outlive it.
+/// Mechanism with a level of the model; refers to the mechanism, which must outlive it.
 class HullModel {
  public:
-  /// Level pulse works out the nominal turn at level rocker (some 0.2 ms); elastic is linkage here.
+  /// Level pulse computes the nominal revolution at level rocker (some 0.2 ms); level elastic counts as linkage here.
   HullModel(const Mechanism& mechanism, Level level);
 
   const Mechanism& mechanism() const noexcept { return *mechanism_; }
@@ -29,7 +29,7 @@ class HullModel {
   NominalPulse pulse_;
 };
 
-/// A crank angle and how the links move there.
+/// Crank angle with the motion of the links there.
 struct LinksAtAngle {
   CrankAngle angle;
   LinkMotion links;

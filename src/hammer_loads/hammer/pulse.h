@@ -1,4 +1,4 @@
-/// The pulse of a turn: what P0 (15)-(16) makes of the force along the tool.
+/// Pulse of a revolution: the force along the tool in the form of P0 (15)-(16).
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ struct HalfSinePulse {
   double half_sine_rms_error{};  ///< rms over the turn of (Fz - half sine)/H [-]
 };
 
-/// One instant of a turn. Impulses are exact, so that sparse points lose none of them.
+/// Point of a revolution. Impulses are exact, so that sparse points lose none of them.
 struct TurnPoint {
   double time{};       ///< after the turn's start [s]
   double force_z{};    ///< [N]
@@ -36,14 +36,15 @@ struct TurnPoint {
   double impulse_z{};  ///< impulse along z, likewise [N s]
 };
 
-/// Pulse from the points of one whole turn, in order of strictly growing time, first at time 0 and last at the blow;
-/// the distances between them may differ. Fewer than 3 points give an empty pulse (all zero).
-/// Peak between points by parabola (error of H some (mu dt)^3/16 of H), zero by a line, impulse there by the cubic that
-/// has the force as its slope; the impulse is stationary at the zero, so Q keeps the exactness of the points' impulses.
+/// Pulse from the points of one whole revolution, in order of strictly growing time, first at time 0 and last at the
+/// blow. The distances between the points may differ. Fewer than 3 points give an empty pulse (all zero). The peak
+/// between points is found by a parabola (error of H some (mu dt)^3/16 of H), the zero by a line, and the impulse there
+/// by the cubic that has the force as its slope. The impulse is stationary at the zero, so that Q is as exact as the
+/// points' impulses.
 HalfSinePulse pulseOfTurn(const TurnPoint* points, std::size_t count) noexcept;
 
-/// Pulse of a turn at constant crank speed (as P0 assumes), peak and zero found to rounding (1e-12 of the angle for a
-/// regular machine); the impulses are momentum differences. speed > 0 [rad/s].
+/// Pulse of a revolution at constant crank speed (as P0 assumes), peak and zero found to rounding (1e-12 of the angle
+/// for a regular machine); the impulses are momentum differences. speed > 0 [rad/s].
 struct ConstantSpeedPulse {
   HalfSinePulse pulse;
   double peak_angle{};  ///< crank angle of H [rad], in (0, 2 pi)

@@ -1,4 +1,4 @@
-/// One turn at constant crank speed, row by row.
+/// Loads over one revolution at constant crank speed, row by row.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace hammer_loads {
 
-/// Refers to the model's mechanism, which must outlive it.
+/// Table of one revolution; refers to the model's mechanism, which must outlive it.
 struct TurnTable {
   HullModel model;
   double speed{};   ///< crank speed [rad/s], > 0
@@ -24,22 +24,23 @@ struct TurnRow {
   double crank_angle{};  ///< [deg], 0 just after a blow, 360 just before the next
   double time{};         ///< since the blow [s]
   HullWrench wrench;
-  PinReactions pins;  ///< zero unless asked for; near_blow is not set
+  PinReactions pins;  ///< zero unless requested; near_blow is not set
 };
 
-/// 0, step, 2 step, ... below 360 deg, and 360 deg.
+/// Angles of the rows: 0, step, 2 step, ... below 360 deg, and 360 deg.
 std::size_t rowCount(const TurnTable& table) noexcept;
-/// Rows from `first` on, at most `most` of them; fewer at the end, none beyond it. Evaluated together (batch.h).
+/// Rows from `first` on, at most `most` of them; fewer at the end, none beyond it. They are evaluated together
+/// (batch.h).
 std::vector<TurnRow> turnRows(const TurnTable& table, std::size_t first, std::size_t most);
 
 /// Names and units of the columns.
 std::string csvHeader(const TurnTable& table);
-/// 12 significant digits.
+/// Writes a row with 12 significant digits.
 std::string csvLine(const TurnTable& table, const TurnRow& row);
 
-/// The turn's pulse; at level pulse that of the half-sine with the weight on it.
+/// Pulse of the revolution; at level pulse that of the half-sine with the weight on it.
 ConstantSpeedPulse pulseOfTurn(const TurnTable& table);
-/// `key: value` lines, 12 significant digits.
+/// Writes the pulse as `key: value` lines with 12 significant digits.
 std::string summaryText(const ConstantSpeedPulse& pulse);
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// Counts the load cycles of one channel, sample by sample: some ns each, all memory taken at the start.
+/// Counter of the load cycles of one channel, sample by sample: some ns each, all memory taken at the start.
 #pragma once
 
 #include <array>
@@ -101,7 +101,7 @@ class CycleCounter {
     static_cast<void>(address);
 #endif
   }
-  /// Counts what waits.
+  /// Counts the waiting cycles.
   void settle() noexcept;
 
   LoadGrid grid_;

@@ -1,4 +1,4 @@
-/// The cost of counted cycles: damage-equivalent loads, and damage by an S-N curve (Palmgren-Miner).
+/// Damage-equivalent loads of counted cycles, and damage by an S-N curve (Palmgren-Miner).
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace hammer_loads::life {
 
-/// A figure and its standard deviation, in the same unit, and the part of it that constants make, which more turns do
-/// not lower; NaN where the loads have none.
+/// Figure and its standard deviation, in the same unit, with the part by constants, which more revolutions do not
+/// reduce; NaN where the loads have none.
 struct Figure {
   double value{}, deviation{}, common{};
 };

@@ -9,7 +9,7 @@ namespace hammer_loads {
 /// and no product of such numbers overflows.
 constexpr double kLeastParameter = 1e-9, kMostParameter = 1e9;
 
-/// Link lengths as a drawing gives them [m]; pins A (crank on hull), B (crank-rod), C (rod-rocker), D (rocker on hull).
+/// Nominal link lengths [m]; pins A (crank on hull), B (crank-rod), C (rod-rocker), D (rocker on hull).
 struct LinkLengths {
   double crank{};           ///< l1 = AB [m], > 0, shortest
   double rod{};             ///< l2 = BC [m]

@@ -13,8 +13,9 @@ struct Gravity {
   operator HullMotion() const noexcept;  ///< motion of a hull at rest
 };
 
-/// Motion of the frame hammer_hull at its origin D, in its plane. An acceleration of D is to everything in the hull
-/// what gravity the other way is, so both are one quantity: what an accelerometer at D would read, negated.
+/// Motion of the frame hammer_hull at its origin D, in its plane. An acceleration of D acts on everything in the hull
+/// as gravity in the opposite direction. Both are therefore one quantity: the negative reading of an accelerometer at
+/// D.
 struct HullMotion {
   Gravity gravity;        ///< effective: gravity less the acceleration of D, hull axes [m/s2]
   double rate{};          ///< Omega, turning rate about +y [rad/s]
@@ -23,7 +24,7 @@ struct HullMotion {
   bool turns() const noexcept { return rate != 0.0 || acceleration != 0.0; }
 };
 
-/// On the line from a (part 0) to b (part 1); of equal motions that motion to the bit.
+/// Motion on the line from a (part 0) to b (part 1); of equal motions that motion to the bit.
 inline HullMotion blend(const HullMotion& a, const HullMotion& b, double part) noexcept {
   return {{a.gravity.x + part * (b.gravity.x - a.gravity.x), a.gravity.z + part * (b.gravity.z - a.gravity.z)},
           a.rate + part * (b.rate - a.rate),

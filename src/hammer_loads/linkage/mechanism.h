@@ -1,5 +1,5 @@
-/// A hammer's striking mechanism as its drawing and its weighing give it: lengths, masses, inertias; and what its
-/// drive, whose stator is part of the hull, does to that.
+/// Striking mechanism of a hammer by its nominal parameters and its weighing: lengths, masses, inertias, and the
+/// reaction of its drive, whose stator is part of the hull.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace hammer_loads {
 /// Standard deviations of the constants of a hammer, in the order and the units of kHammerConstants; 0: exact.
 using HammerDeviations = std::array<double, 21>;
 
-/// The hammer file (contract): keys of the same names with the unit appended.
+/// Parameters of the hammer file (contract); keys of the same names with the unit appended.
 struct HammerParameters {
   LinkLengths lengths;                  ///< [m]
   double rocker_com_distance{};         ///< ls = DS [m], > 0
@@ -59,16 +59,16 @@ struct LinkMoments {
   double inv_rod_length{};    ///< 1/l2 [1/m]
 };
 
-/// A hammer that can exist. Built once, then only read.
+/// Mechanism of a possible hammer. Built once, then only read.
 class Mechanism {
  public:
-  /// Reports every violated rule at once; keys as in the hammer file.
+  /// Makes a mechanism, or reports every violated rule at once; keys as in the hammer file.
   static Checked<Mechanism> make(const HammerParameters& parameters);
 
   const CrankRocker& linkage() const noexcept { return linkage_; }
   /// Parameters as given, with the rod's length corrected to the change-point condition.
   const HammerParameters& parameters() const noexcept { return parameters_; }
-  /// m3 ls, the rocker's first moment about D [kg m].
+  /// First moment of the rocker about D, m3 ls [kg m].
   double rockerFirstMoment() const noexcept { return rocker_first_moment_; }
   double cosComAngle() const noexcept { return cos_com_angle_; }  ///< cos a
   double sinComAngle() const noexcept { return sin_com_angle_; }  ///< sin a
@@ -95,7 +95,7 @@ struct DriveReaction {
   }
 };
 
-/// The crank's own inertia about A [kg m2] where the level counts it as part of Jc, not as that of a link: it turns
+/// Inertia of the crank about A [kg m2] where the level counts it as part of Jc and not as that of a link: it turns
 /// with r = 1. With r = 0 the whole reaction is left out.
 inline double crankWithinDrive(const Mechanism& mechanism, Level level) noexcept {
   const HammerParameters& p = mechanism.parameters();
@@ -104,7 +104,7 @@ inline double crankWithinDrive(const Mechanism& mechanism, Level level) noexcept
          p.crank_mass * (p.crank_com_along * p.crank_com_along + p.crank_com_across * p.crank_com_across);
 }
 
-/// drive_inertia: Jc [kg m2]; 0, where it is not known: no reaction but the crank's.
+/// Reaction of the drive. drive_inertia: Jc [kg m2]; 0, where it is not known: no reaction but the crank's.
 inline DriveReaction driveReaction(const Mechanism& mechanism, Level level, double drive_inertia) noexcept {
   const double r = mechanism.parameters().drive_reaction_ratio, crank = crankWithinDrive(mechanism, level);
   return {r * drive_inertia + (1.0 - r) * crank, r * r * drive_inertia + (1.0 - r * r) * crank};

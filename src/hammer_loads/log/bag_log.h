@@ -1,4 +1,5 @@
-/// A node's own bag writer: takes messages as the node has them, never waits for the disk, goes on after its faults.
+/// Bag writer of a node: takes messages as the node has them, never waits for the disk, recovers after the disk's
+/// faults.
 #pragma once
 
 #include <ros/message_traits.h>
@@ -21,24 +22,25 @@
 
 namespace hammer_loads {
 
-/// doc/log.md says what is guaranteed. health() may be called from any thread; all else from one at a time.
+/// Log of a node in bags; doc/log.md states the guarantees. health() may be called from any thread; all else from one
+/// at a time.
 class BagLog {
  public:
-  /// LogSettings::enabled is for the caller to obey.
+  /// Prepares a log; the caller obeys LogSettings::enabled.
   explicit BagLog(const LogSettings& settings, const LogDisk& disk = {});
-  /// Writes what is queued and closes the bag: waits for the disk.
+  /// Writes the queued messages and closes the bag; waits for the disk.
   ~BagLog() { stop(); }
 
   /// Reasons why these settings can never work, one line each (key, value, rule): the node must not start with them.
   /// Makes the directory where findLogDirectory may.
   std::vector<std::string> settingProblems() const;
-  /// Begins a bag. Empty, or one line per reason why not: a problem of the settings, or the state of disk and memory,
-  /// which health() then reports as well; it is no reason not to start the node.
+  /// Begins a bag. Returns nothing, or one line per reason against it: a problem of the settings, or the state of disk
+  /// and memory, which health() then reports as well. That is no reason not to start the node.
   std::vector<std::string> start();
-  /// Closes the bag behind what has been written so far. Never fails; health() says when the bag is closed, and whether
-  /// that went well.
+  /// Closes the bag behind the last message. Never fails; health() reports when the bag is closed, and whether that
+  /// succeeded.
   void stop();
-  /// Goes on in a new bag; false if there is none to split.
+  /// Continues in a new bag; returns false if there is none to split.
   bool split();
 
   /// Queues a copy for the disk if the log is recording. A message that finds no room is dropped and counted.
@@ -51,14 +53,14 @@ class BagLog {
   template <typename Message>
   void writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
                     const std::string& caller = {});
-  /// Messages latched there hold no longer: later bags begin without it.
+  /// Forgets the messages latched there: later bags begin without them.
   void forgetLatched(const std::string& topic, const std::string& caller = {});
 
   /// Returns true if a log that a full disk stopped, or kept from starting, may start() again: some room is there
   /// beyond log_min_free_mb. False after stop().
   bool hasRoomAgain() const;
 
-  /// Bags of earlier runs with this prefix that were not closed: `rosbag reindex` recovers them (recoveryHint).
+  /// Unclosed bags of earlier runs with this prefix: `rosbag reindex` recovers them (recoveryHint).
   std::vector<std::string> unfinishedBags() const;
   /// Text how to recover such a bag, one line.
   static std::string recoveryHint(const std::string& path);

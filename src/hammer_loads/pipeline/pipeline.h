@@ -1,4 +1,4 @@
-/// Samples in, loads out: the one place where the parts meet. No ROS, no clock: time is the header stamps'.
+/// Pipeline from samples to loads: the only place where the parts meet. No ROS, no clock: time is the header stamps'.
 #pragma once
 
 #include <optional>
@@ -21,35 +21,37 @@
 
 namespace hammer_loads {
 
-/// Says the order of its owners: the crank, the hull's state, the turn, the boom, the outputs. What it gives depends on
-/// inputs and settings alone.
+/// Pipeline of the crank, the hull's state, the revolution, the boom and the outputs, in this order. Its results depend
+/// on inputs and settings alone.
 class Pipeline {
  public:
-  /// boom: nothing where its loads are not wanted. counts: where they go on from.
+  /// boom: none where its loads are not wanted. counts: initial counts.
   Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom = {},
            const SampleCounts& counts = {});
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
-  /// A message of boom joints, any subset in any order: angles [rad], speeds [rad/s] or none. Whether any was of use.
+  /// Takes a message of boom joints, any subset in any order: angles [rad], speeds [rad/s] or none. Returns true if any
+  /// was of use.
   bool boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                   const std::vector<double>& velocities) noexcept;
-  /// A reading of the hull's IMU; used with hull_motion imu and boom_stiffness identified. Why it was refused, if it
-  /// was.
+  /// Takes a reading of the hull's IMU; used with hull_motion imu and boom_stiffness identified. Returns the reason if
+  /// it was refused.
   std::optional<ImuRefusal> hullImu(StampNs stamp, const ImuReading& reading) noexcept {
     return hull_.imu(stamp, reading);
   }
-  /// Gauge pressure [Pa] in a chamber of a cylinder of the boom, index as in Boom::cylinders(). Whether it was taken.
+  /// Takes the gauge pressure [Pa] in a chamber of a cylinder of the boom, index as in Boom::cylinders(). Returns true
+  /// if it was accepted.
   bool cylinderPressure(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept {
     return boom_ && boom_->pressure(stamp, cylinder, chamber, pressure);
   }
-  /// A crank message in JointState's terms; finds the crank joint in it.
+  /// Processes a crank message in JointState's terms, in which it finds the crank joint.
   const SampleResult& crankJoint(StampNs stamp, const std::vector<std::string>& names,
                                  const std::vector<double>& positions, const std::vector<double>& velocities) noexcept;
-  /// A crank sample. The result is valid until the next call. No allocation.
+  /// Processes a crank sample. The result is valid until the next call. No allocation.
   const SampleResult& crankSample(StampNs header, const CrankSample& measured) noexcept;
 
-  /// No more samples come: a blow that is still being measured is among the result's ends, as it is known by now.
+  /// Ends the run: a blow that is still being measured is among the result's ends, as far as it is known by now.
   const SampleResult& end() noexcept;
 
   const SampleResult& result() const noexcept { return result_; }  ///< result of the last sample

@@ -1,4 +1,4 @@
-/// Everything that one crank sample gives, complete.
+/// Result of one crank sample, complete.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace hammer_loads {
 
-/// A blow and, if the turn before it was seen whole, its pulse. Known some 50 ms after the blow.
+/// Blow and, if the revolution before it was seen whole, its pulse. It is known some 50 ms after the blow.
 struct TurnEnd {
   StampNs stamp{};       ///< instant of the blow, found between samples [ns]
   std::uint64_t turn{};  ///< blows since the start, 1 for the first
@@ -44,8 +44,8 @@ struct WrenchOutput {
 };
 
 struct SampleResult {
-  /// deviation.wrench and rod_ring where the sample is to stand for a turn's extreme: of a ring whose phase is not
-  /// known that is the crest, the root of two times its root mean square.
+  /// deviation.wrench and rod_ring where the sample stands for an extreme of the revolution. For a vibration of unknown
+  /// phase that is the crest, the root of two times its root mean square.
   struct OfExtreme {
     HullWrench deviation, ring;
   };

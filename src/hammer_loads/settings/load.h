@@ -1,4 +1,4 @@
-/// From parameter files to checked settings.
+/// Checked settings from parameter files.
 #pragma once
 
 #include <optional>
@@ -35,15 +35,8 @@ struct Settings {
   InputTopics input_topics;        ///< at the end of `yaml` as well
 };
 
-/// Settings from what was given over what is shipped in `config_directory`, or every problem at once, one line each.
-///
-/// The file that limits_file names is read first. Pipeline, log and life: each key given replaces the shipped one; of
-/// the shipped life_channels those that are not wanted any more are left out. Hammer: physical parameters have no
-/// defaults, so a single hammer key given means that all must be; with none given hammer_mo100.yaml is used.
-///
-/// Boom: from the text of a robot description (URDF; empty: none) and the boom file's keys, of which a single one given
-/// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`; where the description lacks one
-/// of the two and `boom` is auto, there is no boom and a note says so.
+/// Settings from the given parameters over those shipped in `config_directory`; else every problem at once, one line
+/// each.
 Checked<Settings> load(const std::string& config_directory, ParameterMap given,
                        const std::string& robot_description = {});
 
@@ -51,7 +44,7 @@ Checked<Settings> load(const std::string& config_directory, ParameterMap given,
 Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
                             const std::string& robot_description = {});
 
-/// Settings in force with some numbers changed, or what forbids them. The keys must be among those in force.
+/// Settings in force with some numbers changed, or the reason against it. The keys must be among those in force.
 Checked<Settings> withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
 
 /// Settings with the names of the topics from which the input comes.
