@@ -87,7 +87,7 @@ def life_excerpt(boom):
 
 
 BUDGETED = [("blow/energy", "energy of a blow", 1.0, "J"),
-            ("pulse/turn_impulse_z", "impulse of a turn, z", 1.0, "N s"),
+            ("pulse/turn_impulse_z", "impulse of a revolution, z", 1.0, "N s"),
             ("equivalent_range_3/hull_wrench/force_z", "damage-equivalent load of Fz, slope 3", 1e-3, "kN")]
 
 

@@ -33,7 +33,7 @@ class Node:
         _, _, self.process = xmlrpc.client.ServerProxy(address).getPid("/live_cost")
 
     def share(self):
-        """Of one processor over a window [%]."""
+        """Load of one processor over a window [%]."""
         before, begin = self.ticks(), time.monotonic()
         time.sleep(WINDOW)
         return 100.0 * (self.ticks() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - begin)

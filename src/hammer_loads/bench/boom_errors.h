@@ -22,10 +22,10 @@ struct BoomErrors {
   double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]
   double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
   std::size_t sections_within{};          ///< bending moments within two deviations
-  std::size_t lost_as_shown{};            ///< the flag of a hold-down force that is lost is right
+  std::size_t lost_as_shown{};            ///< samples with a correct flag of a lost hold-down force
   bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_pressure_fit{}, warned_of_imu_stamps{},
       warned_of_damping{};
-  std::size_t unknown{};  ///< the rock's force is said not to be known
+  std::size_t unknown{};  ///< samples at which the rock's force is reported as unknown
   double energy_sum{};    ///< sum of the blows' relative errors
   double frequency{};     ///< frequency of the lowest mode at the end [Hz]
 

@@ -1,4 +1,4 @@
-/// Errors of figures of which there are many, beside what is said of them.
+/// Errors of frequent figures, beside their stated standard deviations.
 #pragma once
 
 #include <cmath>

@@ -123,7 +123,7 @@ std::string markdown(const std::vector<SceneRow>& rows) {
 
 std::string json(const std::vector<SceneRow>& rows) {
   const auto figure = [](const char* name, const FigureErrors::Result& r) {
-    return format("\"%s\": {\"rms\": %.4g, \"said\": %.4g, \"covered\": %.4g}", name, r.rms, r.said, r.covered);
+    return format("\"%s\": {\"rms\": %.4g, \"stated\": %.4g, \"covered\": %.4g}", name, r.rms, r.said, r.covered);
   };
   std::string text = "[";
   for (const SceneRow& r : rows)

@@ -22,7 +22,7 @@ namespace hammer_loads {
 /// std::system_error where the file cannot be written.
 class BagWriter {
  public:
-  static constexpr std::size_t kChunk = 768 * 1024;  ///< as rosbag's [byte]
+  static constexpr std::size_t kChunk = 768 * 1024;  ///< size of a chunk, that of rosbag [byte]
 
   struct Connection {
     std::string topic, type, md5sum, definition;
