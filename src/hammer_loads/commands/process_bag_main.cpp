@@ -20,7 +20,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> bags;  ///< inputs, then the output unless there is none
   std::vector<std::string> params;
-  std::string urdf, tables, ledger;
+  std::string urdf, tables, ledger, reference;
   bool force{}, no_bag{}, replace_run{}, recordings{};
 };
 
@@ -43,6 +43,10 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   addUrdfOption(line, given.urdf);
   for (const InputName& input : kInputs) addTopicOption(line, job.topics, input.topic);
   line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
+  line.option(
+          "--reference", given.reference,
+          "measured load of the hull: columns stamp [s], force_x, force_z [N], torque_y [N m], any of the last three")
+      .type("FILE.csv");
   line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
   line.flag("--pins", job.pins, "pin forces as well").excludes({"--no-bag"});
 }
@@ -150,6 +154,17 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
   return problems;
 }
 
+/// Returns what is wrong with the file of a measured load.
+std::vector<std::string> readReference(const std::string& file, BagJob& job) {
+  if (file.empty()) return {};
+  const Checked<std::string> text = fileText(file);
+  if (!text.value) return text.problems;
+  Checked<std::vector<MeasuredLoad>> rows = readReferenceTable(*text.value);
+  for (std::string& problem : rows.problems) problem.insert(0, file + ": ");
+  if (rows.value) job.reference = *std::move(rows.value);
+  return rows.problems;
+}
+
 int run(int argc, const char* const* argv) {
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);  // rosbag formats a line for every message
   CommandLine line("Loads of the hammer from a recorded bag", "process_bag");
@@ -167,6 +182,8 @@ int run(int argc, const char* const* argv) {
   job.inputs.assign(given.bags.begin(), given.bags.end() - (given.no_bag ? 0 : 1));
   const std::vector<std::string> bad_files = readParameterFiles(given.params, given.urdf, job);
   if (!bad_files.empty()) return fail(bad_files);
+  const std::vector<std::string> bad_rows = readReference(given.reference, job);
+  if (!bad_rows.empty()) return fail(bad_rows);
 
   BagReport report;
   const std::vector<std::string> problems = process(given, job, report);

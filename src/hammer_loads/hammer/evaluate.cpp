@@ -4,10 +4,10 @@
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_dec_float.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads {
 namespace {
@@ -51,13 +51,9 @@ std::string shown(const std::string& cell) {
   return text.empty() ? "(empty)" : text;
 }
 
-/// strtod would also take hexadecimal digits and names.
 std::optional<double> numberFromText(const std::string& text) {
-  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return std::nullopt;
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end != text.c_str() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
+  const std::optional<double> number = decimalNumber(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 Places placesOf(const Cells& header, Problems& problems) {

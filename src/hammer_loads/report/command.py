@@ -59,6 +59,8 @@ def add_bag_options(to):
     to.add_argument("--params", action="append", default=[], metavar="FILE.yaml",
                     help="for bags: parameters, as of process_bag; may be repeated")
     to.add_argument("--urdf", metavar="FILE.urdf", help="for bags: robot description")
+    to.add_argument("--reference", metavar="FILE.csv",
+                    help="for bags: a measured load of the hull, as of process_bag")
     for topic, of in TOPICS.items():
         to.add_argument(f"--{topic}", metavar="TOPIC", help=f"for bags: of {of}; else as in their run_info")
     to.add_argument("--version", action=Version, nargs=0, help="print the version and end")
@@ -77,7 +79,7 @@ def run(given):
 def bag_options(given):
     """Options of process_bag that were given."""
     options = [word for file in given.params for word in ("--params", file)]
-    for name in ("urdf", *TOPICS):
+    for name in ("urdf", "reference", *TOPICS):
         value = getattr(given, name.replace("-", "_"))
         options += [f"--{name}", value] if value is not None else []
     return options

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <system_error>
 
+#include "hammer_loads/log/bag_writer.h"
 #include "hammer_loads/ros/attach.h"
 #include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/bag_warnings.h"
-#include "hammer_loads/log/bag_writer.h"
 #include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/yaml_value.h"
 
@@ -37,6 +37,9 @@ class HammerRuns {
       end();
       begin();
     }
+    for (; next_reference_ < job_.reference.size() && !(timeOf(job_.reference[next_reference_]) > item.time);
+         ++next_reference_)
+      flow_->measured(job_.reference[next_reference_].stamp, job_.reference[next_reference_].load);
     inputs_->forEach([&](auto& input) {
       if (item.connection->topic != input.topic || !(input.wanted || input.latched)) return;
       item.to(input.message);
@@ -72,11 +75,15 @@ class HammerRuns {
     for (const auto& take : latched_) take(*flow_);
   }
 
+  static ros::Time timeOf(const MeasuredLoad& row) {
+    return ros::Time().fromNSec(static_cast<std::uint64_t>(row.stamp));
+  }
+
   const std::vector<BagRun>& runs_;
   const BagJob& job_;
   const Sinks sinks_;
   BagReport& report_;
-  std::size_t next_{};
+  std::size_t next_{}, next_reference_{};
   std::optional<HammerBridge> flow_;
   std::optional<HammerInputs> inputs_;                       ///< inputs of this run
   std::vector<std::function<void(HammerBridge&)>> latched_;  ///< messages that are the same in every run

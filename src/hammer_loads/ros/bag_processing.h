@@ -8,6 +8,7 @@
 
 #include "hammer_loads/life/piece_sink.h"
 #include "hammer_loads/ros/bag_report.h"
+#include "hammer_loads/ros/reference_table.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -24,7 +25,8 @@ struct BagJob {
   /// Names of the topics; what is empty comes from the parameters (`input_topic_crank` ...), else it is the default.
   InputTopics topics;
   std::string output_prefix{"/hammer_loads"};
-  bool pins{};  ///< pin forces as well
+  bool pins{};                          ///< pin forces as well
+  std::vector<MeasuredLoad> reference;  ///< measured load of the hull beside that of the bags
 };
 
 /// Reads the inputs' messages in record order and writes every output at the record time of the input that caused it.

@@ -37,6 +37,7 @@ class HammerBridge {
                         const ros::Time& record_time);
   /// A measured load on the hull, which outputs are compared with; it changes none of them.
   void reference(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time);
+  void measured(StampNs stamp, const ReferenceComparison::Values& load) { reference_.measured(stamp, load); }
   /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
   /// No more inputs come: sends the blow that is still being measured, at the record time of the last crank message.

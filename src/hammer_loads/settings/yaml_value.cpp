@@ -6,6 +6,7 @@
 
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads {
 namespace {
@@ -33,12 +34,7 @@ std::optional<double> asNumber(const YAML::Node& value) {
   if (!isPlain(value)) return std::nullopt;
   const std::string& text = value.Scalar();
   if (const auto special = specialNumber(text)) return special;
-  // strtod would also take hexadecimal digits and names
-  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return std::nullopt;
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end != text.c_str() + text.size()) return std::nullopt;
-  return number;
+  return decimalNumber(text);
 }
 
 std::optional<std::int64_t> asInteger(const YAML::Node& value) {
