@@ -138,8 +138,9 @@ std::string markdown(const std::vector<DrawingSummary>& rows) {
 std::string json(const std::vector<DrawingSummary>& rows) {
   std::string text;
   for (const DrawingSummary& row : rows)
-    text += format("%s\n    {\"quantity\": \"%s\", \"rms\": %.6g, \"stated\": %.6g, \"covered\": %.6g, \"least\": %.6g}",
-                   text.empty() ? "" : ",", row.quantity, row.all.rms, row.all.said, row.all.covered, row.least);
+    text +=
+        format("%s\n    {\"quantity\": \"%s\", \"rms\": %.6g, \"stated\": %.6g, \"covered\": %.6g, \"least\": %.6g}",
+               text.empty() ? "" : ",", row.quantity, row.all.rms, row.all.said, row.all.covered, row.least);
   return "[" + text + "\n  ]";
 }
 
