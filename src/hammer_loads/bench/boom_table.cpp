@@ -21,8 +21,8 @@ struct BoomKind {
   const char* name;
   double oil;              // over the boom file's
   double hold_down_force;  // on rock [N]; 0: the hull hangs
-  double drive;            // of the operator [rad/s]
-  Change change;           // of a machine with clean sensors and a boom without flaws; null: none
+  double drive;            // speed of the operator's motion [rad/s]
+  Change change;           // flaw added to a machine with clean sensors and a boom without flaws; null: none
 };
 
 void rub(simulation::MachineSettings& m) { m.on_boom.seals.friction = 0.01; }

@@ -22,7 +22,7 @@ constexpr double kFrom = 4.0;                       // [s]: the rod is known by 
 constexpr double kLeftOut = 3.0;                    // before the end [s]
 constexpr double kLargestLoad = 2e5, kFine = 1e-4;  // [N], [s]
 constexpr int kGrid = 4096;
-constexpr double kAfterFrom = 0.006, kAfterTo = 0.040;  // of the ring, from the first touch [s]
+constexpr double kAfterFrom = 0.006, kAfterTo = 0.040;  // interval of the vibration, from the first touch [s]
 
 std::array<double, 3> valuesOf(const CrankTruth& t) {
   return {t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
@@ -140,7 +140,7 @@ std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer, std::uint6
     s.rod = {stiffness, damping_ratio, play};
     return s;
   };
-  MachineSettings lively = rod(1e9, 0.6, 0.0);  // of its speed the rocker keeps 0.55, in a contact of 1.3 ms
+  MachineSettings lively = rod(1e9, 0.6, 0.0);  // the rocker keeps 0.55 of its speed, in a contact of 1.3 ms
   lively.strike.contact_stiffness = 1.2e8, lively.strike.rock_strength = 3e5;
   MachineSettings together = base;
   makeTogether(together);

@@ -11,7 +11,7 @@ namespace hammer_loads::accuracy {
 namespace {
 
 constexpr double kSlow = 1.0 / 60.0;               // [s]
-constexpr int kInMean = 168;                       // of the truth, some 0.1 ms apart
+constexpr int kInMean = 168;                       // points of the truth in a mean, some 0.1 ms apart
 constexpr double kKnownFrom = 4.0, kBefore = 3.0;  // after the start, before the end [s]
 constexpr double kOneBlow = 0.02;                  // [s]
 

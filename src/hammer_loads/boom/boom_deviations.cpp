@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kRounded = 1e-12;  // of a column: what rounding makes of zero
+constexpr double kRounded = 1e-12;  // relative size of a column that rounding makes of zero
 // Numerical: kRounded
 /// First bending of a link with what it carries, the joints held [rad/s]: anything from 10 to 30 Hz, by the root mean
 /// square of what it then gives, 1/kBending^2.

@@ -56,7 +56,7 @@ Driven HeldForces::drivenAt(double ahead, const ModeVector& present) const noexc
 }
 
 HeldForces::Piece HeldForces::take(double most) noexcept {
-  constexpr double kNone = 1e-9;  // of a piece: rounding
+  constexpr double kNone = 1e-9;  // part of a piece below which it is rounding
   // Numerical: kNone
   Piece all;
   ModeVector impulse = ModeVector::Zero();

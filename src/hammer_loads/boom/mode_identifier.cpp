@@ -9,16 +9,16 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCommonDeviation = 2.0 * kFrequencyDeviation;  // of log stiffness, of all cylinders together
-constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that warms up, a pose that changes
-constexpr double kDampingWalk = 0.01;  // of log damping in a second
+constexpr double kCommonDeviation = 2.0 * kFrequencyDeviation;  // of log stiffness, common to all cylinders
+constexpr double kOilWalk = 0.004;     // per second, of log stiffness: oil that warms up, a pose that changes
+constexpr double kDampingWalk = 0.01;  // per second, of log damping
 // Prior: kOilWalk, kDampingWalk
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
 // Prior: kUnknownRate
-constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]
-constexpr double kContactWalkSeen = 3e5;  // where an IMU shows each landing: they are no noise then
+constexpr double kContactWalk = 1.3e5;    // random walk of the rock's force [N/sqrt(s)]
+constexpr double kContactWalkSeen = 3e5;  // with an IMU, which shows each landing: landings are no noise then
 // Prior: kContactWalkSeen
-constexpr double kUnknownContact = 1e4;  // of it at the start [N]
+constexpr double kUnknownContact = 1e4;  // deviation of the rock's force at the start [N]
 // Prior: kContactWalk, kUnknownContact
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 // Prior: kLeastDamping, kMostDamping

@@ -10,13 +10,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kDelayWalk = 2e-5;  // of a delay in a second [s]: clocks drift by some 20 ppm
+constexpr double kDelayWalk = 2e-5;  // random walk of a delay in a second [s]: clocks drift by some 20 ppm
 // Prior: kDelayWalk
 constexpr double kOilWithDelay = 0.1;      // deviation of log stiffness, beside what was known without a delay
-constexpr double kWrongPart = 0.05;        // of a delay that is found
+constexpr double kWrongPart = 0.05;        // relative error of an identified delay
 constexpr double kWrongByPressures = 0.3;  // by them alone
 constexpr double kDoubt = 0.6;             // deviations of an expected lead: they are large, see ConstantErrors
-constexpr double kWrongLead = 0.3;         // of what is taken for the crank's: it may be a sensor's
+constexpr double kWrongLead = 0.3;         // relative error of the crank's lead, which may be a sensor's
 
 /// Value nearer to 0 of two of equal sign; else 0.
 double lesserOf(double a, double b) noexcept {
@@ -31,7 +31,7 @@ void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (!learns_ || isDelayFollowed(clock) || known_for_ < look_back::kTurn || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
   if (clock == Clock::kPressures) return unlearn(1.0);
-  surprise_ = 1.0;  // what was not explained may be by this
+  surprise_ = 1.0;  // the delay may explain the earlier misfit
   unlearns_for_ = kProven;
 }
 
@@ -131,7 +131,7 @@ double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
   if (clock == Clock::kCrank) return 0.0;
   const double wrong = imuSpeaks() ? kWrongPart : kWrongByPressures;
   const double lead = crankLead();
-  double largest = 0.0;  // what is the one's may be the other's
+  double largest = 0.0;  // the delay of one clock may be that of the other
   for (Clock each : {Clock::kImu, Clock::kPressures})
     if (isDelayFollowed(each)) largest = std::max(largest, std::abs(delayByCrank(each) - lead));
   return std::sqrt(delayVariance(clock) + square(wrong * largest) + square(kWrongLead * lead));

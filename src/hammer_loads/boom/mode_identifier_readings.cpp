@@ -10,10 +10,10 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kFarOff = gate::kRare;  // standard deviations beyond which a reading counts less
-constexpr double kSurpriseShare = 3e-4;  // of one reading in the mean of squares: 1.7 s at 1 kHz
-constexpr double kSurprised = 5.0;       // of that mean: at 4, one pose of eight on rock took the wrong oil for its own
-constexpr double kCalm = 1.8;            // likewise
-constexpr double kWorstSurprise = square(gate::kImpossible);  // what one can add at most
+constexpr double kSurpriseShare = 3e-4;  // weight of one reading in the mean of squares: 1.7 s at 1 kHz
+constexpr double kSurprised = 5.0;       // limit of that mean: at 4, one pose of eight on rock identified wrong oil
+constexpr double kCalm = 1.8;            // limit of that mean for agreement
+constexpr double kWorstSurprise = square(gate::kImpossible);  // limit of the contribution of one reading
 constexpr std::size_t kTogether = 3;                          // readings that are linear about one state
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastStep = 0.25;  // of the crank's, where the delay has just been found
+constexpr double kLeastStep = 0.25;  // part of the crank's step, where the delay has just been identified
 // Numerical: kLeastStep
 
 }  // namespace

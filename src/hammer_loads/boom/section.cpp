@@ -86,7 +86,7 @@ Checked<Section> Section::make(const SectionParameters& p, const Chain& chain) {
     section.part_.com = p.beyond->com;
     section.part_.inertia.diagonal() << 0.0, p.beyond->inertia_y, p.beyond->inertia_y;
   } else {
-    const double share = before / (before - behind);  // of the bar that lies before the cut
+    const double share = before / (before - behind);  // part of the bar that lies before the cut
     section.part_ = slenderBar((1.0 - share) * link_mass, share * end, end);
     result.notes.push_back(format("%s_section_mass_beyond_kg: not given, %s counts as a uniform bar between its joints",
                                   name, p.link.c_str()));

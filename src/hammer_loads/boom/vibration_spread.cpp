@@ -7,9 +7,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSameDeviation = 1e-3;  // of it
-constexpr double kFaded = 1e-4;          // of the displacement by the hammer's load [m sqrt(kg)]: 10 kg by 30 um
-constexpr double kBelowCritical = 1e-6;  // of critical damping
+constexpr double kSameDeviation = 1e-3;  // relative difference of deviations that count as equal
+constexpr double kFaded = 1e-4;          // displacement by the hammer's load [m sqrt(kg)]: 10 kg by 30 um
+constexpr double kBelowCritical = 1e-6;  // distance to critical damping, relative
 // Numerical: kSameDeviation, kFaded, kBelowCritical
 
 }  // namespace

@@ -13,9 +13,9 @@ constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and
 constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
 constexpr double kHuber = 3.0;           // standard deviations of what is left
 constexpr int kMostRounds = 40;
-constexpr double kSettled = 1e-3;               // of a standard deviation
-constexpr double kStep = 0.05;                  // of differences, in standard deviations before the recording
-constexpr std::size_t kNeighbouringRows = 100;  // of a row that may be alike: 20 s
+constexpr double kSettled = 1e-3;               // in standard deviations
+constexpr double kStep = 0.05;                  // step of differences, in standard deviations before the recording
+constexpr std::size_t kNeighbouringRows = 100;  // range of rows that may have a common error: 20 s
 
 bool isFriction(BoomUnknown kind) {
   return kind == BoomUnknown::kFrictionForce || kind == BoomUnknown::kFriction || kind == BoomUnknown::kViscous;

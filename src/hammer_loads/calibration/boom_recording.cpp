@@ -9,7 +9,7 @@ namespace hammer_loads::calibration {
 namespace {
 
 constexpr double kLeastHalfWidth = 0.20;  // [s]: an operator's motion is a parabola over it; the oil's modes average
-constexpr std::ptrdiff_t kLeastReadings = 7;  // of which four show no noise
+constexpr std::ptrdiff_t kLeastReadings = 7;  // the noise shows from the fifth one on
 
 /// A parabola through the readings around an instant.
 struct LocalFit {

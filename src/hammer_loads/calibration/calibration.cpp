@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kLeastBlows = 12;
 constexpr double kUsuallyNeeded = 60.0;  // blows
 constexpr int kCurveParts = 72;
-constexpr double kUnknownAngleNoise = 5e-4;  // [rad] of a sensor without counts, first guess
+constexpr double kUnknownAngleNoise = 5e-4;  // first guess for a sensor without counts [rad]
 
 Free toFind(bool centred) {
   Free free = Free::Constant(true);

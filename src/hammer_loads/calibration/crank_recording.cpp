@@ -8,11 +8,11 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kFinest = kTwoPi / 65536.0;    // [rad]; a finer sensor has no counts
-constexpr double kRounding = 2e-6;              // [rad] of a step between readings in single precision
-constexpr double kMultipleTolerance = 1e-3;     // of a count: single-precision sensors round
-constexpr double kGap = 4.5;                    // periods without a sample: what lies between is not known
-constexpr double kDisorder = 0.005;             // of the stamps that repeat or change places: then they are re-timed
+constexpr double kFinest = kTwoPi / 65536.0;  // [rad]; a finer sensor has no counts
+constexpr double kRounding = 2e-6;            // rounding of a step between readings in single precision [rad]
+constexpr double kMultipleTolerance = 1e-3;   // part of a count: single-precision sensors round
+constexpr double kGap = 4.5;                  // periods without a sample: what lies between is not known
+constexpr double kDisorder = 0.005;  // part of the stamps that repeat or change places, from which on they are re-timed
 constexpr std::size_t kRetimeHalfWidth = 200;   // samples on either side that show a sample's own time
 constexpr double kHalfSegment = 3.05;           // [rad] on either side of the blow
 constexpr double kLeastSpeed = 3.0;             // [rad/s] at the blow: a slower one is no working turn

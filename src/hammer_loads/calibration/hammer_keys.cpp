@@ -13,8 +13,8 @@ namespace hammer_loads::calibration {
 namespace {
 
 constexpr double kHides = 3.0;   // times the deviation without the hammer's constants: worth a word
-constexpr double kSeen = 0.7;    // of a constant's deviation is left: as above, and to be written
-constexpr double kUnsaid = 1.2;  // of a variance, true over what apart deviations say: two of them cover 93 % then
+constexpr double kSeen = 0.7;    // part of a constant's deviation that is left, below which it is written
+constexpr double kUnsaid = 1.2;  // ratio of a variance to that by separate deviations: two of them cover 93 % then
 
 /// A constant that a hammer file should have from here: one number and its deviation, with the other constants as the
 /// file has them.

@@ -12,8 +12,8 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr int kReplicas = 4;        // of the recording, by which the bias is found
-constexpr double kBiasDoubt = 0.5;  // of the bias, left over when it is removed
+constexpr int kReplicas = 4;        // replicas of the recording, by which the bias is found
+constexpr double kBiasDoubt = 0.5;  // part of the bias that is left after its removal
 
 constexpr const char* kNames[kGlobals] = {"zero",
                                           "sine of the eccentricity once per revolution",

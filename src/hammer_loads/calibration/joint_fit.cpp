@@ -13,7 +13,7 @@ constexpr int kMostIterations = 40;
 constexpr int kLeastIterations = 8;
 constexpr int kUsualExcess = 2;  // iterations beyond the least: for the progress shown alone
 constexpr int kNearIterations = 3;
-constexpr double kConverged = 0.01;       // of a deviation, change of every parameter
+constexpr double kConverged = 0.01;       // change of every parameter, in deviations
 constexpr int kNeighbours = 3;            // blows on either side with which one may have errors in common
 constexpr double kMostTiming = 0.01;      // [s]
 constexpr double kMostAngleNoise = 0.1;   // [rad]
@@ -193,7 +193,7 @@ Globals priorDeviations() { return (Globals() << 10.0, 0.05, 0.05, 0.03, 0.03, 1
 
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, const Free& free, const Progress& progress) {
-  constexpr double kOwn = 0.3;  // of the time, for what each blow has of its own
+  constexpr double kOwn = 0.3;  // part of the time for the blows' own parameters
   JointFit joint;
   joint.globals = joint.centre = start;
   joint.noise = noise;

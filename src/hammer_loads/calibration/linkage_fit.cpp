@@ -19,15 +19,15 @@ using Unknowns = LinkageUnknowns;
 using Vector = LinkageUnknowns::Vector;
 
 constexpr std::size_t kLeastTableRows = 12;  // nine unknowns and what they leave
-constexpr std::size_t kMostRows = 400;       // of a longer table some are left out
+constexpr std::size_t kMostRows = 400;       // rows in use of a longer table
 constexpr int kPieces = 40;                  // differences are over this part of the table
-constexpr double kDifferences = 6.0;         // their weight: the lever is what the lengths are for
+constexpr double kDifferences = 6.0;         // weight of differences: the lengths serve the lever
 constexpr int kStarts = 300;
-constexpr int kBest = 16;             // of them are fitted to the end
+constexpr int kBest = 16;             // number of starts that are fitted to the end
 constexpr double kLeastLink = 0.05;   // a shorter link, or lever of the driven pin, is none of a machine [m]
 constexpr double kAnyPlace = 1.0;     // standard deviation of a pin that was not measured, about the joint [m]
 constexpr double kAnyLink = 0.4;      // mean and standard deviation of a link's length [m]
-constexpr double kReading = 1e-4;     // of a stroke: what is left is not taken for less [m]
+constexpr double kReading = 1e-4;     // least residual of a stroke [m]
 constexpr double kInseparable = 0.9;  // correlation
 // Numerical: kLeastTableRows, kMostRows, kPieces, kDifferences, kStarts, kBest, kLeastLink, kAnyPlace, kAnyLink,
 // kReading, kInseparable

@@ -10,10 +10,10 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kFits = 0.5;         // of the force, rms: masses of a drawing, friction and zeros are within it
-constexpr double kBetter = 0.5;       // another reading of it is off by less than this part
+constexpr double kFits = 0.5;    // part of the force, rms: errors of nominal masses, friction and zeros are below it
+constexpr double kBetter = 0.5;  // another reading of it is off by less than this part
 constexpr double kBeyondLimit = 0.3;  // [rad]
-constexpr double kFaultyNoise = 8.0;  // of a joint's sensor over that of the same in other recordings
+constexpr double kFaultyNoise = 8.0;  // ratio of a joint sensor's noise to that in other recordings
 
 struct PressureUnit {
   const char* name;

@@ -143,7 +143,7 @@ calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_st
 /// Pieces of the recording, and more of them until no more are needed.
 calibration::Calibration calibrated(const BagInputs& inputs, const Settings& settings, double rocker_std,
                                     CrankBag& bag) {
-  constexpr double kReading = 0.2;  // of the time of a round
+  constexpr double kReading = 0.2;  // part of the time of a round
   constexpr double kGain =
       0.8;  // of the deviation: twice the blows leave 0.71 of noise, all of what they have in common
   double before = kInfinity;

@@ -94,7 +94,7 @@ Checked<OutputFile> OutputFile::make(const OutputRequest& request) {
   if (descriptor < 0) {
     const int why = errno;
     const std::string reason = (why == EEXIST ? file.path() + ": " : "") + std::strerror(why);
-    file.release();  // what stands there is not this command's
+    file.release();  // the file there belongs to another program
     return refuse("cannot be written: " + reason);
   }
   close(descriptor);

@@ -63,7 +63,7 @@ std::string process(const BagInputs& inputs, const Arguments& given, const std::
     bag.close();
     if (flow.accepted() == 0) return inputs.names() + ": no jaw edge; " + onOneLine(refusalReport(flow));
     return {};
-  } catch (const std::system_error& error) {  // what goes wrong with an input is none
+  } catch (const std::system_error& error) {  // an error of an input is none of the output
     return given.bags.back() + ": cannot be written: " + error.code().message();
   } catch (const std::exception& error) {
     return inputs.names() + ": cannot be read: " + onOneLine(error.what());

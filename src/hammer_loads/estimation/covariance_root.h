@@ -10,7 +10,7 @@ namespace hammer_loads {
 /// one standard deviation each.
 template <int size>
 Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, size, size>& covariance) noexcept {
-  constexpr double kRounding = 1e-12;  // of a variance: a pivot below it is what rounding left of zero
+  constexpr double kRounding = 1e-12;  // relative, for a variance: a smaller pivot is a rounded zero
   // Numerical: kRounding
   Eigen::Matrix<double, size, size> root = Eigen::Matrix<double, size, size>::Zero();
   for (Eigen::Index j = 0; j < size; ++j) {

@@ -153,7 +153,7 @@ void BagLog::latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint
   order.bytes = std::move(bytes);
   if (writer_.post(std::move(order))) return;
   lose(topic, time);
-  forget(topic);  // what was latched before holds no longer
+  forget(topic);  // earlier latched messages hold no longer
 }
 
 void BagLog::forgetLatched(const std::string& topic, const std::string& caller) {

@@ -101,7 +101,7 @@ class BagLog {
   const LogSettings settings_;
   const std::string gap_name_;
   const LogDisk disk_;
-  std::uint64_t session_{};  // of the current recording; 0: none is wanted
+  std::uint64_t session_{};  // number of the current recording; 0: none is wanted
   std::uint64_t last_session_{};
   bool is_wanted_{};                 // by the last of start() and stop()
   mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads

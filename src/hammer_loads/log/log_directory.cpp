@@ -53,7 +53,7 @@ Checked<std::string> findLogDirectory(const std::string& given) {
     const std::string home = homeDirectory();
     path = home + given.substr(1);
     std::error_code error;
-    if (isBelow(path, home)) std::filesystem::create_directories(path, error);  // what failed shows below
+    if (isBelow(path, home)) std::filesystem::create_directories(path, error);  // a failure shows below
   }
   struct stat found {};
   if (stat(path.c_str(), &found) != 0) {

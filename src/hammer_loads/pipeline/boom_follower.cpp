@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastContact = 0.05;  // of the boom's weight, which is no better known
+constexpr double kLeastContact = 0.05;  // part of the boom's weight, which is no better known
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 

@@ -39,7 +39,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   boom_.vibration().keepOil(!last_blow_ || seconds(sample.stamp - *last_blow_) > kStillBeats);
   if (sample.imu) {
     observer_.imu(boom_, held_, sample.stamp, step, *sample.imu);
-    if (!state_.at_blow) weighUnexplained(sample.imu->reading, step);  // which may be of before the blow
+    if (!state_.at_blow) weighUnexplained(sample.imu->reading, step);  // the reading may be from before the blow
   }
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (!pressuresCount()) return;

@@ -10,9 +10,9 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kSettlingSamples = 5;  // without measured speeds: until then they are known from linearised steps
-constexpr double kSettledDeviations = gate::kRare;       // that the predicted error has
+constexpr double kSettledDeviations = gate::kRare;       // deviations of the predicted error
 constexpr double kFrozenCounts = 5;                      // a crank that turned further gives another angle
-constexpr double kFrozenDeviations = gate::kImpossible;  // of a sensor's noise, as well
+constexpr double kFrozenDeviations = gate::kImpossible;  // deviations of a sensor's noise
 
 /// resolution: of the angle sensor [rad].
 double frozenTurn(const PipelineSettings& s, double resolution) noexcept {

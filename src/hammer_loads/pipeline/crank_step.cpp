@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kBlowSpeed = kCreeping;  // of the crank: slower, it creeps over the blow and nothing strikes
+constexpr double kBlowSpeed = kCreeping;  // crank speed below which it creeps over the blow and nothing strikes
 
 bool isEarlier(const CrankStep::Passage& passage, Side side) noexcept {
   return (side == Side::kBeforeBlow) == passage.forward;
@@ -65,7 +65,7 @@ double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
   f_low *= sign, f_high *= sign;
   constexpr double kAngleTolerance = 1e-11;  // [rad]: some 1e-12 s
   // Numerical: kAngleTolerance
-  int kept = 0;  // which end stayed last time: +1 high, -1 low
+  int kept = 0;  // end that stayed last time: +1 high, -1 low
   for (int i = 0; i < 60 && f_high > kAngleTolerance && f_low < -kAngleTolerance; ++i) {
     const double time = (low * f_high - high * f_low) / (f_high - f_low);
     const double f = sign * difference(at(time).position, at_blow);

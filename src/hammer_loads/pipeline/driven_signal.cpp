@@ -17,18 +17,18 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 // Numerical: kWalks, kWalksOfIntegral
-constexpr double kBlowPart = 0.3;                // of a blow's impulse, which is known when the crank has turned on
-constexpr double kNoisiest = 3.0;                // times the first guess: a unit whose noise at rest was not seen
-constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
-constexpr double kComplianceWalk = 0.01;         // of the first guess's deviation in a second: a pose that changes
+constexpr double kBlowPart = 0.3;  // part of a blow's impulse, which is known when the crank has turned on
+constexpr double kNoisiest = 3.0;  // times the first guess: a unit whose noise at rest was not seen
+constexpr double kFarOff = square(gate::kRare);  // in variances: a reading farther off counts as this
+constexpr double kComplianceWalk = 0.01;         // part of the first guess's deviation in a second: a pose that changes
 // Prior: kComplianceWalk
 // Of a compliance by a description, whose masses are good to 3 % and centres to 2 cm.
 constexpr double kDescribed = 0.05;
 // Prior: kDescribed
 constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
-constexpr double kLeastNoise = 1e-3;    // of the first guess: a logarithm is taken of it
-constexpr double kUnknownSignal = 1e3;  // of the noise: smooth part at the start
-constexpr double kOfInterval = 0.05;    // that one reading has in the mean
+constexpr double kLeastNoise = 1e-3;    // part of the first guess, as a logarithm is taken of it
+constexpr double kUnknownSignal = 1e3;  // ratio of the smooth part at the start to the noise
+constexpr double kOfInterval = 0.05;    // weight of one reading in the mean
 // Numerical: kUnknownSignal, kUnknownSlope, kLeastNoise, kOfInterval
 constexpr double kFirstCounts = 10.0;  // readings that the first guess of the noise stands for
 

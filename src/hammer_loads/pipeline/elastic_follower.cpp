@@ -15,9 +15,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kFrom = -0.30, kFromLatest = -0.05;    // [rad] where it begins: some 15 ms before the blow
-constexpr double kTo = 2.2;                             // [rad]: by then no rod rings
-constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
+constexpr double kFrom = -0.30,
+                 kFromLatest = -0.05;  // beginning of the elastic model [rad]: some 15 ms before the blow
+constexpr double kTo = 2.2;            // [rad]: by then no rod rings
+constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // for logarithms of likelihoods, per blow
 constexpr std::int64_t kOthersTurn = 4;                 // [blows]
 // Numerical: kOthersTurn
 constexpr double kContact = 5e-4, kContactsShare = 0.01;  // [s]; of a restitution: what that makes of it

@@ -11,8 +11,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMemory = look_back::kSomeTurns;  // of each filter
-constexpr double kLost = 0.5;                      // of an angle that winds or came back [rad]
+constexpr double kMemory = look_back::kSomeTurns;  // time constant of each filter
+constexpr double kLost = 0.5;                      // jump of an angle that winds or came back [rad]
 constexpr double kStill = 0.03;                    // [rad]: after a gap, of a boom that vibrates where it was to be
 constexpr double kFast = 0.05;                     // [rad/s]: its acceleration hides the vibration
 constexpr double kSettles = 2.5;                   // [s]: this long what was no slow motion is seen as an acceleration

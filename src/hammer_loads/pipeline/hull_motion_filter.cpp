@@ -21,12 +21,12 @@ constexpr double kLightest = 0.2;
 // Prior: kLightest
 constexpr double kLongestPiece = 2e-3;  // [s]: some 20 of a period of 25 Hz
 // Numerical: kLongestPiece
-constexpr double kWorking = 0.05;  // of the greatest load: the hammer is at work
+constexpr double kWorking = 0.05;  // part of the greatest load, from which on the hammer is at work
 // Prior: kForceNoise
 
 constexpr double kStiffest = 4e3;  // [1/s2]: some 10 Hz
 constexpr double kDamped = 10.0;   // [1/s]: of that a twelfth of the critical
-constexpr double kArm = 0.5;       // [m] of a hull's turning: from D to where it hangs
+constexpr double kArm = 0.5;       // arm of a hull's rotation: from D to its suspension [m]
 // Prior: kRateNoise, kStiffest, kDamped, kArm
 
 /// signal_arm: 1 of a force's signal; of turning over kArm.

@@ -59,9 +59,9 @@ class ImuTrust {
   double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]
 
  private:
-  static constexpr double kMostPart = 0.5;             // of the weight
+  static constexpr double kMostPart = 0.5;             // part of the weight
   static constexpr double kMostRate = 3.0;             // [rad/s]
-  static constexpr double kFrozen = look_back::kTurn;  // of one reading again and again
+  static constexpr double kFrozen = look_back::kTurn;  // duration of one unchanged reading
 
   RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()},
       power_{look_back::kTenTurns, Eigen::Vector3d::Zero()};

@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLag = 0.4;  // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
+constexpr double kLag = 0.4;  // part of the oscillation per root of the surprise: 5 to 20 ms cost 0.3 to 1.4
 
 /// Friction of seals between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
@@ -101,7 +101,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const int j = cylinder.joint();
     Track& track = tracks_[i];
     if (position[j] != track.position) track.at = cylinder.at(position[j]), track.position = position[j];
-    const CylinderPosition& at = track.at;  // of a measured force the lever as it is measured
+    const CylinderPosition& at = track.at;  // the measured lever belongs to a measured force
     torque_[i].reset();
     const StampNs stamp = pressures.newest(i);
     const std::optional<ChamberPressures> read = pressures.at(i, stamp);

@@ -18,11 +18,11 @@ constexpr Doubt kRate{0.005, 0.02, 0.005};  // [rad/s]
 // Prior: kRate
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
 // Prior: kAngle
-constexpr Doubt kTorque{0.004, 0.02, 0.002};  // of the torque that the cylinder's relief valve allows
+constexpr Doubt kTorque{0.004, 0.02, 0.002};  // parts of the torque that the cylinder's relief valve allows
 constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at the mean of their places
 // Prior: kTorque
 constexpr double kMoved = 0.02;     // [rad]: a jump
-constexpr double kOfSample = 0.75;  // of the step between samples: what lies further from one is of another
+constexpr double kOfSample = 0.75;  // part of the step between samples, within which a reading belongs to one
 
 void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {
   reading.noise = size * doubt.noise;
@@ -87,7 +87,7 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
 void ModeObserver::pressures(Boom& boom, const HeldPose& held, StampNs sample,
                              const CylinderPressures& pressures) noexcept {
   const auto cylinders = boom.cylinders().size();
-  std::array<VibrationReading, kMaxJoints> seen;  // of one instant
+  std::array<VibrationReading, kMaxJoints> seen;  // readings of one instant
   std::size_t count = 0;
   const auto take = [&] { boom.vibration().observe(seen.data(), count), count = 0; };
   for (std::size_t i = 0; i < cylinders; ++i) {

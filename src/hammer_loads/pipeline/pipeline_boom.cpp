@@ -6,8 +6,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kAtWork = 0.3;      // of the nominal speed: blows are struck
-constexpr double kLeadOfZero = 0.6;  // of the time that the crank needs at the blow: what a zero makes of the vibration
+constexpr double kAtWork = 0.3;      // part of the nominal speed at which blows are struck
+constexpr double kLeadOfZero = 0.6;  // part of the zero's time at the blow that acts on the vibration
 
 }  // namespace
 

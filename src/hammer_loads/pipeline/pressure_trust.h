@@ -49,9 +49,10 @@ class PressureTrust {
   double along() const noexcept { return mean_.mean()[1]; }   ///< [N]
 
  private:
-  static constexpr double kAcross = 0.1, kTurning = 0.3;  // of the load along the tool and the weight; with its arm
-  static constexpr double kLongestHose = 8e-3;            ///< time constant [s]
-  static constexpr double kUntilTriedAgain = 60.0;        ///< [s]
+  static constexpr double kAcross = 0.1,
+                          kTurning = 0.3;           // parts of the sum of load along the tool and weight; with its arm
+  static constexpr double kLongestHose = 8e-3;      ///< time constant [s]
+  static constexpr double kUntilTriedAgain = 60.0;  ///< [s]
 
   double turning() const noexcept { return mean_.mean()[2]; }
 

@@ -17,10 +17,10 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongest = 1e-3;           // [s] in which the lever counts as constant
-constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a measured restitution: 0.03 to 0.08,
-                                            // with worn pins to 0.14
+constexpr double kRestitutionDoubt = 0.05;  // error by an elastic rod: 0.03 to 0.08, with worn pins to 0.14
 // Prior: kRestitutionDoubt
-constexpr double kMeanRestitution = 0.5, kAnyRestitution = 0.29;  // of one that may be anything from 0 to 1
+constexpr double kMeanRestitution = 0.5,
+                 kAnyRestitution = 0.29;  // mean and deviation of a restitution uniform from 0 to 1
 // Prior: kMeanRestitution, kAnyRestitution
 constexpr double kPart = 1e-2;       // [rad], as kLongest
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
@@ -92,7 +92,7 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   if (!(blow.drive_inertia > 0.0) || !(speed_before > 0.0)) return rest();
   const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
   const double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0);
-  const double rocker = -restitution * at.u_before * speed_before;  // as it leaves the tool
+  const double rocker = -restitution * at.u_before * speed_before;  // rocker's speed as it leaves the tool
   const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
   const double doubt = std::hypot(measured, doubtOf(restitution)) * at.u_before * speed_before;
   const double missing = rocker - at.u_after * blow.mean * speed_before;
@@ -237,7 +237,7 @@ HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, dou
 }
 
 HullWrench rockerOnTool(const Mechanism& mechanism, const LinkMotion& links, Gravity gravity) noexcept {
-  const double lift = gravity.x * links.rocker.sin_psi + gravity.z * links.rocker.cos_psi;  // of its mass, by psi
+  const double lift = gravity.x * links.rocker.sin_psi + gravity.z * links.rocker.cos_psi;  // per mass, by psi
   const double torque = std::max(0.0, -mechanism.rockerFirstMoment() * lift);
   return {0.0, torque / mechanism.parameters().striking_distance, torque};
 }

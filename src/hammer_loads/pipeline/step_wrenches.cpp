@@ -5,10 +5,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kNear = 1e-3;    // of the span: where slopes are looked at
+constexpr double kNear = 1e-3;    // part of the span at which slopes are evaluated
 constexpr double kClearly = 1.5;  // 1 would do were slopes along the span on a line
 // Numerical: kClearly
-constexpr double kHardly = 1e-3;  // of a component: a change so small decides nothing
+constexpr double kHardly = 1e-3;  // negligible relative change of a component
 // Numerical: kNear, kHardly
 
 using Components = std::array<double, kHullChannels>;

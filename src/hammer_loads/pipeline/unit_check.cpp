@@ -12,19 +12,19 @@ namespace {
 constexpr double kDegrees = 360.0 / kTwoPi;  // in a radian
 constexpr double kRpm = 60.0 / kTwoPi;       // in a radian a second
 constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
-constexpr double kLeastStretch = 0.01;       // [rad] of the shorter one: of the speed's noise as well
-constexpr double kStretch = 1.0;             // [rad]: shorter than a turn, so that most stretches see no jump back
-constexpr double kLongestStep = 0.25;        // [s]
-constexpr double kRepeats = 0.2;             // relative change between steps that repeat each other
-constexpr double kMoves = 1.0;               // [rad/s]: a slower angle says nothing of its unit
-constexpr int kEnough = 8;                   // votes more for another unit than against
+constexpr double kLeastStretch = 0.01;  // [rad] for the shorter stretch: limits the effect of the speed's noise as well
+constexpr double kStretch = 1.0;        // [rad]: shorter than a turn, so that most stretches see no jump back
+constexpr double kLongestStep = 0.25;   // [s]
+constexpr double kRepeats = 0.2;        // relative change between steps that repeat each other
+constexpr double kMoves = 1.0;          // [rad/s]: a slower angle says nothing of its unit
+constexpr int kEnough = 8;              // votes more for another unit than against
 
 constexpr double kWindow = 8e-3;            // [s] over which a rate is taken
-constexpr double kMeanRate = 1.0;           // [s] of its mean
-constexpr double kSlow = 0.8, kFast = 1.2;  // of the mean rate: a hammer's crank passes both in each revolution
+constexpr double kMeanRate = 1.0;           // time constant of the mean rate [s]
+constexpr double kSlow = 0.8, kFast = 1.2;  // parts of the mean rate: a hammer's crank passes both in each revolution
 constexpr double kLikeRevolution = 1.25;    // factor
 constexpr double kSameLength = 0.2;         // relative change from one revolution to the next
-constexpr double kLeastCounts = 100.0;      // of a revolution
+constexpr double kLeastCounts = 100.0;      // counts per revolution
 
 /// Unit that a cycle's length in the angle's own unit, times the gain, shows. Nothing: it is none of them.
 std::optional<CrankUnit> unitOfRevolution(double length) noexcept {
@@ -49,7 +49,7 @@ CrankUnit unitOf(double ratio) noexcept {
   CrankUnit closest = CrankUnit::kRadians;
   double farthest = std::log(kTolerance);
   for (const auto& known : kUnits) {
-    const double off = std::abs(std::log(ratio / known.ratio));  // of a ratio below zero not a number
+    const double off = std::abs(std::log(ratio / known.ratio));  // not a number for a ratio below zero
     if (off < farthest) farthest = off, closest = known.unit;
   }
   return closest;

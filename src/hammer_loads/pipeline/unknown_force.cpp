@@ -11,12 +11,12 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kContacts = 0.012;     // root mean square of the contacts' force over its greatest
-constexpr double kContactsLever = 0.5;  // of l3
-constexpr double kOfDamping = 0.2;      // of the moment, by a unit of the damping ratio
+constexpr double kContactsLever = 0.5;  // in parts of l3
+constexpr double kOfDamping = 0.2;      // part of the moment, per unit of the damping ratio
 constexpr double kLasts = 0.08;         // [s]
 constexpr double kHeld = 0.02;          // [s] for which friction has changed what the rod does
 // Prior: WornMachine.IsCoveredWithFrictionAndClearance of kContacts, kContactsLever, kOfDamping, kLasts, kHeld
-constexpr double kLeastLever = 0.01;  // of l3: nearer to the dead centre the rod's force is not that of its moment
+constexpr double kLeastLever = 0.01;  // part of l3: below it the rod's force does not follow from its moment
 // Numerical: kLeastLever
 
 }  // namespace

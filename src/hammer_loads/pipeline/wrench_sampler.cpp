@@ -81,7 +81,7 @@ LoadImpulse WrenchSampler::motionTo(double time) noexcept {
 
 void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
   if (!(time > added_up_to_)) return;
-  const double part = (time - added_up_to_) / (step_->length() - added_up_to_);  // of the rest of the step
+  const double part = (time - added_up_to_) / (step_->length() - added_up_to_);  // part of the rest of the step
   const LoadColumns there = columns_ + part * (result.load_columns - columns_);
   column_impulse_ += 0.5 * (time - added_up_to_) * (columns_ + there);
   columns_ = there;

@@ -53,7 +53,7 @@ BagFile::BagFile(const std::string& file) : descriptor_(open(file.c_str(), O_RDO
   struct stat found {};
   if (descriptor_ < 0 || fstat(descriptor_, &found) != 0) throw std::runtime_error(std::strerror(errno));
   size_ = static_cast<std::uint64_t>(found.st_size);
-  constexpr std::size_t kBagHeader = 4096;  // as long as this with the padding behind it
+  constexpr std::size_t kBagHeader = 4096;  // size of the bag's header with its padding
   const std::string beginning = bytesAt(0, std::min<std::uint64_t>(size_, kBagMagic.size() + kBagHeader + 100));
   std::string_view rest = beginning;
   if (rest.substr(0, 9) != kBagMagic.substr(0, 9)) throw std::runtime_error("it does not begin as a bag");
@@ -138,7 +138,7 @@ void BagFile::unpack(rosbag::CompressionType packing, ReadChunk& read) const {
   try {
     streams_.getStream(packing)->decompress(read.bytes.data(), size(read.bytes), read.packed.data(), size(read.packed));
   } catch (const rosbag::BagException& error) {
-    throw std::runtime_error(error.what());  // of an input: that class is for outputs
+    throw std::runtime_error(error.what());  // that class is for errors of outputs, this one is of an input
   }
 }
 

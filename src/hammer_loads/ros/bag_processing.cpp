@@ -167,7 +167,7 @@ std::string write(const Work& work, const std::function<void(double)>& progress,
     const std::string problem = writeTables(work, &bag, progress, report);
     bag.close();
     return problem;
-  } catch (const std::system_error& error) {  // what goes wrong with an input is none
+  } catch (const std::system_error& error) {  // an error of an input is none of the output
     return work.job.output + ": cannot be written: " + error.code().message();
   }
 }

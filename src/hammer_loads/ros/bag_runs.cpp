@@ -171,7 +171,7 @@ std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string
   std::vector<std::vector<std::size_t>> recordings;
   // By the run that they end with. Two records of one run at the same time are no splits.
   std::map<std::string, std::pair<std::size_t, ros::Time>> ended;
-  const ros::Duration overlap(1.0);  // what is latched may be repeated with an earlier time
+  const ros::Duration overlap(1.0);  // latched messages may be repeated with an earlier time
   for (const SplitRuns& split : splits) {
     const auto before = split.first.empty() ? ended.end() : ended.find(split.first);
     const bool goes_on = before != ended.end() && split.begin + overlap >= before->second.second;

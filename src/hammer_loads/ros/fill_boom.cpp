@@ -67,7 +67,7 @@ CylinderJoints::CylinderJoints(const Boom& boom, sensor_msgs::JointState& messag
 }
 
 void CylinderJoints::fill(const Boom& boom, sensor_msgs::JointState& message) const {
-  constexpr double kStep = 1e-5;  // of differences [rad]
+  constexpr double kStep = 1e-5;  // step of differences [rad]
   // Numerical: kStep
   std::size_t first = message.name.size();
   for (std::size_t k = drawings_.size(); k-- > 0;) {

@@ -92,7 +92,7 @@ void LifeTables::write(const BudgetFigure& figure) {
 /// constants and of the rest.
 void LifeTables::writeBudget() {
   for (const BudgetFigure& figure : budget_->figures()) write(figure);
-  const std::vector<std::string> names = channelNames(nullptr);  // those of the hull
+  const std::vector<std::string> names = channelNames(nullptr);  // names of the hull's channels
   for (const ChannelCycles& channel : cycles_.channel) {
     if (channel.equivalent_range.empty() || !(channel.equivalent_range.front() > 0.0)) continue;
     BudgetFigure figure{"equivalent_range_" + std::to_string(static_cast<int>(life::kSlopes[0])) + "/" + channel.name,

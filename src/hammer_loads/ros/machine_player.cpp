@@ -27,7 +27,7 @@ constexpr double kMostAhead = 2.0;      // [s] of wall time; a node reports once
 constexpr auto kPoll = std::chrono::milliseconds(10);
 constexpr double kJointPatience = 1.0;  // who listens to the crank connects to the boom at about the same time [s]
 constexpr double kNotable = 1.0;        // [s]
-constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // of the last samples to those who do not report
+constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // for subscribers that do not report
 constexpr std::uint32_t kQueueSize = 100000;                    // 20 s at 5 kHz: a subscriber that stalls loses nothing
 constexpr std::uint32_t kOwnClockStart = 1700000000;            // [s]; fixed, so that the same seed gives the same bag
 

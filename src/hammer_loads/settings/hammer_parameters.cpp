@@ -95,7 +95,7 @@ void readRod(ParameterReader& reader, HammerParameters& parameters, std::string&
 /// Optional: what an unmeasured hull can do depends on it.
 void readHullMass(ParameterReader& reader, HammerParameters& parameters) {
   constexpr const char *kHullMass = "hull_mass_kg", *kDeviation = "hull_mass_std_kg";
-  constexpr double kUsual = 0.3;  // of a mass whose deviation is not given
+  constexpr double kUsual = 0.3;  // relative deviation of a mass, by default
   if (reader.given(kHullMass)) parameters.hull_mass = reader.number(kHullMass, "kg", NumberRule::within(1.0, 1e5));
   parameters.hull_mass_std = kUsual * parameters.hull_mass;
   if (!reader.given(kDeviation)) return;

@@ -7,9 +7,9 @@ namespace hammer_loads::simulation {
 namespace {
 
 constexpr double kAmbient = 1.013e5;      // [Pa]
-constexpr double kExponent = 1.0 / 1.4;   // of isentropic air
+constexpr double kExponent = 1.0 / 1.4;   // exponent of isentropic air
 constexpr double kLeastPressure = 1.0e3;  // absolute [Pa]: oil boils
-constexpr int kIterations = 8;            // of Newton: from 0.02 to 40 MPa in six
+constexpr int kIterations = 8;            // Newton's iterations: from 0.02 to 40 MPa in six
 
 }  // namespace
 

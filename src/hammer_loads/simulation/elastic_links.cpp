@@ -77,7 +77,7 @@ ElasticLinks::View ElasticLinks::at(const TwoBodies& angle, const TwoBodies& spe
   crank = {p_.crank_mass, p_.crank_inertia_about_com, com, {}, {}, -ww * com, 0.0};
   crank.slope[0] = kTurned * com, crank.turn[0] = 1.0;
 
-  const Place share = Place(p_.rod_com_along, p_.rod_com_across) / p_.lengths.rod;  // of the way from B to C
+  const Place share = Place(p_.rod_com_along, p_.rod_com_across) / p_.lengths.rod;  // part of the way from B to C
   const Place along = c + p_.lengths.pivot_distance - b, by_crank = -kTurned * b, by_rocker = kTurned * c;
   const Place moving = speed[0] * by_crank + speed[1] * by_rocker, bending = ww * b - vv * c;
   const double square = std::norm(along);

@@ -62,7 +62,7 @@ void HammerOnBoom::takeMovingPartsOffTheHull() {
   constexpr int kPlaces = 360;
   State held = heldAt(0.0);
   const PlanePoint joint = jointPlace(held, 2), to_hull = std::conj(turnedBy(hullAngle(held)));
-  double mass = 0.0, square = 0.0;  // of the distance from the joint
+  double mass = 0.0, square = 0.0;  // sums over the distance from the joint
   PlanePoint at = 0.0;
   double inertia = 0.0;
   for (int i = 0; i < kPlaces; ++i) {

@@ -44,7 +44,7 @@ HammerOnBoom::Chambers HammerOnBoom::chambersAt(std::size_t k, double way, doubl
   const double angle = hold.state.x[j];
   const Chambers held = heldChambers(k, hold.state, hold.weight[j]);
   const ChamberOil oil(oilOf(k), machine_.on_boom.air);
-  const double lost = leaked / c.bore_area, won = leaked / c.rod_area;  // as ways of the rod
+  const double lost = leaked / c.bore_area, won = leaked / c.rod_area;  // in ways of the rod
   return {oil.compressed(held.bore, -c.boreShare(angle) * (way + lost)),
           oil.compressed(held.rod, c.rodShare(angle) * (way + won))};
 }
@@ -59,7 +59,7 @@ HammerOnBoom::Chambers HammerOnBoom::chambers(std::size_t k, const State& s, con
   const int j = static_cast<int>(k);
   const double way = c.length(s.x[j]) - c.length(hold.state.x[j]), leaked = s.leaked[j];
   const Chambers tight = chambersAt(k, way, leaked, hold);
-  const double side = hold.weight[j] / c.arm(hold.state.x[j]) > 0.0 ? -1.0 : 1.0;  // of the steady push
+  const double side = hold.weight[j] / c.arm(hold.state.x[j]) > 0.0 ? -1.0 : 1.0;  // side of the steady push
   const double here = side * push(k, tight), play = side * machine_.on_boom.pin_play;
   if (!(here < 0.0) || play == 0.0) return tight;
   const double beyond = side * push(k, chambersAt(k, way - play, leaked, hold));

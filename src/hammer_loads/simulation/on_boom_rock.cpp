@@ -8,7 +8,7 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kStepsPerSwing = 60.0;  // of the hull on the rock's spring
+constexpr double kStepsPerSwing = 60.0;  // steps per oscillation of the hull on the rock's spring
 
 }  // namespace
 
@@ -60,7 +60,7 @@ double HammerOnBoom::rockForce(const Foot& foot) const {
 
 Load HammerOnBoom::rockLoad(const State& held) const {
   if (machine_.on_boom.rock.stiffness == 0.0) return {};
-  const double turned = hullAngle(now_) - hullAngle(held);  // of the hull against the rock's face
+  const double turned = hullAngle(now_) - hullAngle(held);  // rotation of the hull against the rock's face
   const PlanePoint force = rockForce(foot(now_, held)) * kI * std::conj(turnedBy(turned));
   const PlanePoint r = boom_.foot;
   return {force.real(), force.imag(), r.imag() * force.real() - r.real() * force.imag()};

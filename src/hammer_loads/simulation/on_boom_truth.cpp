@@ -7,7 +7,7 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kInstant = 2e-5;  // of differences in time [s]
+constexpr double kInstant = 2e-5;  // step of differences in time [s]
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kSwing = 0.04;  // of the coupling in a step [rad]
+constexpr double kSwing = 0.04;  // rotation of the coupling in a step [rad]
 // Numerical: kSwing
 
 /// Largest value of the parabola through three points with the largest in the middle.

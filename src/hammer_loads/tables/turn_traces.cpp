@@ -7,7 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::size_t kMostSamples = 8192;  // of a turn and of the time after it in which its blow is measured
+constexpr std::size_t kMostSamples = 8192;  // samples of a revolution and of the measurement of its blow
 constexpr std::size_t kMostOfTurn = 4096;
 constexpr std::size_t kMostCandidates = 32;
 
