@@ -35,8 +35,8 @@ struct CrankFilterSettings {
   double initial_inertia_std{};  ///< relative [-], >= 0
   double max_speed{};            ///< bound of an unknown speed [rad/s], > 0
   double blow_factor{1.0};       ///< a blow's factor on the crank's speed, first guess [-], > 0
-  ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
-  double blow_std{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
+  ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< deviations of kUnknowns, each in its unit
+  double blow_std{0.25};  ///< standard deviation of blow_factor, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
   // Prior: blow_std
 };
 
@@ -272,8 +272,8 @@ class CrankFilter {
   double speed_variance_;               ///< identified variance of measured speeds [rad2/s2]
   EncoderSlip slip_;
   RunningMean<> usual_step_{kSteps};  ///< [s]
-  double interval_{};                 ///< of the samples, where they are taken at equal ones [s]
-  double lost_time_{};                ///< of the last step, beyond what its stamps say [s]
+  double interval_{};                 ///< interval of the samples, where they are taken at equal ones [s]
+  double lost_time_{};                ///< time of the last step beyond that by its stamps [s]
   double stamps_off_{};               ///< standard deviation of what all stamps are off alike [s]
   SpeedTrust speed_trust_;
   AngleLag angle_lag_;

@@ -48,8 +48,8 @@ class SteadyClockFit {
   double end_residual_{};  ///< residual of the last sample of the run before [ns]
   int run_length_{};       ///< samples with the last stamp
   double mean_length_{1.0};
-  double end_square_{}, step_square_{};     ///< of residuals at the runs' ends and of their steps, running means [ns2]
-  double start_mean_{}, start_variance_{};  ///< of residuals at the runs' beginnings, running [ns], [ns2]
+  double end_square_{}, step_square_{};         ///< mean squares of the runs' end residuals and of their steps [ns2]
+  double start_mean_{}, start_variance_{};      ///< mean [ns] and variance [ns2] of the runs' first residuals
   double lost_evidence_{}, gained_evidence_{};  ///< logarithm of likelihood ratio
   int runs_{};
 };
@@ -138,7 +138,7 @@ class StampSequence {
   double interval() const noexcept {
     return steady_ && fit_.isKnown() && !fit_.contradictsLoss() ? 1e-9 * fit_.interval() : 0.0;
   }
-  /// Of what header stamps are whole multiples though the samples are not taken so [s]; 0: of nothing.
+  /// Step of which header stamps are whole multiples though the samples are not taken so [s]; 0: none.
   double rounding() const noexcept { return rounding_.step(); }
   /// Stamps are being refitted by sequence.
   bool isSteady() const noexcept { return steady_; }

@@ -69,7 +69,7 @@ struct SampleResult {
   CrankEstimate crank;
   CrankUncertainty doubt;    ///< uncertainty of the crank's motion
   LoadColumns load_columns;  ///< errors of the wrench
-  HullWrench rod_momentum;  ///< that the rocker may have beside a rigid rod's, where no spring is followed [N s, N m s]
+  HullWrench rod_momentum;   ///< possible momentum of the rocker beside a rigid rod's, without a followed spring
   HullWrench contact_doubt;  ///< standard deviation, with signs, by whether the tool was met
   /// Covariance of the wrench's errors that are not of the crank's motion: of rod, contact and unknown forces, in
   /// products of [N], [N], [N m].
