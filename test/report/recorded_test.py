@@ -29,7 +29,7 @@ class Recorded(ReportTest):
         self.assertIn("force along the tool, Fz", page.table("Damage-equivalent loads"))
 
     def first_stamp(self, bag):
-        """Of the crank's samples [s]."""
+        """Times of the crank's samples [s]."""
         file = self.directory / "first.sqlite"
         subprocess.run([program("process_bag"), bag, "--no-bag", "--db", file], check=True, capture_output=True)
         with contextlib.closing(sqlite3.connect(file)) as database:

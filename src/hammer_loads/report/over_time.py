@@ -61,7 +61,7 @@ def time_picture(quantity, values, most):
 
 
 def usual(values):
-    """Those that do not stretch a picture: no farther from the median than some widths of the middle 68 %."""
+    """Values that do not stretch a picture: no farther from the median than some widths of the middle 68 %."""
     low, median, high = numpy.quantile(values, [0.1587, 0.5, 0.8413])
     return values[numpy.abs(values - median) <= MOST_WIDTHS * (high - low)]
 
