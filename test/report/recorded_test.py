@@ -28,6 +28,15 @@ class Recorded(ReportTest):
             self.assertIn(kind, page.text)
         self.assertIn("force along the tool, Fz", page.table("Damage-equivalent loads"))
 
+    def test_states_the_band_beside_each_damage_equivalent_load(self):
+        out, options = self.directory / "page.html", self.directory / "options.yaml"
+        options.write_text("level: rocker\nlife_bandwidth_Hz: 100.0\n")
+        outcome = report(DATA / "mo100_1khz.bag", "--params", options, "--html", out)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        loads = Reader(out.read_text(encoding="utf-8")).table("Damage-equivalent loads")
+        self.assertEqual(list(loads), [f"{name}, below 100 Hz" for name in (
+            "force across the tool, Fx", "force along the tool, Fz", "moment about the rocker pivot, My")])
+
     def first_stamp(self, bag):
         """Times of the crank's samples [s]."""
         file = self.directory / "first.sqlite"

@@ -6,9 +6,15 @@
 #include <optional>
 #include <utility>
 
+#include "hammer_loads/life/count_csv.h"
+
 namespace hammer_loads::life {
 
 std::string hotSpotChannel(const HotSpot& spot) { return "stress/" + spot.name; }
+
+std::string countedName(const std::string& channel, double bandwidth) {
+  return bandwidth > 0.0 ? channel + "_below_" + shortNumber(bandwidth) + "Hz" : channel;
+}
 
 std::int64_t dayOf(std::int64_t stamp) noexcept {
   constexpr std::int64_t kDay = 86400LL * 1000 * 1000 * 1000;
@@ -37,7 +43,7 @@ Checked<LifeRecorder> LifeRecorder::make(const LifeSettings& settings, const std
     }
   };
   const auto addCounter = [&](const std::string& name, const LoadGrid& grid, std::size_t first_term) {
-    recorder.names_.push_back(name);
+    recorder.names_.push_back(countedName(name, settings.bandwidth));
     recorder.counters_.emplace_back(grid);
     recorder.sums_.push_back({first_term, recorder.terms_.size()});
   };

@@ -39,10 +39,14 @@ struct LifeSettings {
   std::int64_t period{};                ///< period of ~load_cycles and the ledger [ns], > 0
   double equivalent_cycles_per_hour{};  ///< reference for damage-equivalent loads, > 0
   std::string ledger;                   ///< file; empty: none is kept
+  double bandwidth{};                   ///< what is left of the loads below it is counted [Hz]; 0: all
 };
 
 /// `stress/NAME`.
 std::string hotSpotChannel(const HotSpot& spot);
+/// Name under which a channel is counted: with a bandwidth `NAME_below_FHz`, so that counts of different bands never
+/// add.
+std::string countedName(const std::string& channel, double bandwidth);
 
 /// Slopes at which damage-equivalent loads are given: welded steel, below its knee (DNV-RP-C203), composites.
 constexpr double kSlopes[] = {3.0, 4.0, 5.0, 10.0};

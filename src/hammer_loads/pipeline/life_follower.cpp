@@ -36,6 +36,7 @@ LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& s
       between_(channels_.size(), std::numeric_limits<double>::quiet_NaN()),
       deviations_there_(between_),
       common_there_(between_) {
+  if (settings.bandwidth > 0.0) means_.emplace(pipeline, settings.bandwidth, channels_.size());
   turns_.fill(life::TurnLoadsRecorder(channels_.size()).endTurn(-1));
 }
 
@@ -67,6 +68,7 @@ void LifeFollower::follow() noexcept {
     } else {
       recorder_.gap();
       turn_.restart();
+      if (means_) means_->restart();
     }
     count(result);
     last_ = result.stamp;
@@ -78,8 +80,13 @@ void LifeFollower::follow() noexcept {
 
 void LifeFollower::count(const SampleResult& result) noexcept {
   channelValues(result, boom_, values_.data(), deviations_.data(), common_.data());
+  if (means_)
+    means_->sample(values_.data(), deviations_.data(), common_.data(),
+                   [this](StampNs stamp, const double* values, const double* deviations, const double* common) {
+                     recorder_.sample(stamp, values, deviations, common);
+                   });
   if (!result.isPublished()) return;
-  recorder_.sample(result.stamp, values_.data(), deviations_.data(), common_.data());
+  if (!means_) recorder_.sample(result.stamp, values_.data(), deviations_.data(), common_.data());
   turn_.add(result.stamp, values_.data(), deviations_.data(), common_.data());
 }
 
@@ -101,7 +108,7 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
 }
 
 void LifeFollower::countBetween(StampNs stamp) noexcept {
-  recorder_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
+  if (!means_) recorder_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
   turn_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
 }
 

@@ -8,6 +8,7 @@
 
 #include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/life/turn_loads.h"
+#include "hammer_loads/pipeline/band_means.h"
 #include "hammer_loads/pipeline/channel_values.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/pipeline/step_wrenches.h"
@@ -61,6 +62,7 @@ class LifeFollower {
   const Boom* boom_;  ///< null: none
   std::vector<std::string> channels_;
   life::LifeRecorder recorder_;
+  std::optional<BandMeans> means_;  ///< counted in place of the samples where a bandwidth is given
   life::TurnLoadsRecorder turn_;
   std::optional<life::LifePiece> total_;
   std::optional<StampNs> since_, last_;  ///< first and last sample counted; last_: none after a gap

@@ -118,7 +118,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   hullMovedAtBlow();
   hull_.vibrates(result_.boom != nullptr ? &*boom_ : nullptr);
   fill(links, drive, rod);
-  sampler_.sample(links, result_);
+  sampler_.sample(links, result_, result_.outputs);
   followPeak();
   if (crank_.step().known()) hull_.carry(result_.wrench, crank_.step().length());
   turn_.published(result_);
@@ -241,6 +241,18 @@ const SampleResult& Pipeline::end() noexcept {
   result_.outputs.clear();
   turn_.finishBlow(result_);
   return result_;
+}
+
+WrenchSampler Pipeline::meansAt(double rate) const {
+  PipelineSettings settings = settings_;
+  settings.output = OutputKind::kMean, settings.output_rate = rate;
+  return {model_, columns_, crank_.step(), crank_.tracker(), elastic_, settings};
+}
+
+void Pipeline::sample(WrenchSampler& sampler, std::vector<WrenchOutput>& outputs) const noexcept {
+  const CrankAngle angle = result_.crank.position.angle;
+  sampler.sample(LinksBeside(model_, elastic_.runs() ? linksAt(model_, angle) : crank_.step().links()), result_,
+                 outputs);
 }
 
 SampleCounts Pipeline::counts() const noexcept {

@@ -59,6 +59,10 @@ class Pipeline {
   HullDeviation stepDeviation(double time, const CrankEstimate& crank) const noexcept {
     return sampler_.deviation(time, crank, result_);
   }
+  /// Another schedule of the wrench: its means at a rate [Hz]. Refers to the pipeline.
+  WrenchSampler meansAt(double rate) const;
+  /// Appends what a schedule has up to the last sample, which was accepted; once for each.
+  void sample(WrenchSampler& sampler, std::vector<WrenchOutput>& outputs) const noexcept;
   SampleCounts counts() const noexcept;
   const HullModel& model() const noexcept { return model_; }
   const CrankFollower& crank() const noexcept { return crank_; }

@@ -38,7 +38,8 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
   return kind_ != OutputKind::kMean;
 }
 
-void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexcept {
+void WrenchSampler::sample(const LinksBeside& links, const SampleResult& result,
+                           std::vector<WrenchOutput>& outputs) noexcept {
   added_up_to_ = 0.0;
   drive_ = driveReaction(*model_, tracker_->driveInertia());
   followHull(result.hull.motion);
@@ -46,7 +47,7 @@ void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexc
   StampNs stamp{};
   while (isDue(result.stamp, stamp)) {
     const WrenchOutput made = output(stamp, links, result);
-    if (isKnown(seconds(stamp - step_->start()), made, result)) result.outputs.push_back(made);
+    if (isKnown(seconds(stamp - step_->start()), made, result)) outputs.push_back(made);
     if (stamp == result.stamp) return;
   }
   if (kind_ == OutputKind::kMean) addUpTo(step_->length(), result);

@@ -23,9 +23,9 @@ class WrenchSampler {
 
   /// Outputs restart with the next sample.
   void forget() noexcept { begun_ = false; }
-  /// Appends to the result's outputs those up to its sample, with which the step ended; links: at the sample. No
-  /// allocation once the outputs have the room of mostOutputs().
-  void sample(const LinksBeside& links, SampleResult& result) noexcept;
+  /// Appends the outputs up to the result's sample, with which the step ended; links: at the sample. No allocation once
+  /// the outputs have the room of mostOutputs().
+  void sample(const LinksBeside& links, const SampleResult& result, std::vector<WrenchOutput>& outputs) noexcept;
   /// Standard deviations of the wrench at an instant of the last sample's step, where the crank is as given; time:
   /// after its start [s].
   HullDeviation deviation(double time, const CrankEstimate& crank, const SampleResult& result) const noexcept;

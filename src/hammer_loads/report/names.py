@@ -48,6 +48,9 @@ TOPICS = {"joint_loads": "", "section_loads": "section ", "stress": "stress at "
 
 def in_words(quantity):
     """Words for a channel (topic/field, topic/name/field, stress/NAME) or a figure of the budget."""
+    band = re.fullmatch(r"(.*)_below_([0-9.e+-]+)Hz", quantity)
+    if band:
+        return f"{in_words(band[1])}, below {band[2]} Hz"
     if quantity in WORDS:
         return WORDS[quantity]
     topic, _, rest = quantity.partition("/")

@@ -12,7 +12,7 @@ namespace {
 
 void addCurve(const life::LifeSettings& settings, const std::string& name, ChannelCount& count) {
   for (const life::HotSpot& spot : settings.hot_spots) {
-    if (life::hotSpotChannel(spot) != name || !spot.curve) continue;
+    if (life::countedName(life::hotSpotChannel(spot), settings.bandwidth) != name || !spot.curve) continue;
     count.sn_knee_range = spot.curve->kneeRange();
     count.sn_knee_cycles = spot.curve->kneeCycles();
     count.sn_slope = spot.curve->slope();

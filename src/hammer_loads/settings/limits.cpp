@@ -38,10 +38,10 @@ std::vector<Limit> readLimits(ParameterReader& reader, const life::LifeSettings&
     readLimit(reader, limit, limits);
   for (const life::HotSpot& spot : life.hot_spots)
     if (spot.curve)
-      readLimit(
-          reader,
-          {spot.name + "_damage_per_hour", "1/h", LimitedQuantity::kDamage, false, kNaN, kNaN, hotSpotChannel(spot)},
-          limits);
+      readLimit(reader,
+                {spot.name + "_damage_per_hour", "1/h", LimitedQuantity::kDamage, false, kNaN, kNaN,
+                 life::countedName(hotSpotChannel(spot), life.bandwidth)},
+                limits);
   return limits;
 }
 

@@ -147,6 +147,7 @@ life::LifeSettings readLifeSettings(ParameterReader& reader) {
   const double period = reader.number("life_period_s", "s", NumberRule::within(0.1, 86400.0));
   if (std::isfinite(period)) s.period = std::llround(kNsPerSecond * period);
   s.equivalent_cycles_per_hour = reader.number("life_equivalent_cycles_per_hour", "1/h", NumberRule::within(1e-3, 1e9));
+  s.bandwidth = reader.number("life_bandwidth_Hz", "Hz", NumberRule::within(0.0, 1e4));
   const std::string ledger = reader.text("life_ledger");
   if (!ledger.empty() && ledger != "none" && ledger.front() != '/')
     reader.addProblem("life_ledger: " + quotedText(ledger) + ", must be an absolute path, or none");

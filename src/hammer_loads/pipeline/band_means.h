@@ -1,0 +1,50 @@
+/// Loads below a frequency: means over half of its period, as `output: mean` publishes them at twice that rate.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "hammer_loads/pipeline/channel_values.h"
+#include "hammer_loads/pipeline/pipeline.h"
+
+namespace hammer_loads {
+
+/// The hull's means are exact integrals of the wrench over the crank's path. The boom's are integrals of lines between
+/// its samples, over the same intervals. No allocation after construction.
+class BandMeans {
+ public:
+  /// bandwidth [Hz], > 0. channels: number of all. Refers to the pipeline, which must outlive it.
+  BandMeans(const Pipeline& pipeline, double bandwidth, std::size_t channels);
+
+  /// The next sample does not continue the one before.
+  void restart() noexcept;
+  /// Takes the pipeline's last sample, which was accepted, with its values by channelValues(). Calls take(stamp,
+  /// values, deviations, common) for each interval that ends by then; NaN: not known.
+  template <typename Take>
+  void sample(const double* values, const double* deviations, const double* common, const Take& take) noexcept {
+    if (!follow(values)) return;
+    for (const WrenchOutput& mean : means_) {
+      form(mean, deviations, common);
+      take(mean.stamp, mean_.data(), deviations_.data(), common_.data());
+    }
+    means_.clear();
+    end();
+  }
+
+ private:
+  bool follow(const double* values) noexcept;
+  void form(const WrenchOutput& mean, const double* deviations, const double* common) noexcept;
+  void addUpTo(StampNs stamp) noexcept;
+  void end() noexcept;
+
+  const Pipeline* pipeline_;
+  WrenchSampler sampler_;
+  std::vector<WrenchOutput> means_;  ///< of the hull since the last sample that counts
+  bool begun_{}, known_{};           ///< known_: the loads of the sample are published
+  StampNs before_{}, now_{};         ///< the last two samples that count
+  StampNs added_up_to_{};
+  std::vector<double> values_before_, values_, integral_;  ///< of all channels; those of the hull are not used
+  std::vector<double> mean_, deviations_, common_;
+};
+
+}  // namespace hammer_loads
