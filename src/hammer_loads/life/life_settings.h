@@ -39,7 +39,7 @@ struct LifeSettings {
   std::int64_t period{};                ///< period of ~load_cycles and the ledger [ns], > 0
   double equivalent_cycles_per_hour{};  ///< reference for damage-equivalent loads, > 0
   std::string ledger;                   ///< file; empty: none is kept
-  double bandwidth{};                   ///< what is left of the loads below it is counted [Hz]; 0: all
+  double bandwidth{};                   ///< frequency up to which the loads are counted [Hz]; 0: all
 };
 
 /// `stress/NAME`.

@@ -39,11 +39,11 @@ class BandMeans {
 
   const Pipeline* pipeline_;
   WrenchSampler sampler_;
-  std::vector<WrenchOutput> means_;  ///< of the hull since the last sample that counts
+  std::vector<WrenchOutput> means_;  ///< means of the hull since the last sample that counts
   bool begun_{}, known_{};           ///< known_: the loads of the sample are published
   StampNs before_{}, now_{};         ///< the last two samples that count
   StampNs added_up_to_{};
-  std::vector<double> values_before_, values_, integral_;  ///< of all channels; those of the hull are not used
+  std::vector<double> values_before_, values_, integral_;  ///< places of the hull are not used
   std::vector<double> mean_, deviations_, common_;
 };
 
