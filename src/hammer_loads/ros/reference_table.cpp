@@ -70,7 +70,7 @@ std::optional<MeasuredLoad> rowOf(const std::vector<std::string_view>& fields, c
 
 Checked<std::vector<MeasuredLoad>> readReferenceTable(const std::string& csv) {
   const auto problem = [](std::size_t line, const std::string& text) {
-    return Checked<std::vector<MeasuredLoad>>{std::nullopt, {format("line %zu: ", line) + text}};
+    return Checked<std::vector<MeasuredLoad>>{std::nullopt, {format("line %zu: ", line) + text}, {}};
   };
   std::vector<MeasuredLoad> rows;
   std::optional<Columns> columns;
