@@ -29,8 +29,8 @@ class HeldForces {
   void strike(const ModeVector& jump) noexcept;
   /// Takes at most this much of the front [s] as one piece, less where a blow ends it. At least one must be held.
   Piece take(double most) noexcept;
-  /// Forces this long after the front [s] >= 0, and what blows up to there make of the velocities. Of what is not known
-  /// yet the last; nothing held: `present`.
+  /// Forces at a time after the front [s] >= 0, and the jumps of the velocities by blows up to there. Beyond the known
+  /// forces the last one counts; if none is held, `present`.
   Driven drivenAt(double ahead, const ModeVector& present) const noexcept;
   /// each(piece), from the front on.
   template <typename Each>

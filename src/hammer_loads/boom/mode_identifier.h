@@ -25,9 +25,10 @@ struct CrankLead {
 };
 
 /// Extended Kalman filter: per mode displacement, velocity and logarithm of damping over the given one; per cylinder
-/// the logarithm of its oil's stiffness over that of the modes given; per channel an offset. Steps are the same as
-/// those of Vibration, between them come readings in any order. No allocation. Of the stiffnesses found, frequencies
-/// are to the second order and shapes are those of the modes given: give modes of what is found, before it is far away.
+/// the logarithm of its oil's stiffness over that of the modes given; per channel an offset. Steps are those of
+/// Vibration, with readings in any order between them. No allocation. Frequencies are of second order in the identified
+/// stiffnesses, and shapes are those of the modes given; the caller therefore gives new modes before the stiffnesses
+/// are far away.
 ///
 /// First guesses: stiffnesses wrong by 30 % together and each beside by its own deviation, damping by a factor 1.6.
 /// Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
@@ -40,9 +41,9 @@ struct CrankLead {
 /// Stamps of sensors with a clock of their own may be late, each clock's by one time, a random walk. The filter lives
 /// in the IMU's time: the hammer's forces and blows act later by its delay, which is what shows it; pressures are late
 /// beside it by another. From 0.2 s on after the frequencies are known delays are followed, and for a second
-/// frequencies and damping count as less known again. What stamps jitter about that, as behind a bus, is learned from
-/// what it leaves. A crank whose angle leads, as by a zero that is off, makes all sensors look late alike: what its
-/// model expects of that (expectCrankLead()) is taken for the crank's, and the motion given in the sensors' time.
+/// frequencies and damping count as less known again. Their jitter about that, as behind a bus, is learned from the
+/// residuals. A crank whose angle leads, as by a zero that is off, makes all sensors look late alike: what its model
+/// expects of that (expectCrankLead()) is taken for the crank's, and the motion given in the sensors' time.
 ///
 /// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
 /// 6 ms, in 1 ms where an IMU shows it. Pressures show the displacements; the force is what these need.
@@ -86,8 +87,7 @@ class ModeIdentifier {
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
   /// By how much time the crank's angle leads as far as its own model knows [s].
   void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
-  /// Sets the seals of a cylinder by its last pressures: the known part of their friction acts on the modes, the rest
-  /// damps them.
+  /// Sets a cylinder's seals: the known part of their friction acts on the modes, the rest damps them.
   void setSeals(std::size_t cylinder, const Seals& seals) noexcept { seals_[cylinder] = seals; }
   /// Readings of one instant by one clock, at the present time or a little before. A channel in [0, kMaxChannels) keeps
   /// its offset; others, and values that are no number, do not count. A reading far off counts less. Three at a time,
@@ -124,8 +124,7 @@ class ModeIdentifier {
   bool learns() const noexcept { return learns_; }
   /// Frequencies and damping are yet to be found with the delay of an IMU that speaks.
   bool waitsForDelay() const noexcept { return unlearns_for_ > 0.0 || (imuSpeaks() && !isDelayFollowed(Clock::kImu)); }
-  /// Torque on a cylinder's joint by damping beyond that given, root mean square over an oscillation [N m]; pressures
-  /// do not show it.
+  /// Torque on a cylinder's joint by damping beyond that given, rms of an oscillation [N m]; not in the pressures.
   double dampingBesideOil(std::size_t cylinder) const noexcept;
   ModeState motion(int mode) const noexcept;  ///< estimated motion
   /// Modal torque of the oil as pressures show it whose stamp is this time [s] after the present, or before it.

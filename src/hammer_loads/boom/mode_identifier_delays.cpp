@@ -25,8 +25,8 @@ double lesserOf(double a, double b) noexcept {
 
 }  // namespace
 
-/// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
-/// were taken for without it may be wrong.
+/// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. Their values
+/// without it may be wrong.
 void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (!learns_ || isDelayFollowed(clock) || known_for_ < look_back::kTurn || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 
 /// Coulomb friction against the rod's motion, as a torque on the joint: the joint's load is that of the oil and
-/// way() times this torque. Of it a part is known, and a part only by its standard deviation.
+/// way() times this torque. One part of it is known, the other only by its standard deviation.
 struct Seals {
   double known{}, deviation{};  ///< standard [N m]
   double driven{};              ///< rate of the joint beside its vibration [rad/s]

@@ -89,7 +89,7 @@ class Vibration {
   /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
   /// Else they are those of the hammer's load alone.
   bool followsReadings() const noexcept { return follows_readings_; }
-  /// The rock's force [N]. Of a hull that counts as free: 0, or what the readings' motion lacks in the mean.
+  /// Force of the rock [N]. For a hull that counts as free: 0, or the mean force missing in the readings' motion.
   double contact() const noexcept { return contact_; }
 
   bool known() const noexcept { return modes_.count > 0; }

@@ -6,7 +6,7 @@
 
 namespace hammer_loads {
 
-/// Whose stamps a reading has. Those of a sensor with a clock of its own may all be late by one time.
+/// Clock of a reading's stamps. A sensor with a clock of its own may have a constant delay.
 enum class Clock { kCrank, kImu, kPressures };
 
 /// Reading of one channel of a sensor, as a function of the joints' vibration q: offset + displacement . q + velocity .

@@ -36,8 +36,8 @@ struct HammerPart {
 HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free& free);
 
 /// With noise, what each blow has of its own is bent the same way at every blow, and what they share with it: no number
-/// of blows averages that out. So recordings are made up from the fit, with its noise and the counts, and fitted again;
-/// what they are off on the mean is taken off both. count: of the encoder, in `seen` [rad]; 0: none.
+/// of blows averages that out. Recordings are therefore simulated from the fit, with its noise and the counts, and
+/// fitted again; their mean error is subtracted from both. count: of the encoder, in `seen` [rad]; 0: none.
 void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, const Free& free, double count,
                 const Progress& progress = {});
 

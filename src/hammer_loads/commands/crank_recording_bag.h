@@ -27,8 +27,8 @@ struct CrankBag {
   bool whole{};        ///< all of it was read
 };
 
-/// In record order; time is the header stamp less that of the first message. Of a recording that is not much longer
-/// than the pieces together all is read. Topics and joints as in the settings.
+/// In record order; time is the header stamp less that of the first message. A recording that is not much longer than
+/// the pieces together is read completely. Topics and joints as in the settings.
 CrankBag readCrankBag(const BagInputs& inputs, const Settings& settings, const ReadPieces& pieces,
                       const Progress& progress = {});
 

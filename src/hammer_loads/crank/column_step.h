@@ -40,7 +40,7 @@ class NearColumns {
 /// A step keeps h = sqrt(M) w, M = Jc + J, but for what the torque adds (crank_dynamics.h). A column dJ of the links'
 /// inertia makes of the speed at its start another h, and of h at its end another speed: w/2 (dJ/M at the start less
 /// dJ/M at the end), the torque's part aside, for which it counts whole. At a blow, where M jumps, two such steps meet.
-/// Of first order in the step.
+/// The columns are of first order in the step.
 class ColumnStep {
  public:
   using Columns = Eigen::Matrix<double, 1, kMachineColumns>;

@@ -17,8 +17,8 @@ namespace hammer_loads {
 /// some minutes.
 ///
 /// What the law leaves of a supply's torque looks a little like the sensor's place: with the shipped machine by 0.1 to
-/// 0.2 deg, with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that. So the
-/// supply's error is estimated as if the sensor's place were right: together they can hardly be separated.
+/// 0.2 deg, with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that. The
+/// supply's error is therefore estimated as if the sensor's place were right: together they can hardly be separated.
 class ConstantErrors {
  public:
   static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();

@@ -55,8 +55,8 @@ void CrankFilter::considerSensor() noexcept {
   consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());
 }
 
-/// (2) Angles that are behind the speeds: from now on that is taken off the readings. What was learned of the sensor
-/// and of its speeds was of others.
+/// (2) Angles that are behind the speeds: from now on that is taken off the readings. Earlier results on the sensor and
+/// its speeds belong to other readings.
 bool CrankFilter::findLag() noexcept {
   const double more = -speed_trust_.lag();
   if (HAMMER_LOADS_ABLATE(angle_lag) || !speed_trust_.lags() || !(angle_lag_.isThere() || more > kLagTakenOff))

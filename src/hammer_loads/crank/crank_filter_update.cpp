@@ -45,8 +45,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   return take(to, reading.angle);
 }
 
-/// Time that the stamps lost, steps of an encoder. What ends the update: a slip that the next sample has to show too,
-/// or a prediction that is worth nothing.
+/// Time that the stamps lost, steps of an encoder. The update ends with a slip that the next sample must confirm, or
+/// with an invalid prediction.
 std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
   lost_time_ = timeLost(to.dt, to.innovation);
   if (lost_time_ != 0.0) {

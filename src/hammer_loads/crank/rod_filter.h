@@ -45,7 +45,7 @@ class RodFilter {
 
   /// Pins hold both ways at once, or have play and can only push.
   enum class Pins { kTight, kPlay };
-  /// Refers to the mechanism, which must outlive it. What its RodSpring leaves at 0 begins at a first guess.
+  /// Refers to the mechanism, which must outlive it. A value that its RodSpring leaves at 0 begins at a first guess.
   RodFilter(const Mechanism& mechanism, Pins pins) noexcept;
 
   /// From the crank's filter before a blow.

@@ -12,9 +12,9 @@ namespace hammer_loads {
 
 /// A sensor's own clock, seen through the stamps that its samples got on their way: a line by sequence number, its
 /// offset and interval by least squares of all samples so far, then of the last some 4000 (expanding, then fading
-/// memory). Delays that do not depend on the sequence average out; a constant one cannot be seen. Of samples with one
-/// stamp the last counts: it waited least. Lost samples are counted by whole intervals: a test of likelihood between
-/// none and one lost, as fast as the stamps' scatter allows.
+/// memory). Delays that do not depend on the sequence average out; a constant one cannot be seen. The last of several
+/// samples with one stamp counts, as it waited least. Lost samples are counted by whole intervals: a test of likelihood
+/// between none and one lost, as fast as the stamps' scatter allows.
 class SteadyClockFit {
  public:
   void begin(std::int64_t stamp) noexcept;

@@ -14,7 +14,7 @@
 namespace hammer_loads {
 
 /// A pump of constant flow feeds the motor through oil and hoses that give: where the crank leads a uniform rotation,
-/// it has taken more oil than came, and the torque falls by this much per lead. What else the torque does is a random
+/// it has taken more oil than came, and the torque falls by this much per lead. The rest of the torque is a random
 /// walk.
 struct SupplyLaw {
   double stiffness{};   ///< [N m/rad]
@@ -67,8 +67,8 @@ class LearnedSupply {
 
 /// The torque's random walk is given for rough supplies. Exact samples hardly ask for it. Stamps that jitter are
 /// averaged over many samples, and their noise passes for torque where the walk is too large: successive innovations
-/// then change their sign too often. Where it is too small they keep it. So each product of an innovation and the
-/// fading sum of those before it moves the walk a little. The given one holds while stamps are exact.
+/// then change their sign too often. Where it is too small they keep it. Each product of an innovation and the fading
+/// sum of those before it therefore moves the walk a little. The given one holds while stamps are exact.
 class SupplyRoughness {
  public:
   /// innovation of variance `total`, of which the stamp's jitter has the part `jitter`.

@@ -13,7 +13,7 @@ namespace hammer_loads {
 /// A stamp off by d shows an angle off by w d: the innovation's variance has a part w^2 sigma_t^2. Its maximum of
 /// likelihood is followed sample by sample (score over information, both by the normal distribution), within some 200
 /// samples that turn. Jitter has no memory, what a model lacks has: innovations are seen by the half square of their
-/// differences. What could as well be the encoder's count alone counts as zero: exact stamps stay exact.
+/// differences. Jitter that the encoder's count alone could explain counts as zero: exact stamps stay exact.
 class TimingNoise {
  public:
   /// first_guess: standard deviation [s], >= 0.

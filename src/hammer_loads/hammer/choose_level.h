@@ -21,8 +21,8 @@ struct LevelChoice {
 
 /// Works one turn with the machine at level linkage: constant net drive torque that makes up for the blow, so that each
 /// turn is like the one before; the speed at the blow such that the turn takes 1/turn_rate [s]. Weight counts in the
-/// wrench, hull vertical; in the turn's motion it is neglected. What a rod adds that gives as the file has it, or else
-/// as a first guess does (RodPrior), is that of one blow that leaves the rocker at its tool (TwoBodies), in means over
+/// wrench, hull vertical; in the turn's motion it is neglected. The part of an elastic rod, with the file's values or
+/// else a first guess (RodPrior), is that of one blow that leaves the rocker at its tool (TwoBodies), in means over
 /// `interval` [s] > 0. tolerance, turn_rate, g [m/s2] > 0, g may be 0. The crank's acceleration is taken as known: what
 /// a poorer level does to the estimate of the drive inertia is not seen.
 LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double turn_rate, double g,

@@ -4,9 +4,9 @@
 /// taken out. Cycles that never close are the residue; counted as half cycles it makes the count that of ASTM E1049-85
 /// (McInnes & Meehan, Int. J. Fatigue 30 (2008) 547-559). Only comparisons, no difference: exact for any numbers.
 ///
-/// The newest point is the running end of the series: it moves on while the series does not turn. So the residue always
-/// holds the first and the last value, and the residues of two pieces of a series, one after another through push(),
-/// give the rest of the count of the whole: pieces add exactly.
+/// The newest point is the running end of the series: it moves on while the series does not turn. The residue therefore
+/// always holds the first and the last value, and the residues of two pieces of a series, one after another through
+/// push(), give the rest of the count of the whole: pieces add exactly.
 #pragma once
 
 #include <algorithm>

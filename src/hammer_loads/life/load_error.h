@@ -37,7 +37,7 @@ struct TurnExtremes {
     highest = std::max(highest, value + error.own);
   }
   double range() const noexcept { return greatest - least; }
-  /// Samples err independently. What constants do to one end and to the other may have any signs: at most both add up.
+  /// Samples err independently. Errors of constants at the two ends may have any signs: at most both add up.
   LoadError ofRange() const noexcept {
     return {std::hypot(std::max(of_least.own, least - lowest), std::max(of_greatest.own, highest - greatest)),
             of_least.common + of_greatest.common};

@@ -9,7 +9,7 @@
 namespace hammer_loads::life {
 
 /// Class i holds [least + i width, least + (i + 1) width) and stands for its centre; the last one holds `greatest` too.
-/// So an extreme is off by at most half a width, a range by less than one width.
+/// The error of an extreme is at most half a width, that of a range less than one width.
 class LoadGrid {
  public:
   static constexpr std::uint32_t kMostClasses = 16384;  ///< a matrix of 268 MB

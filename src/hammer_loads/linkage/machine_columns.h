@@ -53,8 +53,8 @@ class MachineColumns {
     for (const Part& part : parts_) effects.col(part.column) += part.size * by.col(part.mass);
     return effects;
   }
-  /// The hammer whose constants are off by so many standard deviations each, in the columns' order; nothing where there
-  /// can be none. What a level leaves out stays as it is.
+  /// Hammer whose constants are off by this many standard deviations each, in the columns' order; none where it cannot
+  /// exist. The column of a level's neglect has no effect.
   std::optional<Mechanism> hammerOff(const Eigen::VectorXd& errors) const;
   /// load: at the angle, without what the hull's own motion adds.
   OnShaft onShaft(CrankAngle angle, Gravity gravity) const noexcept;

@@ -234,7 +234,7 @@ void LogWriter::settle() {
   ++totals_.files_closed;
 }
 
-/// Deletes the oldest files of this process until one more has its place within log_total_mb. Those of earlier runs may
+/// Deletes the oldest files of this process until one more has its place within log_total_mb. Files of earlier runs may
 /// still be wanted.
 void LogWriter::makeRoom() {
   if (settings_.total_size == 0) return;

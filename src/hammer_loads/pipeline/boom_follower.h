@@ -90,7 +90,7 @@ class BoomFollower {
                    const std::vector<double>& velocities) noexcept {
     return joints_.update(stamp, names, positions, velocities);
   }
-  /// Gauge pressure [Pa] of a cylinder, index as in Boom::cylinders(). Whether it was taken.
+  /// Takes the gauge pressure [Pa] of a cylinder, index as in Boom::cylinders(). Returns true if it was accepted.
   bool pressure(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept {
     const double offset = chamber == Chamber::kBore ? boom_.cylinders()[cylinder].parameters().pressure_offset : 0.0;
     return pressures_.update(stamp, cylinder, chamber, pressure - offset);

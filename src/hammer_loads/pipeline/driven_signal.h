@@ -11,15 +11,15 @@
 namespace hammer_loads {
 
 /// A hull that is free to move answers to a load at once: its acceleration is compliance times load beside what oil,
-/// weight and rock do, which changes no faster than boom and hull vibrate. So a jump of the load, as at a blow, is a
-/// jump of the acceleration, and what is interpolated and foretold between readings is the smooth rest.
+/// weight and rock do, which changes no faster than boom and hull vibrate. A jump of the load, as at a blow, is
+/// therefore a jump of the acceleration, and the smooth rest is interpolated and predicted between readings.
 ///
 /// Kalman filter: integral of the signal (a rate that is read), the smooth part, its slope, which walks at random, and
 /// three compliances, which are learned from all that the load does. The smooth part is what the oil pulls with, so
 /// that it is bent by the hull's own acceleration: three stiffnesses and three dampings over inertia are learned
-/// as above. How strongly the slope walks against the noise of a reading is that of some candidates which foretells the
-/// readings best, and the noise is what these foretellings miss (maximum likelihood over some thousand readings), so
-/// that no sensor's noise need be given.
+/// as above. The ratio of the slope's walk to the noise of a reading is the one among some candidates that predicts the
+/// readings best, and the noise is the prediction's error (maximum likelihood over some thousand readings), so that no
+/// sensor's noise need be given.
 class DrivenSignal {
  public:
   enum class Reads { kItself, kIntegral };

@@ -150,8 +150,7 @@ ElasticFollower::Loads ElasticFollower::rigidLoads(const RodMotion& m, const Dri
   return loads;
 }
 
-/// Change of the loads that the elastic rod adds, over a time from now [s]: the error of a vibration that is read too
-/// late or too early.
+/// Change over a time [s] of the loads that the elastic rod adds: the error of a vibration read at a wrong time.
 ElasticFollower::Loads ElasticFollower::besideLater(const DriveReaction& drive, const Loads& here,
                                                     double time) const noexcept {
   RodMotion later = filter().motion();
@@ -159,8 +158,7 @@ ElasticFollower::Loads ElasticFollower::besideLater(const DriveReaction& drive, 
   return loads(later, drive) - here - (rigidLoads(later, drive) - rigidLoads(filter().motion(), drive));
 }
 
-/// Covariance of the loads with joint clearance, whose pins may meet within an error of the state, by Gauss-Hermite
-/// quadrature at three points.
+/// Covariance of the loads with pins that may meet within an error, by Gauss-Hermite quadrature at three points.
 ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction& drive,
                                                             const Loads& here) const noexcept {
   const RodFilter::Belief::Matrix errors = filter().errors();

@@ -46,9 +46,9 @@ class ElasticFollower {
     Eigen::Matrix3d covariance;  ///< covariance of the whole wrench by readings and rod
     double crank{};              ///< acceleration [rad/s2]
   };
-  /// Once a sample. ring: of the rocker's acceleration beside a rigid rod's, of any phase (RodRing) [rad/s2]. That of
-  /// the two bodies is weighed with it, or with its own mean since the blow where that is more, by the variances: what
-  /// is known no better than that is the moment of an impact within the pins.
+  /// Once a sample. ring: of the rocker's acceleration beside a rigid rod's, of any phase (RodRing) [rad/s2]. The
+  /// acceleration of the two bodies is weighted with it by the variances, or with its own mean since the blow where
+  /// that is larger, as the moment of an impact within the pins is known no better.
   Beside beside(const DriveReaction& drive, double ring) noexcept;
   /// Acceleration of the rocker beside that of a rigid rod at the last beside() [rad/s2].
   double vibration() const noexcept { return vibration_; }

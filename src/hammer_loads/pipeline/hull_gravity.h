@@ -19,7 +19,7 @@ class HullGravity {
  public:
   HullGravity(const PipelineSettings& settings, const std::optional<Boom>& boom);
 
-  /// Boom joint angles, any subset in any order. Whether any was of use.
+  /// Takes boom joint angles, any subset in any order. Returns true if any was of use.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
   /// Positions of the chain's joints once all of them have been received; null before, or without a chain.

@@ -14,11 +14,12 @@ namespace hammer_loads {
 /// From blow to blow [s]: over a longer one the hull's velocity has a mean.
 constexpr double kLongestTurn = look_back::kFiveTurns;
 
-/// The hull comes back each turn: from blow to blow its velocity has no trend, and no mean. That takes weight, offsets
-/// and the jump at the blow out of the integral of the unit's readings; what is left at both ends is the velocity at
-/// the blow, mean of before and after it. Nothing before the second blow in a row, or after a pause of the unit.
+/// The hull comes back each turn: from blow to blow its velocity has no trend, and no mean. This condition removes
+/// weight, offsets and the jump at the blow from the integral of the unit's readings. The rest at both ends is the
+/// velocity at the blow, mean of before and after it. None before the second blow in a row, or after a pause of the
+/// unit.
 ///
-/// Neglects: what differs from turn to turn, and the boom's slow motion.
+/// Neglects: differences between revolutions, and the boom's slow motion.
 class HullSpeed {
  public:
   /// The unit at a stamp, axes of the hull: force along z [m/s2], what turning adds to D's velocity along z [m/s], rate

@@ -35,7 +35,7 @@ HullState::HullState(const HammerParameters& hammer, const PipelineSettings& set
   weigh();
 }
 
-/// By the joint angles as they are now. Of a fixed hull the weight is all its motion.
+/// By the joint angles as they are now. A fixed hull has no motion but its weight.
 void HullState::weigh() noexcept {
   pitch_known_ = weight_.pitch().known();
   in_degrees_ = weight_.pitch().looksLikeDegrees();

@@ -39,7 +39,7 @@ class HullState {
 
   HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom);
 
-  /// Boom joint angles, any subset in any order. Whether a pitch joint was among them.
+  /// Takes boom joint angles, any subset in any order. Returns true if a pitch joint was among them.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
   std::optional<ImuRefusal> imu(StampNs stamp, const ImuReading& reading) noexcept;
 

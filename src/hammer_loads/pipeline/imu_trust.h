@@ -14,10 +14,10 @@
 
 namespace hammer_loads {
 
-/// In the mean of 2 s the hull goes nowhere: a unit shows its weight there, as the joint angles have it, but for what
-/// it misses of the blows, up to 2 m/s2. And no boom turns by 3 rad/s, root mean square, while it holds a hammer: near
-/// a resonance by 0.5. So readings in g, degrees per second or with an axis the wrong way are recognised; 20 deg of
-/// mounting are not.
+/// In the mean of 2 s the hull stays in place: a unit shows its weight there, as the joint angles give it, except for
+/// the part of the blows that it misses, up to 2 m/s2. No boom turns by 3 rad/s, root mean square, while it holds a
+/// hammer: near a resonance by 0.5. Readings in g, degrees per second or with an axis the wrong way are therefore
+/// recognised; 20 deg of mounting are not.
 class ImuTrust {
  public:
   /// A reading in axes of hammer_hull: specific force [m/s2], turning rate [rad/s], step since the last one [s].

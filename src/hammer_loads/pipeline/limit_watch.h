@@ -43,8 +43,8 @@ class LimitWatch {
   /// channels: of the counts that judge() gets. misuse: counted before the first turn.
   LimitWatch(std::vector<Limit> limits, std::vector<life::LedgerChannel> channels, const MisuseCounts& misuse);
 
-  /// A turn has ended. counted: the load cycles so far, as of the last period. Whether the alarms are to be published:
-  /// at the first turn and at each where an alarm begins, lasts or ends.
+  /// Ends a revolution. counted: the load cycles so far, as of the last period. Returns true if the alarms are to be
+  /// published: at the first revolution and at each where an alarm begins, lasts or ends.
   bool judge(const TurnEnd& end, const MisuseCounts& misuse, const std::optional<life::LifePiece>& counted);
 
   const std::vector<Limit>& limits() const { return limits_; }

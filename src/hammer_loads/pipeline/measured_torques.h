@@ -35,10 +35,10 @@ class MeasuredTorques {
     double noise{};  ///< standard deviation of the stamp [s]
   };
   /// After the vibration has taken the readings. steady: weight and motion [N m]; position: as joint sensors show it.
-  /// What seals are known to rub (the boom file's friction) is taken off as the rods move by `motion` and vibration.
+  /// The known friction of the seals (from the boom file) is subtracted as the rods move by `motion` and vibration.
   void follow(const Boom& boom, const JointVector& position, const JointVector& steady, const JointVector& motion,
               const Instant& instant, const CylinderPressures& pressures) noexcept;
-  /// Index as in Boom::cylinders(); nothing without both pressures or at a dead centre.
+  /// Index as in Boom::cylinders(); none without both pressures or at a zero moment arm.
   const std::optional<Torque>& of(std::size_t cylinder) const noexcept { return torque_[cylinder]; }
 
  private:

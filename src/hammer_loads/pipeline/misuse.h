@@ -62,8 +62,8 @@ class MisuseFollower {
     pressed_ = pressed_ || now.value_or(false);
     watched_ = true;
   }
-  /// A turn that ended with a blow. period: its length [s], none where it was not seen whole. Whether the rock bore on
-  /// the hull in it; nothing: not known.
+  /// Ends a revolution with a blow. period: its length [s], none where it was not seen whole. Returns whether the rock
+  /// bore on the hull in it; none: not known.
   std::optional<bool> blow(std::optional<double> period) noexcept {
     std::optional<bool> pressed;
     if (period && watched_ && !unknown_) {

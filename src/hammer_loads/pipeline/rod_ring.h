@@ -21,14 +21,14 @@ Rods rodsOf(const RodPrior& prior) noexcept;
 ///
 ///     I x'' = -h^2 (k x + c x') - I psi_rigid'',  x(0) = 0,  x'(0) = R |u- w-| - u+ w+
 ///
-/// the rocker picks up as the lever opens, and rings; within the pins' play the spring does nothing. A rocker that
-/// meets no tool is driven past the dead centre by psi_rigid'' alone. Before it the lever is lost: from 30 deg on,
-/// where the rod is at rest on its spring, x is followed. What x'' and x' do is missing in a wrench of rigid links; its
-/// phase hangs on a stiffness that is hardly known, its size does not: the mean square over the rods counts. Each step
-/// is that of the oscillator with the lever at its middle.
+/// the rocker picks up speed as the lever opens, and vibrates; within the joint clearance the spring has no force. A
+/// rocker that meets no tool is driven past the dead centre by psi_rigid'' alone. Before it the lever is lost: from 30
+/// deg on, where the rod is at rest on its spring, x is followed. A wrench of rigid links lacks the effect of x'' and
+/// x'. Its phase depends on a stiffness that is hardly known, its size does not: the mean square over the rods counts.
+/// Each step is that of the oscillator with the lever at its middle.
 class RodRing {
  public:
-  /// A rod that is said to be rigid does not ring.
+  /// Refers to the model; a rod given as rigid does not vibrate.
   explicit RodRing(const HullModel& model) noexcept;
 
   /// Restarts at the crank's last sample; the motion before it is not known. A crank behind the blow has passed it with

@@ -49,8 +49,8 @@ struct StepPlace {
 };
 
 /// Calls at(place, crank) in order of time where a component of the wrench is extreme inside the step and on both sides
-/// of each blow, and turn(time) between them where a blow may end a turn. Times are after the step's start [s]. Of
-/// extremes closer than 1.25 ms one may be missed; points on the way to them are given as well.
+/// of each blow, and turn(time) between them where a blow may end a turn. Times are after the step's start [s]. One of
+/// two extremes closer than 1.25 ms may be missed; points on the way to them are given as well.
 template <typename OnPlace, typename OnTurn>
 void forEachStepExtreme(const StepLoad& load, const CrankStep& step, const OnPlace& at, const OnTurn& turn) noexcept {
   const auto alongSpan = [&](const SmoothSpan& span) {

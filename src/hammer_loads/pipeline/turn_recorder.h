@@ -36,8 +36,8 @@ class TurnRecorder {
   void abandon() noexcept { recording_ = false; }
   bool recording() const noexcept { return recording_; }
   /// Momentum that the turn's load would have given a free hull by the blow that ended the last turn [N s, N m s]. The
-  /// hull returns each turn: its momentum has no trend and no mean, so that weight and blow are not in it. Of a turn
-  /// that was not seen whole, that of the links before the blow.
+  /// hull returns each turn: its momentum has no trend and no mean, so that weight and blow are not in it. For a
+  /// revolution that was not seen whole it is the momentum of the links before the blow.
   const LinkMomentum& swing() const noexcept { return swing_; }
   void add(const TurnInstant& instant) noexcept;
   /// Ends the turn just before a blow; no pulse if the turn was not seen whole or never pushed the hull up.

@@ -10,8 +10,8 @@
 
 namespace hammer_loads {
 
-/// A boom holds the hull with an unknown stiffness. What a free hull of `hull_mass_kg` would do is therefore multiplied
-/// by what a resonance makes of it, with any phase.
+/// A boom holds the hull with an unknown stiffness. The motion of a free hull of `hull_mass_kg` is therefore multiplied
+/// by the amplification of a resonance, with any phase.
 class UnmeasuredHull {
  public:
   explicit UnmeasuredHull(const HammerParameters& hammer) noexcept

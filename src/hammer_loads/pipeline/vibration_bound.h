@@ -6,9 +6,9 @@
 namespace hammer_loads {
 
 /// With E the energy of all modes of unit mass, sqrt(2 E) grows by no more than the size of the modal force times time,
-/// and by the size of an impulse, whatever the frequencies; the lowest mode's damping takes from it. Sensors add what
-/// operator and rock do: no more than all joints turning at 1 rad/s. What is beyond twice that sum is no vibration
-/// but an observer that runs away.
+/// and by the size of an impulse, whatever the frequencies; the lowest mode's damping takes from it. Sensors add the
+/// effects of operator and rock: no more than all joints turning at 1 rad/s. A value beyond twice that sum is no
+/// vibration but a diverging observer.
 class VibrationBound {
  public:
   void rest() noexcept { pushed_ = 0.0; }

@@ -13,8 +13,8 @@
 
 namespace hammer_loads {
 
-/// Replaces diagnostic_updater::Updater, which adds its period to the time now. That throws within the last second
-/// before 2^32 s, in the constructor as well, and a /clock may say anything.
+/// Replaces diagnostic_updater::Updater, which adds its period to the time now. The sum throws within the last second
+/// before 2^32 s, in the constructor as well, and a /clock may have any value.
 class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
  public:
   /// clock: of the node's inputs; a logged report has the record time of the last one. Both must outlive this.

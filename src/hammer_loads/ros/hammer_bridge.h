@@ -53,7 +53,7 @@ class HammerBridge {
   void keepPieces(life::PieceSink& pieces);
   /// Called after each crank message and at the end of a run, before its turns are sent; replaced with each call.
   void watch(std::function<void()> sample) { watch_ = std::move(sample); }
-  /// Ends the count of the run at work: its last ~load_cycles and piece. What follows begins a new one.
+  /// Ends the count of the run at work: its last ~load_cycles and piece. The next message begins a new one.
   void finishCount();
   /// end() and finishCount(): what a run and its log end with.
   void finishRun();

@@ -18,8 +18,9 @@
 
 namespace hammer_loads {
 
-/// Listens to a node hammer_loads. Its run_info says where cuts and joints are: each gets a fixed frame, section/NAME
-/// or joint/NAME, with the axes in which its load is given. Of each picture's time the largest force is shown.
+/// Listens to a node hammer_loads. Its run_info gives the places of cuts and joints: each gets a fixed frame,
+/// section/NAME or joint/NAME, with the axes in which its load is given. The largest force within each picture's time
+/// is shown.
 ///
 /// Out (private): section/NAME and joint/NAME, geometry_msgs/WrenchStamped, and text, visualization_msgs/Marker, with
 /// blow rate, energy and peak of the last turn. A joint's load is without its cylinder's.

@@ -76,7 +76,8 @@ constexpr RodKey kRodKeys[] = {
     {"pin_play_m", "pin_play_std_m", "m", &RodSpring::play, kPlay},
     {"pin_friction_radius_m", "pin_friction_radius_std_m", "m", &RodSpring::friction_radius, kPlay}};
 
-/// All optional. Of a hammer whose other constants are all exact the rod is so too, unless the file says otherwise.
+/// All keys are optional. If the other constants of a hammer are all exact, the rod is exact as well unless the file
+/// states otherwise.
 void readRod(ParameterReader& reader, HammerParameters& parameters, std::string& usual) {
   for (const RodKey& k : kRodKeys)
     if (reader.given(k.key)) parameters.rod.*k.field = reader.number(k.key, k.unit, k.rule);

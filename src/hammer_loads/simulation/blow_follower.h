@@ -20,7 +20,7 @@ class BlowFollower {
     double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
     bool touches{};
   };
-  /// After each step. What the turn before it was, where a blow begins now: for the caller to fill in.
+  /// After each step. Revolution before the blow that begins now, for the caller to fill in.
   BlowTruth* follow(const Instant& now);
   /// Hands over the blows that ended since the last call.
   std::vector<BlowTruth> take() { return std::exchange(blows_, {}); }

@@ -47,7 +47,7 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
 /// pressed on the tool; without it the hull hangs free and the rock holds the tool alone. The boom's swing about the
 /// vertical is left out. With settings.rod elastic the rocker is a coordinate of its own and the blow follows from the
 /// contact, as in ElasticMachine: its force bears on rocker, hull and boom; the tool's own motion is as in a hull that
-/// stands still. Of BlowTruth force and impulses of the turn are not followed: not-a-number.
+/// stands still. Force and impulses of the revolution in BlowTruth are not followed: NaN.
 class HammerOnBoom {
  public:
   /// Level rocker, rigid coupling; throws std::invalid_argument when the hammer's linkage is impossible.
