@@ -33,7 +33,7 @@ void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatri
   const Eigen::Vector2d across(-along[1], along[0]);
   const double by_amount = std::sqrt(along.dot(covariance * along)),
                by_phase = std::sqrt(across.dot(covariance * across));
-  // Either both keys or none: an amount at a wrong phase is worse than none. So each has the larger deviation.
+  // Either both keys or none: an amount at a wrong phase is worse than none. Each therefore has the larger deviation.
   const double larger = std::max(by_amount, by_phase), scale = std::max(amount, 1e-9);
   const double by_blows = std::sqrt(of_blows.diagonal().segment<2>(k).maxCoeff());
   const bool seen = amount > gate::kUsual * larger;  // else none is as likely, and does no harm

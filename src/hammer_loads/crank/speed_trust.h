@@ -13,14 +13,15 @@
 namespace hammer_loads {
 
 /// A drive filters its speeds. Such an error is no noise: where stamps jitter the angles say little in a sample, and
-/// speeds that are late pull the estimate with them. So a speed is compared with the estimate that does not know it:
+/// speeds that are late pull the estimate with them. A speed is therefore compared with the estimate that does not
+/// contain it:
 ///
 ///     measured = (1 + scale) y + noise,  lag y' = speed - y,
 ///
 /// and where the estimate has taken up speeds before, less what their lag and scale have made of it. Both by least
-/// squares (Gauss and Newton, a step a turn) over some turns, their priors among them. What the best fit leaves of a
-/// turn has a variance and an autocorrelation rho from one sample to the next; n such errors say as much as n (1 -
-/// rho)/(1 + rho) independent ones. Speeds are weighed by what is not known of lag and scale (GaussianBelief,
+/// squares (Gauss and Newton, a step a turn) over some turns, their priors among them. The residuals of a revolution
+/// have a variance and an autocorrelation rho from one sample to the next; n such errors carry as much information as n
+/// (1 - rho)/(1 + rho) independent ones. Speeds are weighted by the uncertainty of lag and scale (GaussianBelief,
 /// unknowns.h) until that is less than matters; where one shows they serve the start alone. (Not for ever: a model that
 /// errs is put right by them.)
 class SpeedTrust {

@@ -100,7 +100,7 @@ enum class CrankStamps {
 /// The sequence of samples is their order of arrival. A sample without irregular ones among the last thousand keeps its
 /// header stamp, bit for bit, however irregular the intervals. Where a few stamps repeat or run back a little, the
 /// sample gets an instant between its neighbours; where many do and the sensor evidently samples at equal intervals,
-/// all get the line through the stamps so far. Of bursts only the first of each counts until the line is known, six
+/// all get the line through the stamps so far. Only the first sample of each burst counts until the line is known, six
 /// bursts on. A burst at rest without speeds looks like duplicates: the line begins anew with the first burst that
 /// moves. Causal; instants strictly increase until a restart.
 class StampSequence {

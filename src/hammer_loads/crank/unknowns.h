@@ -72,8 +72,8 @@ inline std::string ofEccentricity(double amount, double deviation) {
 
 /// Table of the constants; those that are seen come first. Readings of the sensor's place: angle + b0 + b1 sin(angle) +
 /// b2 (cos(angle) - 1) [rad], so that b0 alone says where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of
-/// these; from 0.3 and 0.5 deg on the wrench is some 0.9 % worse. Of speeds, what a drive is off that filters: with a
-/// quarter of it the first second of a lag of 10 ms costs twice what it may.
+/// these; from 0.3 and 0.5 deg on the wrench is some 0.9 % worse. The speed rows have the errors of a drive that
+/// filters: with a quarter of them the first second of a lag of 10 ms costs twice what it may.
 inline constexpr std::array<Unknown, 7> kUnknowns{{
     {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
      unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero, true},

@@ -35,7 +35,7 @@ class BagLog {
   /// Makes the directory where findLogDirectory may.
   std::vector<std::string> settingProblems() const;
   /// Begins a bag. Returns nothing, or one line per reason against it: a problem of the settings, or the state of disk
-  /// and memory, which health() then reports as well. That is no reason not to start the node.
+  /// and memory, which health() then reports as well. The node may start all the same.
   std::vector<std::string> start();
   /// Closes the bag behind the last message. Never fails; health() reports when the bag is closed, and whether that
   /// succeeded.
@@ -72,8 +72,9 @@ class BagLog {
   bool isRecording() const noexcept { return session_ != 0 && writer_.faultySession() != session_; }
   LogHealth health() const;
 
-  /// Record time of an input: its arrival, but at least 1 ns after the input before. So record times of inputs rise in
-  /// their order of arrival whatever the clock does, and a bag read in time order gives the inputs as they came.
+  /// Record time of an input: its arrival, but at least 1 ns after the input before. Record times of inputs therefore
+  /// rise in their order of arrival whatever the clock does, and a bag read in time order gives the inputs as they
+  /// came.
   static ros::Time nextRecordTime(const ros::Time& arrival, const ros::Time& last) noexcept;
 
  private:

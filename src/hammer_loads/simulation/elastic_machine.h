@@ -31,8 +31,8 @@ struct ElasticEnergy {
 /// Dormand-Prince of order 5 with steps by its error; no step runs over a change of contact by more than 10 ns. A
 /// machine with second touches is chaotic: the steps do not depend on the times that are asked for, so that the same
 /// settings give the same motion.
-/// settings.rod.stiffness > 0. Of BlowTruth: `time` is the first touch, speeds after are those at the last parting,
-/// energy and impulse those through the tool, a turn lasts from one first touch to the next.
+/// settings.rod.stiffness > 0. BlowTruth has the following meaning: `time` is the first touch, speeds after are those
+/// at the last parting, energy and impulse those through the tool, a turn lasts from one first touch to the next.
 class ElasticMachine {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
