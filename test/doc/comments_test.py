@@ -18,6 +18,7 @@ REMARK_BEGINNING = re.compile(BEGINNING, re.I)
 DOC = re.compile(r"\s*///(?!<)\s?(.*)")
 MEMBER = re.compile(r".*\S\s*///<\s?(.*)")
 REMARK = re.compile(r"\s*//(?!/)\s?(.*)")
+SENTENCE = re.compile(r"(?<=[a-z0-9)\]]\. )(?:What|Of|That|Those|So|As|Whether|Likewise|Nor|Which)\b.{0,40}")
 
 NAME = (r"(?:Of|What|That|Those|As|Same|Its|It|In|At|From|With|Without|By|On|Beyond|Beside|Before|After|Between|Until|Within|Where|"
         r"When|Who|Which|And|But|Both|Nor|To|For|How|Also|Too|Far|Than|So|If)")
@@ -42,6 +43,13 @@ def bad_beginnings(text):
     return [f"{number}: {words[:60]}" for number, words, pattern in beginnings(text) if pattern.match(words)]
 
 
+def bad_sentences(text):
+    """Sentences within doc comments that begin with a clause; lines of a block are joined."""
+    lines = [DOC.match(line) or REMARK.match(line) for line in text.splitlines()]
+    joined = " ".join(match.group(1).strip() if match else "\n" for match in lines)
+    return SENTENCE.findall(joined)
+
+
 def docstrings(text):
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, (ast.Module, ast.FunctionDef, ast.ClassDef)):
@@ -64,6 +72,10 @@ def test_comments_begin_with_a_subject_or_a_verb():
     texts = {path: path.read_text() for path in SOURCES}
     assert sum(1 for text in texts.values() for _ in beginnings(text)) > 5000
     assert [f"{path.relative_to(ROOT)}:{found}" for path, text in texts.items() for found in bad_beginnings(text)] == []
+
+
+def test_sentences_of_comments_begin_with_a_subject():
+    assert [(str(path.relative_to(ROOT)), found) for path in SOURCES for found in bad_sentences(path.read_text())] == []
 
 
 def test_docstrings_begin_with_a_subject_or_a_verb():
@@ -96,6 +108,16 @@ def test_names_of_tests_state_a_behaviour():
 ])
 def test_beginnings_are_found(text, wrong):
     assert len(bad_beginnings(text)) == wrong
+
+
+@pytest.mark.parametrize("text, wrong", [
+    ("/// The crank turns. Of its speed the mean counts.\n", 1),
+    ("/// The crank turns.\n/// What it drives, follows.\nint f();\n", 1),
+    ("/// The crank turns. Its speed counts, of which the mean is known.\n", 0),
+    ("/// Speed at 5.\nint f();\n/// So far.\n", 0),
+])
+def test_bad_sentences_are_found(text, wrong):
+    assert len(bad_sentences(text)) == wrong
 
 
 @pytest.mark.parametrize("name, bad", [
