@@ -1,4 +1,4 @@
-/// A blow on a machine whose rod gives, as a picture shows it: the true force and what the levels say of it.
+/// A blow on a machine with an elastic rod, as a picture shows it: the true force and what the levels say of it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// Loads of steel on a machine that stands on the oil of its boom, judged by its truth.
+/// Section loads on a machine that stands on the oil of its boom, judged by its truth.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// Cost table, fourth part: loads of steel on the shipped boom, by what sensors there are.
+/// Cost table, fourth part: section loads on the shipped boom, by what sensors there are.
 #pragma once
 
 #include <string>

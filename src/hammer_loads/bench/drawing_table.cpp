@@ -30,7 +30,7 @@ HammerParameters drawn(HammerParameters p, std::uint64_t seed, double off) {
   return drawing;
 }
 
-/// The machines that are drawn have rigid rods, and the file says so.
+/// The machines that are drawn have rigid rods, and the file states it.
 Mechanism withRigidRod(HammerParameters p) {
   p.rod_std = {};
   return *Mechanism::make(p).value;

@@ -1,4 +1,4 @@
-/// Cost table, fifth part: errors on machines whose rod gives and whose blow lasts, by level.
+/// Cost table, fifth part: errors on machines with an elastic rod and a lasting blow, by level.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ struct ElasticKind {
   simulation::MachineSettings machine;
 };
 
-/// The given hammer with crank and rod as it has them, 1 kHz, 4096 counts and speeds unless the name says otherwise.
+/// The given hammer with crank and rod as it has them, 1 kHz, 4096 counts and speeds unless the name states otherwise.
 std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer, std::uint64_t seed = MachineChoice::kSeed);
 /// Errors of one session through the pipeline at a level (seeded: equal on every run).
 ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, Level level);

@@ -124,7 +124,7 @@ class Boom {
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
   /// Finds the standard deviations of loads() and steelLoads() by errors of the hammer's load and, unless rigid, of the
   /// oil. Errors of masses, dimensions, weight and motion are not in them. They hold for the pose within four times
-  /// refresh_angle: the response to an error is computed anew for each such move of a joint.
+  /// refresh_angle: the response to an error is computed again for each such move of a joint.
   void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                   BoomDeviations& result) noexcept;
   /// Finds the standard deviations by given errors, as where the cylinders' forces are measured.

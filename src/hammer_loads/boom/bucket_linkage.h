@@ -33,7 +33,7 @@ struct BucketLinkageForces {
   Eigen::Vector2d coupler;  ///< [-]
 };
 
-/// Closed-form kinematics and statics. Neglects mass, play and elasticity of the links.
+/// Closed-form kinematics and statics. Neglects mass, joint clearance and elasticity of the links.
 class BucketLinkage {
  public:
   /// Guide and coupler must stay this far from being in line within the joint's limits: 5 deg [rad].

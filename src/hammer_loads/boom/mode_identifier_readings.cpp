@@ -164,7 +164,7 @@ bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
   return reading.channel >= 0 && reading.channel < kMaxChannels && std::isfinite(reading.value);
 }
 
-/// A stiffness that is not known makes as much of a torque doubtful as there is of it. Where readings do not correct
+/// A stiffness that is not known makes as much of a torque uncertain as there is of it. Where readings do not correct
 /// it, a motion that an IMU led astray would excuse itself by the large torque that it predicts: there it is that which
 /// was read.
 void ModeIdentifier::excuseNoMoreThanRead(const VibrationReading& reading, double difference,

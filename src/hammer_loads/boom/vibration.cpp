@@ -11,7 +11,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kSmall = 0.1;      // [rad]
-constexpr double kOilStep = 0.003;  // by which the modes' oil is off before they are found anew
+constexpr double kOilStep = 0.003;  // by which the modes' oil is off before they are found again
 // Numerical: kOilStep
 constexpr double kMostOil = ModeIdentifier::kMostOil;
 

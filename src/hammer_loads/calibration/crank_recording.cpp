@@ -69,7 +69,7 @@ std::size_t dropUseless(std::vector<RecordedSample>& samples) {
   return refused;
 }
 
-/// Mean step of a recording whose single steps say nothing.
+/// Mean step of a recording whose single steps give no information.
 double meanPeriod(const std::vector<RecordedSample>& samples) {
   std::vector<double> means;
   constexpr std::size_t kStride = 40;

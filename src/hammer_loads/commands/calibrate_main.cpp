@@ -36,7 +36,7 @@ std::string whyFileMustStay(const std::string& name) {
   return ours ? "" : "it holds no calibration";
 }
 
-/// Files and what goes into them: first all are filled, then all get their names. False: said why.
+/// Files and what goes into them: first all are filled, then all get their names. False: the error was reported.
 bool write(std::vector<OutputFile>& files, const std::vector<std::string>& names,
            const std::vector<std::string>& texts) {
   std::string problem;

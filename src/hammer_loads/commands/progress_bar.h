@@ -20,7 +20,8 @@ inline std::string timeText(double seconds) {
   return text;
 }
 
-/// One line of it. By the time that the part done took; nothing is said of the first 2 %, which say little.
+/// One line of it. By the time that the part done took; nothing is said of the first 2 %, which give little
+/// information.
 inline std::string progressLine(double part, double seconds_so_far) {
   const int percent = static_cast<int>(100.0 * part);
   char text[80];

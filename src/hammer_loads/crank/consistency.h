@@ -71,7 +71,7 @@ class StrikeConsistency {
   double before_{std::numeric_limits<double>::quiet_NaN()}, last_{before_};
 };
 
-/// A rod that gives picks the rocker up just after the blow, where the linkage has no lever on it, and has rung out a
+/// An elastic rod picks the rocker up just after the blow, where the linkage has no lever on it, and has rung out a
 /// quarter of a turn later. A sensor that is off, other masses or a soft coupling contradict the model elsewhere too:
 /// with 4096 counts at 1 kHz the means of innovation^2 over its variance there are
 ///
@@ -90,13 +90,13 @@ class RodEvidence {
     if (at.offset < kPickedUp) picked_up_.add(bounded);
     if (at.offset > kRungOut) later_.add(bounded);
   }
-  /// Beside the blow: a rod that gives has picked the rocker up; it has rung out [rad].
+  /// Beside the blow: an elastic rod has picked the rocker up; it has rung out [rad].
   static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;
   /// Standard deviation of a reading from which on it shows no rod [rad]: through noise beyond it the sensor's place is
   /// taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
   /// Mean just before the blow, where a rod in worn pins lets go of the rocker and the crank runs ahead (4 and more;
-  /// rods that give in tight pins 1.5 to 2), while the rod picks the rocker up, and when it has rung out [-].
+  /// elastic rods in tight pins 1.5 to 2), while the rod picks the rocker up, and when it has rung out [-].
   double runUp() const noexcept { return run_up_.mean(); }
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }

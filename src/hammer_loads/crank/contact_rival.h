@@ -11,7 +11,7 @@ namespace hammer_loads {
 
 /// At each blow a second belief goes on without contact: a rocker that finds no tool passes the dead centre onto the
 /// mirrored branch and comes back a turn later. Both beliefs take the same samples until one is far more likely. Near
-/// the dead centre a rod that gives may make the right one the unlikely one: it is set aside there, and looked at again
+/// the dead centre an elastic rod may make the right one the unlikely one: it is set aside there, and looked at again
 /// behind.
 class ContactRival {
  public:
@@ -36,12 +36,12 @@ class ContactRival {
   /// Estimate of the hypothesis. Precondition: isThere().
   CrankBelief& belief() noexcept { return *belief_; }
 
-  /// The rival, predicted to the sample, takes it too. Its own outliers and jolts count against it.
-  /// fit: logarithm of the sample's likelihood by the estimate; growth: of variances, by the consistency.
+  /// The second hypothesis, predicted to the sample, takes it too. Its own outliers and jolts count against it. fit:
+  /// logarithm of the sample's likelihood by the estimate; growth: of variances, by the consistency.
   void follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
               double most_speed) noexcept;
-  /// Exchanges the beliefs where the rival is far more likely: true. Sets it aside where it is far less likely, and
-  /// gives it up where it still is behind the dead centre.
+  /// Exchanges the beliefs where the second hypothesis is far more likely: true. Sets it aside where it is far less
+  /// likely, and gives it up where it still is behind the dead centre.
   bool choose(CrankBelief& estimate, bool& mirrored) noexcept;
 
  private:

@@ -26,7 +26,7 @@ struct CrankWalks {
   SupplyLaw supply;
 };
 
-/// The prior of a blow: the factor on the crank's speed is drawn anew each time.
+/// The prior of a blow: the factor on the crank's speed is drawn each time.
 struct BlowPrior {
   double mean{1.0};    ///< [-], > 0
   double deviation{};  ///< [-]
@@ -65,9 +65,9 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   void forgetAngle(double variance) noexcept;
   /// The position stands beyond the blow that it should have passed: passes it now.
   void passLate(const ShaftModel& model, const BlowPrior& prior) noexcept;
-  /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
+  /// The tool was met some time within the last dt [s]: the speed is uncertain by `deviation` of itself.
   void meetTool(double deviation, double dt) noexcept;
-  /// Just after a blow, struck some time within the last dt [s]: its factor is in doubt by as much as explains an
+  /// Just after a blow, struck some time within the last dt [s]: its factor is uncertain by as much as explains an
   /// innovation of variance `total` of angle or speed. False: no factor explains it, all stays.
   bool doubtBlow(Row row, double innovation, double total, double dt) noexcept;
   /// Variances of angle, speed and torque, times `by` where that is above 1.

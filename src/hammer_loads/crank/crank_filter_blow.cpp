@@ -14,7 +14,7 @@ using Belief = CrankBelief;
 constexpr double kNearCounts = 4.0;       // counts from the blow within which the encoder decides its side
 constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
 constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
-constexpr double kRingOver = 0.8;         // [rad] behind the blow: a rod's ring is not taken for a torque any more
+constexpr double kRingOver = 0.8;         // [rad] behind the blow: a rod's vibration is not taken for a torque any more
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
 // Prior: kToolDeviation
 
@@ -128,13 +128,14 @@ void CrankFilter::respectCount(const CrankBelief& last, double dt, bool struck, 
   now_.tool_met = true;  // its factor is in the speed already
 }
 
-/// A belief is about to pass the blow with contact; the rival goes on without. A crank that rests there passes nothing.
+/// A belief is about to pass the blow with contact; the second hypothesis goes on without. A crank that rests there
+/// passes nothing.
 void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
   if (!HAMMER_LOADS_ABLATE(contact_rival) && !mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed)
     rival_.begin(belief);
 }
 
-/// (9) What the estimate cannot explain, the rival can.
+/// (9) What the estimate cannot explain, the second hypothesis can.
 bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept {
   if (!rival_.isOpen()) return false;
   CrankBelief rival = rival_.belief();

@@ -1,4 +1,4 @@
-// A sample: what is foretold, where the sensor was, whether it fits, what is learned of the machine from it and once a
+// A sample: what is predicted, where the sensor was, whether it fits, what is learned of the machine from it and once a
 // turn, and what of that is forgotten again.
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
   const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (deviation < kDoubtfulAngle) return std::nullopt;
   if (!now_.isSound(mostSpeed())) now_ = to.last;
-  // The next would begin anew too.
+  // The next would restart too.
   if (!(std::sqrt(speed_variance_) * to.dt < kDoubtfulAngle)) to.sample.speed.reset();
   return begin(to.sample);
 }
@@ -144,7 +144,7 @@ void CrankFilter::learnSupply() noexcept {
   errors_.takeSupply(change);
 }
 
-/// (10) ratio: of the innovation before a tool or a slip was taken up.
+/// (10) ratio: of the innovation before a tool or a slip was used.
 void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept {
   if (std::abs(now_.state.speed) <= kLearnSpeed) return;
   consistency_.add(ratio);

@@ -16,7 +16,7 @@ struct CrankSensorPlace {
 
 /// reading = zero + direction ratio (angle + sum a_n [sin(n angle + phase_n) - sin(phase_n)]), n = 1, 2: an encoder
 /// that sits off its centre by a part a_1 of its radius, or on an oval one. Its terms vanish at the blow, so that the
-/// zero alone says where that is. A measured speed is the reading's derivative.
+/// zero alone shows where that is. A measured speed is the reading's derivative.
 ///
 /// An encoder that is geared to the crank must count its turns on (readings not wrapped), unless its turn is a whole
 /// number of the crank's.

@@ -144,7 +144,7 @@ class EncoderSlip {
   enum class Step { kNone, kPerhaps, kSlipped };
 
   /// [rad]: an innovation that no working machine makes between two samples; the sensor is another one, and the
-  /// estimate begins anew.
+  /// estimate restarts.
   static constexpr double kMost = 0.5;
 
   /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
@@ -201,7 +201,7 @@ class AngleLag {
     lag_ = std::max(0.0, lag_ + more);
     deviation_ = deviation;
   }
-  /// The readings begin anew, at an even speed [rad/s].
+  /// The readings restart, at an even speed [rad/s].
   void begin(double speed) noexcept { behind_ = lag_ * speed; }
   /// After a step of dt [s] > 0 from one speed to another [rad/s], how far the reading is behind [rad].
   double behind(double from, double to, double dt) const noexcept {
@@ -209,7 +209,7 @@ class AngleLag {
     const double bent = lag_ * (to - from) / dt;
     return lag_ * (to - bent) + std::exp(-dt / lag_) * (behind_ - lag_ * (from - bent));
   }
-  /// The reading at the end of the last step was taken up.
+  /// The reading at the end of the last step was used.
   void go(double behind) noexcept { behind_ = behind; }
 
  private:

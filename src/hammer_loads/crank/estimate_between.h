@@ -25,7 +25,7 @@ struct BetweenSamples {
   double most_speed{};  ///< from which on an estimate has diverged [rad/s]
 };
 
-/// The way forward from the earlier sample and the way back from the later one, each trusted near its own end. Between
+/// The way forward from the earlier sample and the way back from the later one, each weighted near its own end. Between
 /// samples that no machine makes either may run away; it is left out then. dt after the earlier one, less than the step
 /// [s].
 CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;

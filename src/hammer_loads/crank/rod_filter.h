@@ -21,7 +21,7 @@ struct RodMotion {
 
 /// A rigid mechanism knows the crank before the blow; from some 15 ms before it until half a turn later the rod's
 /// spring counts. The filter begins with what the crank's filter knows there. Stiffness, damping and restitution are
-/// learned from blow to blow: what the crank's readings show of the ring is little in one blow and enough in ten.
+/// learned from blow to blow: what the crank's readings show of the vibration is little in one blow and enough in ten.
 ///
 /// An extended Kalman filter, linearised by differences: of each independent error (a column of the covariance's root)
 /// a machine that is off by it moves beside the estimate.
@@ -43,7 +43,7 @@ class RodFilter {
   };
   using Belief = GaussianBelief<kSize, 0>;
 
-  /// Pins hold both ways at once, or have play and can only push.
+  /// Pins hold both ways at once, or have joint clearance and can only push.
   enum class Pins { kTight, kPlay };
   /// Refers to the mechanism, which must outlive it. A value that its RodSpring leaves at 0 begins at a first guess.
   RodFilter(const Mechanism& mechanism, Pins pins) noexcept;

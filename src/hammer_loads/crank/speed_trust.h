@@ -12,9 +12,9 @@
 
 namespace hammer_loads {
 
-/// A drive filters its speeds. Such an error is no noise: where stamps jitter the angles say little in a sample, and
-/// speeds that are late pull the estimate with them. A speed is therefore compared with the estimate that does not
-/// contain it:
+/// A drive filters its speeds. Such an error is no noise: where stamps jitter the angles give little information in a
+/// sample, and speeds that are late pull the estimate with them. A speed is therefore compared with the estimate that
+/// does not contain it:
 ///
 ///     measured = (1 + scale) y + noise,  lag y' = speed - y,
 ///

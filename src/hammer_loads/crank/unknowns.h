@@ -71,7 +71,7 @@ inline std::string ofEccentricity(double amount, double deviation) {
 }  // namespace unknown
 
 /// Table of the constants; those that are seen come first. Readings of the sensor's place: angle + b0 + b1 sin(angle) +
-/// b2 (cos(angle) - 1) [rad], so that b0 alone says where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of
+/// b2 (cos(angle) - 1) [rad], so that b0 alone shows where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of
 /// these; from 0.3 and 0.5 deg on the wrench is some 0.9 % worse. The speed rows have the errors of a drive that
 /// filters: with a quarter of them the first second of a lag of 10 ms costs twice what it may.
 inline constexpr std::array<Unknown, 7> kUnknowns{{

@@ -97,7 +97,7 @@ struct GaussianBelief {
     covariance.col(i).setZero();
     covariance(i, i) = variance;
   }
-  /// Replaces a mean that the owner has drawn anew; effect: of the constants on it.
+  /// Replaces a mean that the owner has drawn; effect: of the constants on it.
   void draw(Eigen::Index i, double variance, const ConstantRow& effect = ConstantRow::Zero()) noexcept {
     forget(i, variance);
     by_constant.row(i) = effect;

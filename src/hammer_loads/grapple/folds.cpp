@@ -106,7 +106,7 @@ class BranchWalk {
   }
 
   /// det J falls towards zero at one end and rises at the other, and its slopes reach zero between them: two folds may
-  /// lie inside. Steps below 1e-5 rad are trusted.
+  /// lie inside. Steps below 1e-5 rad are accepted.
   bool mayHideFolds(const Eigen::Vector3d& along, double step, const Local& next) const {
     const double slope0 = sign_ * local_.ddet.dot(along), slope1 = sign_ * next.ddet.dot(unitTangent(next));
     const double det0 = sign_ * local_.closure.determinant, det1 = sign_ * next.closure.determinant;

@@ -17,7 +17,7 @@ struct TableRequest {
   bool summary{};                 ///< figures of the path between from and to instead of rows
 };
 
-/// Nothing, or one line that says why; then nothing has been printed unless a row in the middle failed.
+/// Nothing, or one line that gives the reason; then nothing has been printed unless a row in the middle failed.
 std::optional<std::string> printTable(const Grapple& grapple, const TableRequest& request, std::ostream& out);
 
 /// Names and units of the columns.

@@ -22,7 +22,7 @@ struct Reach {
   double high{};
 };
 
-/// Massless, without play: only positions matter.
+/// Massless, without joint clearance: only positions matter.
 class SliderDrive {
  public:
   /// Needs finite values with o1h > 0, gh > 0, drive_sign = +-1 (Grapple::make checks them).

@@ -10,8 +10,8 @@ namespace hammer_loads {
 
 /// Difference of a level's wrench to that of the richest over what the hammer's constants leave open of level linkage
 /// (WrenchColumns): root mean squares over a working turn, the largest of force x, force z and moment [-]. A hammer
-/// that is said to be exact leaves nothing open: then it is infinite, unless there is no difference. The richest is
-/// elastic, unless the rod is said to be rigid.
+/// that is given as exact leaves nothing open: then it is infinite, unless there is no difference. The richest is
+/// elastic, unless the rod is given as rigid.
 struct LevelChoice {
   Level level{};  ///< the cheapest within tolerance
   double tolerance{};

@@ -103,7 +103,7 @@ double meanDeviation(const CycleCount& count);
 
 /// Standard deviations of ranges.
 struct RangeDeviation {
-  double absolute{};  ///< alike for all ranges, in the channel's unit: where turns say nothing
+  double absolute{};  ///< alike for all ranges, in the channel's unit: where turns give no information
   double own{};       ///< part of single revolutions, over the range [-]
   double common{};    ///< part of constants, equal in all revolutions, over the range [-]; NaN: not known separately
 };

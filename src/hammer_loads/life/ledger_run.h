@@ -25,7 +25,7 @@ struct RunRow;
 /// A run that is in the ledger is not counted again. Where the ledger has less of it (kill -9, a locked file), the run
 /// takes that one's place when it ends. One with other sensor parameters does so only when it is to replace. A run that
 /// shares samples with a longer one is a part of it and refused. A run that was taken out of the ledger while it wrote
-/// begins anew there, with what follows.
+/// restarts there, with what follows.
 class LedgerRun {
  public:
   LedgerRun(std::string path, LedgerMachine machine, RunId run);

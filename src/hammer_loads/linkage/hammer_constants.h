@@ -16,7 +16,7 @@ struct HammerConstant {
   const char* key;                           ///< key in the hammer file
   const char* unit;                          ///< unit at the end of the key
   double& (*field)(HammerParameters&);       ///< in SI, an angle in rad
-  double (*usual)(const HammerParameters&);  ///< standard deviation where the file says nothing, in the field's unit
+  double (*usual)(const HammerParameters&);  ///< standard deviation where the file gives none, in the field's unit
   double away;                               ///< 1 or -1: where a deviation leads to a hammer that can exist
   enum class Enters {
     kMotion,   ///< motion of the links, and with it the loads

@@ -7,8 +7,8 @@
 
 namespace hammer_loads {
 
-/// Rod, pins and bearings as one spring along the rod, its damping and the play of the pins; and what their friction
-/// is, which no level models.
+/// Rod, pins and bearings as one spring along the rod, its damping and the joint clearance of the pins; and what their
+/// friction is, which no level models.
 struct RodSpring {
   double stiffness{};        ///< k [N/m]; 0: not known
   double damping_ratio{};    ///< damping ratio of an oscillator of kReference on k [-]; 0: not known
@@ -25,13 +25,13 @@ struct RodPrior {
   RodSpring rod;
   double log_stiffness{}, log_damping{};  ///< standard deviations of their logarithms
   double play{};                          ///< standard deviation [m]
-  bool gives{};                           ///< false: the rod is said to be rigid, its pins to be tight
+  bool gives{};                           ///< false: the rod is given as rigid, its pins as tight
 
   static constexpr double kStiffness = 8e8, kDamping = 0.4;  ///< 4e8 to 1e9 N/m and 0.2 to 0.6: estimates
   static constexpr double kStiffest = 1e11;                  ///< stands for a rigid rod [N/m]
 };
 
-/// Standard deviations where a file says nothing; 0 in the rod: not known.
+/// Standard deviations where a file gives none; 0 in the rod: not known.
 inline RodSpring usualDeviation(const RodSpring& rod) noexcept {
   return {rod.stiffness > 0.0 ? 0.2 * rod.stiffness : 0.5 * RodPrior::kStiffness,
           rod.damping_ratio > 0.0 ? 0.4 * rod.damping_ratio : 0.8 * RodPrior::kDamping, 1e-4, 1e-3};

@@ -28,7 +28,7 @@ void oscillate(double square, double decay, double pull, double time, double& y,
   y += rest_at;
 }
 
-/// Tension of a rod with play: either side of a pin can only push.
+/// Tension of a rod with joint clearance: either side of a pin can only push.
 double pushes(const RodSpring& rod, double damping, double stretch, double rate) noexcept {
   const double half = 0.5 * rod.play, pressed = stretch - std::clamp(stretch, -half, half);
   const double both = rod.stiffness * pressed + damping * rate;

@@ -51,7 +51,7 @@ class TwoBodies {
   explicit TwoBodies(const Mechanism& mechanism) noexcept;
 
   /// By dt [s] > 0, over which levers count as constant: half a millisecond beside the blow, one elsewhere. Where pins
-  /// with play part or meet, it is made of parts.
+  /// with joint clearance part or meet, it is made of parts.
   void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state) const noexcept;
   /// At a state.
   TwoBodyAccelerations accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& state,

@@ -1,4 +1,4 @@
-/// Messages that a log lost, as its bag says.
+/// Messages that a log lost, as its bag reports.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticStatus.h>

@@ -34,7 +34,7 @@ struct BoomSample {
   /// Errors of constants, the same in all samples, as constantErrors() and hammerErrors(); zero: exact.
   Eigen::Matrix3d constants = Eigen::Matrix3d::Zero(), of_hammer = Eigen::Matrix3d::Zero();
   std::optional<StampedImuReading> imu{};  ///< a new reading, in the hull's axes
-  bool imu_lost{};                         ///< earlier readings cannot be trusted
+  bool imu_lost{};                         ///< earlier readings cannot be used
   HullWrench displaced_links{};            ///< DisplacedLinks, at the sample; counts for a boom that vibrates
   double stamp_noise{};                    ///< standard deviation of the stamp, from sample to sample [s]
   double unseen_peak{};  ///< peak of Fz of a working hammer that may not have been followed before [N]
@@ -185,7 +185,7 @@ class BoomFollower {
   CylinderPressures pressures_;
   MeasuredTorques measured_;
   PressureTrust trust_;
-  int lost_sensors_{};  ///< number of sensors that cannot be trusted
+  int lost_sensors_{};  ///< number of sensors that cannot be used
   HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;
@@ -205,7 +205,7 @@ class BoomFollower {
   bool known_{};
   std::uint64_t faults_{}, runaways_{};
   VibrationBound bound_;
-  double withheld_for_{};            ///< after the vibration began anew [s]
+  double withheld_for_{};            ///< after the vibration restarted [s]
   std::vector<std::string> givers_;  ///< edges, then cylinders
   std::string no_giver_;
 };

@@ -24,7 +24,7 @@ struct BoomHealth {
   std::array<OfCylinder, kMaxJoints> cylinder;
   std::array<OfMode, kMaxJoints> mode;
   int count{};          ///< number of cylinders and of modes
-  bool oil_explains{};  ///< false: a damping is none of oil, and what is stiff or soft beside it is doubtful
+  bool oil_explains{};  ///< false: a damping is none of oil, and what is stiff or soft beside it is uncertain
 };
 
 /// The mode whose damping is farthest from the boom file's, where that is more than the identifier expects: no oil

@@ -18,7 +18,7 @@ namespace hammer_loads {
 class CrankTrust {
  public:
   /// CrankFilter::strikeConsistency() beyond which readings contradict the model. With a zero 30 deg off it is 5, with
-  /// a crank that turns backward 6.5, with a zero 2 deg off 2.5, on machines whose rod gives below 2
+  /// a crank that turns backward 6.5, with a zero 2 deg off 2.5, on machines with an elastic rod below 2
   /// (crank_trust_test).
   static constexpr double kMost = mismatch::kContradicts;
   /// threshold of CrankFilter::consistency() for a warning that withholds nothing; a correct machine has 0.9, a zero 2
@@ -41,7 +41,7 @@ class CrankTrust {
     unbelieved_ = 0;
   }
   /// The blow was passed forward. believed: the estimate just before it was good enough to be published. A crank that
-  /// rocks at the dead centre says nothing.
+  /// rocks at the dead centre gives no information.
   void passBlow(bool believed) noexcept {
     if (hasRunUp()) unbelieved_ = believed ? 0 : std::min(unbelieved_ + 1, kUnbelieved);
   }
@@ -58,8 +58,8 @@ class CrankTrust {
   }
 
  private:
-  /// Strokes in a row. Wherever the model holds one in some hundred is not believed, after lost samples; with a zero
-  /// 30 deg off, on a machine whose rod gives, or one that runs away without a tool, nine of ten are not.
+  /// Strokes in a row. Wherever the model holds one in some hundred is not accepted, after lost samples; with a zero 30
+  /// deg off, on a machine with an elastic rod, or one that runs away without a tool, nine of ten are not.
   static constexpr int kUnbelieved = 2;
   static constexpr double kRunUp = 1.0;  ///< [rad]: noise of readings is less, a blow's way more
   /// A hammer that stops falls back on its tool, by less than half a turn: the rocker passes the dead centre no other

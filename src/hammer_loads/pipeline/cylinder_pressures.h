@@ -24,7 +24,7 @@ class CylinderPressures {
   explicit CylinderPressures(double max_age) : max_age_(max_age) {}
 
   /// Gauge pressure [Pa] of a cylinder of the boom. One that is not finite, beyond what steel holds, not newer than the
-  /// last or far off the others (JumpGuard) is refused and counted; time running back is believed from the second
+  /// last or far off the others (JumpGuard) is refused and counted; time running back is accepted from the second
   /// reading on.
   bool update(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept;
   /// Returns true if the pressures of both chambers are known.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kFrom = -0.30,
                  kFromLatest = -0.05;  // beginning of the elastic model [rad]: some 15 ms before the blow
-constexpr double kTo = 2.2;            // [rad]: by then no rod rings
+constexpr double kTo = 2.2;            // [rad]: by then no rod vibrates
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // for logarithms of likelihoods, per blow
 constexpr std::int64_t kOthersTurn = 4;                 // [blows]
 // Numerical: kOthersTurn
@@ -98,8 +98,8 @@ void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) no
   if (std::none_of(filters_.begin(), filters_.end(), [](const RodFilter& rod) { return rod.isRunning(); })) judge();
 }
 
-/// Pins with play: where it shows, or where tight ones contradict the readings. Tight pins can imitate play by a soft
-/// rod and much damping, but not the impacts.
+/// Pins with joint clearance: where it shows, or where tight ones contradict the readings. Tight pins can imitate joint
+/// clearance by a soft rod and much damping, but not the impacts.
 const RodFilter& ElasticFollower::likelier() const noexcept {
   const RodFilter &tight = filters_[0], &play = filters_[1];
   if (!play.isProven()) return tight;
@@ -183,7 +183,7 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
   return sum;
 }
 
-/// A Kalman correction by x'' = 0 +- what is expected of a ring.
+/// A Kalman correction by x'' = 0 +- what is expected of a vibration.
 ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, double ring) noexcept {
   Loads mean = loads(filter().motion(), drive);
   const LoadCovariance errors = covariance(drive, mean);

@@ -11,7 +11,7 @@
 
 namespace hammer_loads {
 
-constexpr double kRingStep = 2e-4;  ///< [s] between points of its path: a ring of 500 Hz has a tenth of a turn between
+constexpr double kRingStep = 2e-4;  ///< [s] between points of its path: a tenth of a period at 500 Hz
 // Numerical: kRingStep
 
 /// Elsewhere, and where readings contradict the rod's model, the machine is that of level linkage.
@@ -67,7 +67,7 @@ class ElasticFollower {
   /// that step; times count from its start [s].
   bool ranOverStep() const noexcept { return runs() && best_->hasMoved(); }
   CrankEstimate crankAt(double time) const noexcept { return crankOf(motionAt(time)); }
-  /// With what a rod that gives adds; the deviations of the samples stand for its own.
+  /// With what an elastic rod adds; the deviations of the samples stand for its own.
   struct Instant {
     CrankEstimate crank;
     HullWrench wrench;
@@ -95,7 +95,7 @@ class ElasticFollower {
   Impulse impulse(const DriveReaction& drive, double from, double to) const noexcept;
   /// Standard deviation of the momentum of links and drive at the sample [N s, N s, N m s].
   HullWrench momentumDeviation(const DriveReaction& drive) const noexcept;
-  /// While it runs: with pins tight, or with play where the last blow showed one.
+  /// While it runs: with pins tight, or with joint clearance where the last blow showed one.
   const RodFilter& filter() const noexcept { return best_ != nullptr ? *best_ : filters_[0]; }
 
  private:

@@ -41,8 +41,8 @@ class HullImu {
  public:
   explicit HullImu(const HullImuSettings& settings) : settings_(settings) {}
 
-  /// Takes a reading or says why not. A reading older than the last restarts if a second such one follows it, as
-  /// when a log is played again. One that is far off the others is refused (JumpGuard). No allocation.
+  /// Takes a reading or returns the reason against it. A reading older than the last restarts if a second such one
+  /// follows it, as when a log is played again. One that is far off the others is refused (JumpGuard). No allocation.
   std::optional<ImuRefusal> update(StampNs stamp, const ImuReading& reading) noexcept;
 
   /// A blow was struck at that instant: accelerations jump there, so no line and no difference goes across it.
@@ -67,7 +67,7 @@ class HullImu {
  private:
   bool blowBetween(StampNs from, StampNs to) const noexcept { return blow_ && from < *blow_ && *blow_ <= to; }
 
-  // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for steel that rings too.
+  // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for vibrating steel too.
   static constexpr double kLeastForceJump = 200.0;  // [m/s2]
   static constexpr double kLeastRateJump = 3.0;     // [rad/s]
 

@@ -26,7 +26,7 @@ struct ImuCounts {
   std::uint64_t missed{};  ///< crank samples at which it did not show the hull's motion
 };
 
-/// Owns gravity and IMU, and the boom's last vibration. Where the IMU is silent, overdue or not to be trusted, the
+/// Owns gravity and IMU, and the boom's last vibration. Where the IMU is silent, overdue or not to be used, the
 /// vibration of a boom whose oil sensors have identified gives the hull's motion.
 class HullState {
  public:
@@ -68,7 +68,7 @@ class HullState {
   void rest() noexcept { vibration_.reset(), vibration_doubt_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }
-  /// False where IMU or boom should give the hull's motion and do not, or the IMU cannot be trusted: weight by joint
+  /// False where IMU or boom should give the hull's motion and do not, or the IMU cannot be used: weight by joint
   /// angles then, and the vibration of a boom whose oil is identified.
   bool motionKnown() const noexcept { return known_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }

@@ -15,7 +15,7 @@ namespace hammer_loads {
 
 /// Reason why the joints' motion is not known at an instant.
 struct JointFault {
-  /// kRunAway: the boom's vibration was more than anything makes it, and begins anew
+  /// kRunAway: the boom's vibration was more than anything makes it, and restarts
   enum class Kind { kMissing, kStale, kRunAway };
   Kind kind{};
   int joint{};   ///< the first one concerned, index in the chain; of kRunAway 0
@@ -26,7 +26,7 @@ struct JointFault {
 struct JointRefusals {
   std::uint64_t not_finite{};    ///< position or velocity; a position with a bad velocity counts as one without
   std::uint64_t short_array{};   ///< fewer positions, or fewer velocities than positions, than names
-  std::uint64_t jumps{};         ///< no joint moves so fast; a second one in a row is believed
+  std::uint64_t jumps{};         ///< no joint moves so fast; a second one in a row is accepted
   std::uint64_t out_of_order{};  ///< not newer than the state before it; a joint named twice in a message
 };
 
@@ -41,7 +41,7 @@ class JointBuffer {
   /// zeros: what the joints read at the chain's zeros; it is taken off. None: zero.
   JointBuffer(const Chain& chain, const PipelineSettings& settings, const JointVector& zeros = {});
 
-  /// Takes what concerns the chain; returns whether anything was taken. Time running back is believed from a joint's
+  /// Takes what concerns the chain; returns whether anything was taken. Time running back is accepted from a joint's
   /// second state on: the first may just be late. No allocation.
   bool update(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
               const std::vector<double>& velocities) noexcept;

@@ -9,14 +9,14 @@
 namespace hammer_loads {
 
 /// Refuses a reading that jumps twelve times as far as its fellows do, root mean square over some hundred of them; a
-/// second one in a row is believed, so that what truly jumps comes one reading late. On a hammer at work, on rock too,
+/// second one in a row is accepted, so that what truly jumps comes one reading late. On a hammer at work, on rock too,
 /// readings jump up to nine times as far (IMU of 1 kHz to 100 Hz, pressures of 500 to 200 Hz).
 class JumpGuard {
  public:
   /// least: a jump that is never too far.
   explicit JumpGuard(double least) noexcept : least_(least) {}
 
-  /// jump: from the last reading that was believed, >= 0.
+  /// jump: from the last reading that was accepted, >= 0.
   bool believes(double jump) noexcept {
     const double limit = std::max(least_, kFactor * std::sqrt(square_));
     const bool far = jump > limit;

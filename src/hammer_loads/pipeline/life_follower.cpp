@@ -112,7 +112,7 @@ void LifeFollower::countBetween(StampNs stamp) noexcept {
   turn_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
 }
 
-/// A rod that gives rings between samples: what its path has there, beyond the samples as far as the path comes to the
+/// An elastic rod vibrates between samples: what its path has there, beyond the samples as far as the path comes to the
 /// second of them within the deviations published at both.
 void LifeFollower::followRing(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();

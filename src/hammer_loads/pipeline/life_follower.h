@@ -16,7 +16,7 @@
 namespace hammer_loads {
 
 /// Takes what a pipeline's samples gave: every channel at each sample whose loads are published, the hull wrench
-/// between two such where it is extreme and as close to both sides of a blow as is known, as far as both say so, in
+/// between two such where it is extreme and as close to both sides of a blow as is known, as far as both state it, in
 /// time order. Beside the pipeline, which does not know of it. How a run goes:
 ///
 ///     const SampleResult& result = pipeline.crankSample(...);

@@ -10,7 +10,7 @@
 namespace hammer_loads {
 
 /// By constants, one standard deviation each of errors that are independent of each other (order of LoadColumns), the
-/// same in all turns; and by what is drawn anew in each turn.
+/// same in all turns; and by what is drawn in each turn.
 struct NumberError {
   using Columns = Eigen::Matrix<double, 1, kLoadColumns>;
 

@@ -36,8 +36,7 @@ class RodRing {
   void restart(const CrankFilter& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankFilter& tracker) noexcept;
-  /// The filter that has followed the readings: they may show that no rod rings. lost:
-  /// ElasticFollower::isLost().
+  /// The filter that has followed the readings: they may show that no rod vibrates. lost: ElasticFollower::isLost().
   void take(const CrankFilter& filter, bool lost) noexcept;
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].
@@ -48,8 +47,8 @@ class RodRing {
   double restitutionDoubt(double restitution) const noexcept;
   /// Standard deviation by which the crank's speed at the last blow may exceed that which drives a rigid mechanism's
   /// rocker as fast as this one struck [rad/s]. A rocker at the side of its joint clearance is slower than the linkage
-  /// predicts, the more so the nearer the dead centre. nothing brakes it within the play: it strikes with the most it
-  /// was driven at.
+  /// predicts, the more so the nearer the dead centre. Nothing brakes it within the joint clearance: it strikes with
+  /// the most it was driven at.
   double lackingSpeed() const noexcept { return let_go_ * lacking_; }
   /// Part of the rocker's speed that the last blow left for the rod to take up [rad/s].
   double struck() const noexcept { return gives_ ? share_ * struck_ : 0.0; }

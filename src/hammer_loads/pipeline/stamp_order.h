@@ -23,7 +23,7 @@ class StampOrder {
   /// stale_after: age of the last sample from which on a new one restarts [s].
   explicit StampOrder(double stale_after) : stale_after_(stale_after) {}
 
-  /// Time running back is believed from the second sample on: the first may just be late.
+  /// Time running back is accepted from the second sample on: the first may just be late.
   Verdict judge(StampNs stamp) noexcept {
     if (!last_) return {};
     if (stamp == *last_) return {Place::kDuplicate};

@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kRingPart = 5e-4;  // [s] between points of a turn where a rod rings; its peak is by a parabola
+constexpr double kRingPart = 5e-4;  // [s] between points of a turn where a rod vibrates; its peak is by a parabola
 // Numerical: kRingPart
 constexpr double kBlind = 3e-3;  // [s], measured on swinging hulls: until then a torque passes for part of the blow
 
@@ -51,7 +51,7 @@ TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
           added.force_z};
 }
 
-/// Between points of the turn [s]; pins with play meet for a few tenths of a millisecond.
+/// Between points of the turn [s]; pins with joint clearance meet for a few tenths of a millisecond.
 double TurnFollower::partOfStep(bool rings) const noexcept {
   if (!rings) return kPulseStep;
   return elastic_->filter().motion().play > 0.0 ? kRingStep : kRingPart;
@@ -158,7 +158,7 @@ void TurnFollower::hullMovedAtBlow(const TipVelocity& hull) noexcept {
   pending_.setHullSpeed(hull.z + model_->mechanism().parameters().striking_distance * hull.rate);
 }
 
-/// A rod that gives takes the rocker up within the turn, not at the blow: what that is of the support's impulse is the
+/// An elastic rod takes the rocker up within the turn, not at the blow: what that is of the support's impulse is the
 /// turn's.
 void TurnFollower::takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept {
   const double u_after = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia).u_after;
@@ -170,8 +170,8 @@ void TurnFollower::takeUpLater(const CrankBlow& crank, LinkMomentum& after, Rock
   blow.support_impulse_y -= model_->mechanism().parameters().rocker_inertia_about_pivot * missing;
 }
 
-/// No blow at the dead centre slows the crank so. Where the tool had been met before, its impulses show, in doubt by
-/// what a blow at the dead centre would have; else they are in doubt by what the nearest blow that can be has.
+/// No blow at the dead centre slows the crank so. Where the tool had been met before, its impulses show, uncertain by
+/// what a blow at the dead centre would have; else they are uncertain by what the nearest blow that can be has.
 void TurnFollower::doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept {
   RockerBlow other = end.blow;
   if (early) {
@@ -223,7 +223,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   LinkMomentum after = linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter());
   RockerBlow& blow = pending_end_.blow;
   const CrankBlow measured = pending_.take();
-  const std::optional<CrankBlow> elastic = elastic_->blow();  // a rod that gives shows more than the crank's speed
+  const std::optional<CrankBlow> elastic = elastic_->blow();  // an elastic rod shows more than the crank's speed
   CrankBlow crank = elastic.value_or(measured);
   if (!elastic) {
     const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);

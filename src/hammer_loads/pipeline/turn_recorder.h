@@ -80,7 +80,8 @@ class TurnErrors {
   /// constants [N s]; weight: what constants make of the links' weight [N].
   PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow, const MomentumColumns& at_end,
                   const MomentumColumns& weight) const noexcept;
-  /// A ring's peak lies between samples, by its model alone: what it is beyond the highest of them is in doubt.
+  /// The peak of a vibration lies between samples, by its model alone: what it is beyond the highest of them is
+  /// uncertain.
   void doubtBetween(double peak, NumberError& error) const noexcept {
     const double beyond = std::max(0.0, peak - peak_);
     error.own = std::hypot(error.own, beyond), error.rod = std::hypot(error.rod, beyond);

@@ -16,7 +16,7 @@ constexpr double kLeastStretch = 0.01;  // [rad] for the shorter stretch: limits
 constexpr double kStretch = 1.0;        // [rad]: shorter than a turn, so that most stretches see no jump back
 constexpr double kLongestStep = 0.25;   // [s]
 constexpr double kRepeats = 0.2;        // relative change between steps that repeat each other
-constexpr double kMoves = 1.0;          // [rad/s]: a slower angle says nothing of its unit
+constexpr double kMoves = 1.0;          // [rad/s]: a slower angle does not show its unit
 constexpr int kEnough = 8;              // votes more for another unit than against
 
 constexpr double kWindow = 8e-3;            // [s] over which a rate is taken

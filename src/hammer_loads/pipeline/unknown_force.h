@@ -1,4 +1,4 @@
-/// Forces after a blow that every level lacks: friction and clearance of the pins, a rod that rings on.
+/// Forces after a blow that every level lacks: friction and clearance of the pins, lasting vibration of the rod.
 #pragma once
 
 #include <Eigen/Core>

@@ -43,7 +43,7 @@ void warnOfUnits(const Pipeline& pipeline, const SampleCounts& counts, std::vect
                       now});
 }
 
-/// Angle or speed are in another unit, so whatever else the readings look like says nothing.
+/// Angle or speed are in another unit, so whatever else the readings look like gives no information.
 bool isOtherUnit(const Pipeline& pipeline, const SampleCounts& counts) {
   return pipeline.crank().unit() != CrankUnit::kRadians || counts.inOtherUnit() > counts.accepted;
 }

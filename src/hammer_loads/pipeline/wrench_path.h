@@ -29,7 +29,7 @@ class WrenchPath {
   void forget() noexcept { count_ = 0, blow_.reset(); }
   bool known() const noexcept { return count_ > 0; }
   /// Steps in the order of time, each to `end`. beside_from, beside_to: what acts beside the step's own load at its
-  /// ends. A step that does not begin where the last one ended begins anew. No allocation.
+  /// ends. A step that does not begin where the last one ended restarts. No allocation.
   void add(StampNs end, const WrenchHistory& step, const HullWrench& beside_from, const HullWrench& beside_to) noexcept;
   /// Returns true if an instant lies within the stored time.
   bool covers(StampNs stamp) const noexcept { return known() && stamp >= oldest().start && stamp <= end_; }

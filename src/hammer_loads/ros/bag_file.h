@@ -20,7 +20,7 @@ namespace hammer_loads {
 /// Messages of one publisher on one topic.
 struct BagConnection {
   std::string topic, type, md5sum;
-  std::string publisher;  ///< name of the node; empty where the bag does not say
+  std::string publisher;  ///< name of the node; empty where the bag does not state it
 };
 
 /// A message where it lies in a chunk that was read.

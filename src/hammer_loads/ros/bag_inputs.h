@@ -17,7 +17,7 @@ namespace hammer_loads {
 struct BagTopic {
   std::set<std::string> types;        ///< types such as `sensor_msgs/JointState`
   std::set<std::string> definitions;  ///< MD5 sums of the types
-  std::set<std::string> publishers;   ///< names of the nodes; empty where the bag does not say
+  std::set<std::string> publishers;   ///< names of the nodes; empty where the bag does not state it
 };
 
 /// Name of a message's type.

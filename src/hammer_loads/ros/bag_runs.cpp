@@ -155,7 +155,7 @@ SplitRuns splitRunsOf(const std::string& file, std::size_t index) {
     };
     split.first = nameOf(infos.runs.front().info);
     split.last = nameOf(infos.runs.back().info);
-  } catch (const std::exception&) {  // processing it says why
+  } catch (const std::exception&) {  // processing reports the reason
     split.first.clear(), split.last.clear();
   }
   return split;

@@ -19,7 +19,7 @@ struct BagRun {
 };
 
 /// One run with the job's parameters, or one for each run_info of a hammer_loads node: from its record time on, the
-/// first one also for what comes before it. Notes say what is used; what makes it doubtful is added to `warnings`.
+/// first one also for what comes before it. Notes state what is used; what makes it uncertain is added to `warnings`.
 Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings);
 
 /// Bags by the recordings that they are splits of: one goes on where the run that it ends with is the one that another

@@ -14,7 +14,7 @@
 namespace hammer_loads {
 namespace {
 
-/// MD5 sum of the type of each output in this version. A run_info of another one says so itself.
+/// MD5 sum of the type of each output in this version. A run_info of another one states it itself.
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> known = [] {
     std::map<std::string, std::string> of_type;

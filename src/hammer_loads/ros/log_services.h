@@ -12,7 +12,7 @@
 namespace hammer_loads {
 
 /// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request carries nothing: where to and under which
-/// names the log is written comes from the parameters alone. The answer says what was done or why not. A log that a
+/// names the log is written comes from the parameters alone. The answer states what was done or why not. A log that a
 /// full disk has stopped restarts by itself when there is room again.
 class LogServices {
  public:

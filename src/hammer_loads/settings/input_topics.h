@@ -22,7 +22,7 @@ struct InputName {
   std::string InputTopics::*topic;
   const char* name;      ///< name of a node's topic, to be remapped
   const char* key;       ///< key of the parameters in a run_info
-  const char* recorded;  ///< topic of a bag that says nothing else
+  const char* recorded;  ///< topic of a bag that states none
   const char* option;    ///< option of the commands that read bags
   const char* holds;     ///< type of its messages, and what is in them; lines of a usage text
 };

@@ -15,7 +15,7 @@ double readBound(ParameterReader& reader, const std::string& key, const std::str
 }
 
 void readLimit(ParameterReader& reader, Limit limit, std::vector<Limit>& limits) {
-  const bool per_hour = limit.unit == "1/h";  // the name says so
+  const bool per_hour = limit.unit == "1/h";  // the name states it
   const std::string ending = per_hour ? "" : "_" + limit.unit;
   const std::string warn = "limit_" + limit.name + "_warn" + ending, error = "limit_" + limit.name + "_error" + ending;
   limit.warn = readBound(reader, warn, limit.unit);

@@ -26,7 +26,8 @@ using ParameterMap = std::map<std::string, Parameter>;
 std::optional<ParameterMap> parameterMap(const YAML::Node& node, const std::string& origin,
                                          std::vector<std::string>& problems);
 
-/// From a YAML file. Nothing when it cannot be read, is not YAML, holds no map or several documents: one line says so.
+/// From a YAML file. Nothing when it cannot be read, is not YAML, holds no map or several documents: one line states
+/// it.
 std::optional<ParameterMap> readParameterFile(const std::string& file, std::vector<std::string>& problems);
 
 /// Adds `over` to `base`; a key of both takes the value of `over`.

@@ -11,7 +11,7 @@ namespace {
 using Place = std::complex<double>;
 constexpr Place kTurned{0.0, 1.0};
 constexpr double kRatioAt = 200.0;  // frequency of the damping ratio [Hz] (RodSettings)
-constexpr double kFilm = 5e-6;      // pressing at which the damper of a pin with play is whole [m]
+constexpr double kFilm = 5e-6;      // pressing at which the damper of a pin with joint clearance is whole [m]
 
 double dot(Place a, Place b) { return a.real() * b.real() + a.imag() * b.imag(); }
 double cross(Place a, Place b) { return a.real() * b.imag() - a.imag() * b.real(); }

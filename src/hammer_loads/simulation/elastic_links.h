@@ -1,4 +1,4 @@
-/// Crank, rod and rocker of a hammer whose rod gives: the two angles are independent of each other.
+/// Crank, rod and rocker of a hammer with an elastic rod: the two angles are independent of each other.
 #pragma once
 
 #include <array>
@@ -23,9 +23,9 @@ struct RodStretch {
   double rate(const TwoBodies& speed) const noexcept { return slope[0] * speed[0] + slope[1] * speed[1]; }
 };
 
-/// Spring with a damper beside it, and play. Without play it holds both ways at once; with play each side can only
-/// push, and its damper grows with the first 5 um of pressing, as an oil film does: a step of the force would have no
-/// source.
+/// Spring with a damper beside it, and joint clearance. Without joint clearance it holds both ways at once; with joint
+/// clearance each side can only push, and its damper grows with the first 5 um of pressing, as an oil film does: a step
+/// of the force would have no source.
 class RodSpring {
  public:
   explicit RodSpring(const RodSettings& rod) noexcept;
@@ -33,7 +33,7 @@ class RodSpring {
   /// Force that pulls the pins together, at a stretch [m] and its rate [m/s]; negative: pushes them apart [N].
   double tension(double stretch, double rate) const noexcept;
   double energy(double stretch) const noexcept;   ///< [J]
-  double pressed(double stretch) const noexcept;  ///< part of a stretch beyond the play, with its sign [m]
+  double pressed(double stretch) const noexcept;  ///< part of a stretch beyond the joint clearance, with its sign [m]
 
  private:
   double stiffness_, damping_, half_play_;  ///< [N/m], [N s/m], [m]

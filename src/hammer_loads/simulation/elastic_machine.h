@@ -1,4 +1,4 @@
-/// A hydraulically driven hammer whose rod gives and whose blow lasts: the truth for the time after a blow.
+/// A hydraulically driven hammer with an elastic rod and a lasting blow: the truth for the time after a blow.
 #pragma once
 
 #include <array>

@@ -101,7 +101,7 @@ class HammerOnBoom {
     Eigen::Vector3d stiffness;  ///< stiffness of the oil about the joints [N m/rad]
     Eigen::Vector2d bent;       ///< weight of what bends boom and arm [N m]: their rest is straight under it
   };
-  /// A rod that gives, and what the rocker then strikes.
+  /// An elastic rod, and what the rocker then strikes.
   struct Elastic {
     ElasticLinks links;
     RodSpring rod;

@@ -43,7 +43,7 @@ struct DriveSettings {
 /// Contact of rocker and tool. By default it is at the dead centre, and the crank keeps its speed.
 struct BlowSettings {
   bool restitution_drawn{};      ///< else the one at which the crank keeps its speed
-  double restitution_low{};      ///< drawn anew for each blow, uniform between these [-]
+  double restitution_low{};      ///< drawn for each blow, uniform between these [-]
   double restitution_high{};     ///< [-]
   double crank_loss{};           ///< part of the crank's speed lost beside that at each blow [-], in [0, 1)
   double tool_early{};           ///< the tool is met this much before the dead centre [rad], in [0, 1]
@@ -70,7 +70,7 @@ struct StrikeSettings {
   double rock_damping{0.05};   ///< loss, likewise [s/m]
   double rock_strength{2e5};   ///< the rock yields above this force [N], > 0
   double tool_late{};          ///< the tool stands so far below the dead centre's place; < 0: early [m]
-  double tool_spread{};        ///< drawn anew for each turn, uniform within plus and minus this [m]
+  double tool_spread{};        ///< drawn for each turn, uniform within plus and minus this [m]
   double retainer_stiffness{};          ///< stiffness of the hull's retainer [N/m]; 0: none
   double retainer_gap{0.005};           ///< below the dead centre's place [m]
   double retainer_damping{0.05};        ///< loss, likewise [s/m]

@@ -11,7 +11,7 @@ constexpr double kNear = 0.005;     // the striking point is so near the tool's 
 constexpr double kShort = 1e-5;     // steps near a blow, which lasts some thirty of them [s]
 constexpr double kBriefest = 1e-7;  // step in which a contact may begin or end [s]
 constexpr double kReach = 1.5;      // step times the rate of the rod's damping; Runge-Kutta is stable up to 2.8
-constexpr double kLong = 4e-5;      // a ring of 500 Hz has fifty of them [s]
+constexpr double kLong = 4e-5;      // a vibration of 500 Hz has fifty of them [s]
 constexpr double kRings = 0.05;     // for this long after a blow [s]; then steps of twice that
 
 }  // namespace

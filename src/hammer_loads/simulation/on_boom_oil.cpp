@@ -53,7 +53,7 @@ double HammerOnBoom::push(std::size_t k, const Chambers& at) const {
   return boom_.cylinders[k].bore_area * at.bore - boom_.cylinders[k].rod_area * at.rod;
 }
 
-/// Pins of a pushing cylinder are loose towards pulling, and the other way round: no force within their play.
+/// Pins of a pushing cylinder are loose towards pulling, and the other way round: no force within their clearance.
 HammerOnBoom::Chambers HammerOnBoom::chambers(std::size_t k, const State& s, const Hold& hold) const {
   const OilCylinder& c = boom_.cylinders[k];
   const int j = static_cast<int>(k);

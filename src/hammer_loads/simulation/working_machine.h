@@ -68,11 +68,11 @@ struct EnergyAccount {
 };
 
 /// State crank angle, speed, pressure: w' = (tau + weight - J'/2 w^2)/(Jc + J), p' = (flow - D w - losses)/C.
-/// The blow is located within a step to rounding; crank speed is continuous there unless settings.blow says otherwise.
-/// Turning back onto the tool would need a restitution above 1 to go on: the crank stops there until the torque is
-/// positive again. Without a tool the rocker goes through onto the mirrored branch and comes back a turn later.
-/// Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links.
-/// Runge-Kutta of order 4, steps of at most settings.step, shorter where a coupling swings.
+/// The blow is located within a step to rounding; crank speed is continuous there unless settings.blow states
+/// otherwise. Turning back onto the tool would need a restitution above 1 to go on: the crank stops there until the
+/// torque is positive again. Without a tool the rocker goes through onto the mirrored branch and comes back a turn
+/// later. Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links. Runge-Kutta of
+/// order 4, steps of at most settings.step, shorter where a coupling swings.
 class WorkingMachine {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.

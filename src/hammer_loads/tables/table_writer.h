@@ -52,7 +52,7 @@ struct ReferenceRow {
   double rms{}, rms_error{}, bias{}, scale{}, correlation{}, within_two_std{};
 };
 
-/// Nothing throws: problem() says what went wrong first, and all after it does nothing.
+/// Nothing throws: problem() reports what went wrong first, and all after it does nothing.
 class TableWriter {
  public:
   /// The file must be empty.
