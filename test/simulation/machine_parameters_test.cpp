@@ -143,7 +143,8 @@ TEST(MachineParameters, FlawsAreRead) {
       configDirectory(),
       given("{rod: rigid, restitution_drawn: true, restitution_low: 0.1, restitution_high: 0.25, stamp_burst: 4,"
             " encoder_direction: -1, encoder_eccentricity_2_rad: 0.01, coupling_frequency_Hz: 50,"
-            " stamp_step_s: 0.001, stamps_only_late: true, blank_share: 0.1}"));
+            " stamp_step_s: 0.001, stamps_only_late: true, blank_share: 0.1, stamp_tick_s: 0.0001,"
+            " boom_stamp_late_share: 0.2, encoder_task_mean: 2, encoder_hysteresis_rad: 0.002}"));
   ASSERT_TRUE(loaded.value) << loaded.problems.front();
   const MachineSettings& machine = loaded.value->machine;
   EXPECT_TRUE(machine.blow.restitution_drawn);
@@ -155,6 +156,10 @@ TEST(MachineParameters, FlawsAreRead) {
   EXPECT_EQ(machine.crank.stamp_step, 0.001);
   EXPECT_TRUE(machine.crank.stamps_late);
   EXPECT_EQ(machine.drive.coupling_frequency, 50.0);
+  EXPECT_EQ(machine.crank.driver.tick, 1e-4);
+  EXPECT_EQ(machine.boom_stamps.late_share, 0.2);
+  EXPECT_EQ(machine.crank.task_mean, 2);
+  EXPECT_EQ(machine.crank.hysteresis, 2e-3);
   const Checked<SimulatorSettings> wrong =
       loadSimulator(configDirectory(), given("{restitution_low: 0.4, encoder_direction: 0}"));
   EXPECT_TRUE(mentions(wrong.problems, "restitution_high: 0.3, must be >= restitution_low = 0.4"));

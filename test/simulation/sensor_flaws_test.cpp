@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
+#include <vector>
 
 #include "hammer_loads/util/constants.h"
 #include "simulation/flawed_run.h"
@@ -130,6 +132,85 @@ TEST(Stamps, AreInOrderWhereAskedFor) {
   s.crank.stamps_ordered = true;
   const Session session = recordSession(s);
   for (std::size_t i = 1; i < session.crank.size(); ++i) ASSERT_GT(session.crank[i].stamp, session.crank[i - 1].stamp);
+}
+
+/// A Husky's odometry (robot_localization, test/test1.bag; 3952 messages at 10 Hz) about its own line, in intervals:
+/// standard deviation 0.0314, quantiles of 1, 50 and 99 % -0.057, 0.000 and 0.053.
+TEST(Stamps, OfAPolledDriverAreThoseOfARealOne) {
+  MachineSettings s = flawedRun();
+  s.crank.rate = 1000.0;
+  s.crank.driver.tick = 0.108 / s.crank.rate;
+  const Session session = recordSession(s);
+  std::vector<double> late;
+  for (std::size_t i = 0; i < session.crank.size(); ++i)
+    late.push_back(1000.0 * (since(s, session.crank[i]) - session.taken[i]));
+  const double n = static_cast<double>(late.size()), mean = std::accumulate(late.begin(), late.end(), 0.0) / n;
+  double squares = 0.0;
+  for (double& each : late) each -= mean, squares += each * each;
+  std::sort(late.begin(), late.end());
+  const auto quantile = [&](double part) { return late[static_cast<std::size_t>(part * n)]; };
+  EXPECT_NEAR(std::sqrt(squares / n), 0.0314, 0.002);
+  EXPECT_NEAR(quantile(0.01), -0.057, 0.005);
+  EXPECT_NEAR(quantile(0.5), 0.0, 0.005);
+  EXPECT_NEAR(quantile(0.99), 0.053, 0.005);
+}
+
+TEST(Stamps, AreLateNowAndThenOnEveryTopic) {
+  MachineSettings s = flawedRun();
+  const Session plain = recordSession(s);
+  s.crank.driver = s.boom_stamps = {0.0, 0.1, 5e-3};
+  const Session session = recordSession(s);
+  const auto check = [](const auto& readings, const auto& exact) {
+    ASSERT_EQ(readings.size(), exact.size());
+    double late = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      const double by = 1e-9 * static_cast<double>(readings[i].stamp - exact[i].stamp);
+      ASSERT_GE(by, 0.0);
+      late += by > 0.0, sum += by;
+    }
+    const double n = static_cast<double>(readings.size());
+    EXPECT_NEAR(late / n, 0.1, 4.0 * std::sqrt(0.09 / n));
+    EXPECT_NEAR(sum / late, 5e-3, 4.0 * 5e-3 / std::sqrt(late));
+  };
+  check(session.crank, plain.crank);
+  check(session.joints, plain.joints);
+}
+
+/// The mean of the last readings of a controller's task, at the instants of that task.
+TEST(Encoder, OfAControllerShowsItsLastMean) {
+  MachineSettings s = flawedRun();
+  s.crank.rate = 100.0;
+  s.crank.counts = 0;
+  s.crank.jitter = 0.0;
+  s.crank.unwound = true;
+  s.crank.task_period = 4e-3;
+  s.crank.task_mean = 2;
+  const Session session = recordSession(s);
+  std::vector<double> tasks;
+  for (int i = 0; 4e-3 * i <= s.duration; ++i) tasks.push_back(4e-3 * i);
+  const std::vector<CrankTruth> truth = truthAt(s, tasks);
+  const auto angle = [&](std::size_t i) { return kTwoPi * static_cast<double>(truth[i].turn) + truth[i].angle; };
+  ASSERT_GT(session.crank.size(), 700U);
+  for (std::size_t i = 100; i < session.crank.size(); ++i) {
+    const auto last = static_cast<std::size_t>(std::floor(session.taken[i] / 4e-3 + 1e-6));
+    ASSERT_NEAR(session.crank[i].angle, 0.5 * (angle(last) + angle(last - 1)), 1e-6) << i;
+  }
+}
+
+TEST(Encoder, WithHysteresisStaysBehindEitherWay) {
+  MachineSettings s = flawedRun();
+  s.crank.counts = 0;
+  const Session plain = recordSession(s);
+  s.crank.hysteresis = 2e-3;
+  const Session session = recordSession(s);
+  double least = 1.0, most = -1.0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const double off = std::remainder(session.crank[i].angle - plain.crank[i].angle, kTwoPi);
+    least = std::min(least, off), most = std::max(most, off);
+  }
+  EXPECT_NEAR(least, -1e-3, 1e-9);
+  EXPECT_GT(most, 0.0);
+  EXPECT_LT(most, 1e-3 + 1e-9);
 }
 
 TEST(Encoder, ReadingIsTheContractsFormula) {

@@ -60,7 +60,10 @@ PressureReading SessionStream::readPressures(double time) {
 /// Later than the one before.
 std::int64_t SessionStream::busStamp(double time, std::int64_t& last) noexcept {
   const double delay = settings_.on_boom.on ? settings_.on_boom.bus_delay : 0.0;
-  return last = std::max(last + 1, stampAt(time + (delay > 0.0 ? delay * bus_draws_.uniform() : 0.0)));
+  const double bus = delay > 0.0 ? delay * bus_draws_.uniform() : 0.0;
+  const DriverStamps& driver = settings_.boom_stamps;
+  const double late = driver.areExact() ? 0.0 : driver.lateness(time + bus, boom_driver_draws_);
+  return last = std::max(last + 1, stampAt(time + bus + late));
 }
 
 }  // namespace hammer_loads::simulation

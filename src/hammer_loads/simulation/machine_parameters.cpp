@@ -93,6 +93,15 @@ StrikeSettings readStrike(ParameterReader& reader) {
   return s;
 }
 
+/// Reads how a driver stamps; prefix: of the keys.
+DriverStamps readDriverStamps(ParameterReader& reader, const std::string& prefix) {
+  DriverStamps s;
+  s.tick = reader.number(prefix + "stamp_tick_s", "s", NumberRule::within(0.0, 1.0));
+  s.late_share = reader.number(prefix + "stamp_late_share", "", NumberRule::within(0.0, 1.0));
+  s.late_mean = reader.number(prefix + "stamp_late_mean_s", "s", NumberRule::within(0.0, 1.0));
+  return s;
+}
+
 /// Reads the mounting of the encoder on the crank.
 void readEncoder(ParameterReader& reader, CrankSensorSettings& s) {
   s.zero = reader.number("encoder_zero_rad", "rad", kAny);
@@ -108,6 +117,9 @@ void readEncoder(ParameterReader& reader, CrankSensorSettings& s) {
   s.eccentricity[0].phase = reader.number("encoder_eccentricity_1_phase_rad", "rad", kAny);
   s.eccentricity[1].amount = reader.number("encoder_eccentricity_2_rad", "rad", NumberRule::within(0.0, 0.2));
   s.eccentricity[1].phase = reader.number("encoder_eccentricity_2_phase_rad", "rad", kAny);
+  s.hysteresis = reader.number("encoder_hysteresis_rad", "rad", NumberRule::within(0.0, 0.1));
+  s.task_period = reader.number("encoder_task_period_s", "s", NumberRule::within(0.0, 1.0));
+  s.task_mean = static_cast<int>(reader.integer("encoder_task_mean", "", 1, kMostBurst));
 }
 
 CrankSensorSettings readCrankSensor(ParameterReader& reader) {
@@ -115,6 +127,7 @@ CrankSensorSettings readCrankSensor(ParameterReader& reader) {
   s.rate = reader.number("crank_rate_Hz", "Hz", kPositive);
   s.jitter = reader.number("crank_jitter_s", "s", kNotNegative);
   s.stamp_noise = reader.number("stamp_noise_s", "s", kNotNegative);
+  s.driver = readDriverStamps(reader, "");
   s.stamps_late = reader.boolean("stamps_only_late");
   s.stamp_step = reader.number("stamp_step_s", "s", NumberRule::within(0.0, 1.0));
   s.latency = reader.number("stamp_latency_s", "s", NumberRule::within(0.0, 1.0));
@@ -223,6 +236,7 @@ MachineSettings readMachine(ParameterReader& reader) {
   machine.crank = readCrankSensor(reader);
   machine.boom = {readJoint(reader, "swing"), readJoint(reader, "boom"), readJoint(reader, "arm"),
                   readJoint(reader, "hammer")};
+  machine.boom_stamps = readDriverStamps(reader, "boom_");
   machine.joint_rate = reader.number("joint_rate_Hz", "Hz", kPositive);
   machine.joint_count = reader.number("joint_count_rad", "rad", kNotNegative);
   machine.joint_noise = reader.number("joint_noise_rad", "rad", kNotNegative);

@@ -8,6 +8,7 @@
 
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/simulation/driver_stamps.h"
 
 namespace hammer_loads::simulation {
 
@@ -89,6 +90,7 @@ struct CrankSensorSettings {
   double rate{};             ///< [Hz], > 0
   double jitter{};           ///< standard deviation of the instants of sampling [s]; at most 0.45 periods each
   double stamp_noise{};      ///< standard deviation of stamp against instant [s]; order may break if large
+  DriverStamps driver;       ///< beside that noise
   bool stamps_late{};        ///< true if that noise only ever delays: its magnitude counts
   double stamp_step{};       ///< stamps are whole multiples of it, rounded down [s]; 0: nanoseconds
   double latency{};          ///< constant part of stamp less instant [s]
@@ -107,6 +109,9 @@ struct CrankSensorSettings {
   int direction{1};    ///< 1 or -1
   double ratio{1.0};   ///< encoder turns per crank turn [-], > 0
   Eccentricity eccentricity[2];  ///< once and twice a turn
+  double hysteresis{};           ///< the shown angle lies still over that much after the shaft turns back [rad]
+  double task_period{};          ///< of a controller that reads the encoder and shows its last mean [s]; 0: none
+  int task_mean{1};              ///< readings of that controller in one mean, >= 1
   struct Interval {
     double from{}, to{};  ///< [s]
   };
@@ -205,6 +210,7 @@ struct MachineSettings {
   CrankSensorSettings crank;
   std::array<JointMotion, 4> boom;
   OnBoomSettings on_boom;
+  DriverStamps boom_stamps;    ///< stamps of all messages but the crank's
   double joint_rate{};         ///< rate of the boom joints' samples [Hz], > 0
   double joint_count{};        ///< resolution of their sensors' numbers [rad]; 0: any
   double joint_noise{};        ///< standard deviation of their angles [rad]

@@ -16,6 +16,7 @@ constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9, kJointSeed = 0x94d049
 constexpr std::uint64_t kLossSeed = 0x2545f4914f6cdd1d;
 constexpr double kSensorStep = 1e-4;  // [s] in which a low-pass takes its input for a straight line
 constexpr std::uint64_t kBusSeed = 0x8cb92ba72f3d8dd7;
+constexpr std::uint64_t kDriverSeed = 0xe7037ed1a0b428db, kBoomDriverSeed = 0x589965cc75374cc3;
 constexpr std::uint64_t kImuSeed = 0xd6e8feb86659fd93, kPressureSeed = 0xa0761d6478bd642f;
 
 std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machineOf(const MachineSettings& settings) {
@@ -31,11 +32,12 @@ std::array<LowPass, 6> hosesOf(const OnBoomSettings& s) {
 
 bool isPlain(const CrankSensorSettings& sensor) noexcept {
   return sensor.zero == 0.0 && sensor.direction == 1 && sensor.ratio == 1.0 && sensor.eccentricity[0].amount == 0.0 &&
-         sensor.eccentricity[1].amount == 0.0 && sensor.angle_lag == 0.0 && sensor.slip.amount == 0.0;
+         sensor.eccentricity[1].amount == 0.0 && sensor.angle_lag == 0.0 && sensor.slip.amount == 0.0 &&
+         sensor.hysteresis == 0.0 && sensor.task_period == 0.0;
 }
 
 bool stampsAreInstants(const CrankSensorSettings& sensor) noexcept {
-  return sensor.stamp_noise == 0.0 && sensor.stamp_step == 0.0 && sensor.burst <= 1;
+  return sensor.stamp_noise == 0.0 && sensor.driver.areExact() && sensor.stamp_step == 0.0 && sensor.burst <= 1;
 }
 
 /// Reading of the encoder by its own and the crank's angle, over many revolutions.
@@ -75,6 +77,8 @@ SessionStream::SessionStream(const MachineSettings& settings)
       imu_noise_(settings.seed ^ kImuSeed),
       pressure_noise_(settings.seed ^ kPressureSeed),
       bus_draws_(settings.seed ^ kBusSeed),
+      driver_draws_(settings.seed ^ kDriverSeed),
+      boom_driver_draws_(settings.seed ^ kBoomDriverSeed),
       angle_(settings.crank.angle_lag),
       speed_(settings.crank.speed_lag),
       hoses_(hosesOf(settings.on_boom)),
@@ -100,7 +104,19 @@ CrankTruth SessionStream::truth() const {
   return std::visit([](const auto& machine) { return CrankTruth(machine.truth()); }, machine_);
 }
 
+/// Reads the encoder as the controller does, up to `time`.
+void SessionStream::readTask(double time) {
+  const double period = settings_.crank.task_period;
+  for (double next; period > 0.0 && (next = static_cast<double>(tasks_) * period) <= time; ++tasks_) {
+    std::visit([&](auto& machine) { machine.advanceTo(next); }, machine_);
+    const Encoded now = encodedAt(settings_.crank, truth());
+    task_.push_back({now.angle, now.speed});
+    if (task_.size() > static_cast<std::size_t>(settings_.crank.task_mean)) task_.pop_front();
+  }
+}
+
 void SessionStream::moveTo(double time) {
+  readTask(time);
   while ((angle_.isOn() || speed_.isOn() || hoses_[0].isOn()) && sensor_time_ < time) {
     sensor_time_ = std::min(time, sensor_time_ + kSensorStep);
     std::visit([&](auto& machine) { machine.advanceTo(sensor_time_); }, machine_);
@@ -182,10 +198,30 @@ void SessionStream::take(Session& session) {
   burst_.clear();
 }
 
+/// What the sensor shows before it counts. A controller's mean replaces any low-pass.
+SessionStream::Shown SessionStream::shown(const CrankTruth& truth) noexcept {
+  const CrankSensorSettings& sensor = settings_.crank;
+  const Encoded now = encodedAt(sensor, truth);
+  Shown shown{angle_.isOn() ? angle_.output() : now.angle, now.speed};
+  if (!task_.empty()) {
+    shown = {};
+    for (const Shown& one : task_) shown.angle += one.angle, shown.speed += one.speed;
+    const auto readings = static_cast<double>(task_.size());
+    shown.angle /= readings, shown.speed /= readings;
+  }
+  if (sensor.hysteresis > 0.0) {
+    const double half = 0.5 * sensor.hysteresis;
+    held_ = std::clamp(held_.value_or(shown.angle), shown.angle - half, shown.angle + half);
+    shown.angle = *held_;
+  }
+  return shown;
+}
+
 CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, double speed_error) noexcept {
   const CrankSensorSettings& sensor = settings_.crank;
   CrankReading reading;
-  reading.stamp = stampAt(truth.time + sensor.latency + stamp_error);
+  const double driver = sensor.driver.areExact() ? 0.0 : sensor.driver.lateness(truth.time, driver_draws_);
+  reading.stamp = stampAt(truth.time + sensor.latency + driver + stamp_error);
   if (sensor.stamp_step > 0.0) {
     const auto step = static_cast<std::int64_t>(std::llround(sensor.stamp_step * 1e9));
     reading.stamp -= reading.stamp % step;
@@ -194,9 +230,9 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
   last_stamp_ = reading.stamp;
   const std::int64_t turn = sensor.unwound ? truth.turn : 0;
   if (!isPlain(sensor) || truth.twist != 0.0) {
-    const Encoded shown = encodedAt(sensor, truth);
+    const Shown shown = this->shown(truth);
     const bool slipped = truth.time >= sensor.slip.during.from && truth.time < sensor.slip.during.to;
-    const double angle = (angle_.isOn() ? angle_.output() : shown.angle) + (slipped ? sensor.slip.amount : 0.0);
+    const double angle = shown.angle + (slipped ? sensor.slip.amount : 0.0);
     const double count = kTwoPi / std::max(sensor.counts, 1);
     const double seen = sensor.counts > 0 ? std::floor(angle / count) * count : angle;
     reading.angle = sensor.unwound ? seen : seen - kTwoPi * std::floor((seen + 1e-9) / kTwoPi);

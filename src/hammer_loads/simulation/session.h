@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -72,6 +73,10 @@ class SessionStream {
     std::optional<OnBoomTruth> on_boom;
     bool twice{};
   };
+  /// Angle and speed that the encoder shows, over many turns.
+  struct Shown {
+    double angle{}, speed{};  ///< [rad], [rad/s]
+  };
   /// A sensor that is read at equal intervals.
   struct Ticks {
     double first{}, rate{};  ///< [s], [Hz]; 0: never
@@ -80,6 +85,8 @@ class SessionStream {
   };
 
   void moveTo(double time);
+  void readTask(double time);
+  Shown shown(const CrankTruth& truth) noexcept;
   CrankTruth truth() const;
   void planSample() noexcept;
   void takeCrank(Session& session);
@@ -97,8 +104,11 @@ class SessionStream {
   std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machine_;
   NormalNoise noise_;
   NormalNoise message_draws_, loss_draws_, joint_noise_, imu_noise_, pressure_noise_;
-  NormalNoise bus_draws_;
+  NormalNoise bus_draws_, driver_draws_, boom_driver_draws_;
   LowPass angle_, speed_;         ///< low-passes of the encoder
+  std::deque<Shown> task_;        ///< readings of the controller in its last mean
+  std::int64_t tasks_{};          ///< number of its readings so far
+  std::optional<double> held_;    ///< angle of an encoder with hysteresis [rad]
   std::array<LowPass, 6> hoses_;  ///< low-passes of bore and rod sides
   double sensor_time_{};          ///< up to which they have followed [s]
   std::int64_t last_stamp_{}, last_joints_{}, last_imu_{}, last_pressures_{};
