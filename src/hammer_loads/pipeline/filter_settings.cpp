@@ -11,6 +11,7 @@ CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSet
   filter.angle_resolution = s.crank_angle_resolution;
   filter.angle_noise = s.crank_angle_noise;
   filter.timing_noise = s.crank_timing_noise;
+  filter.constant_deviations[ConstantErrors::kLatency] = s.crank_latency_std;
   filter.speed_noise = s.crank_speed_noise;
   filter.torque_walk = s.torque_walk * inertia;
   filter.speed_walk = s.speed_walk;

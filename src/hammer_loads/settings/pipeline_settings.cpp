@@ -95,6 +95,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.base.pitch = reader.number("base_pitch_rad", "rad", NumberRule::within(-1.0, 1.0));
   s.crank_sensor = readCrankSensor(reader);
   s.crank_latency = reader.number("crank_latency_s", "s", NumberRule::within(0.0, 1.0));
+  s.crank_latency_std = reader.number("crank_latency_std_s", "s", NumberRule::within(0.0, 1.0));
   s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", NumberRule::within(0.0, 1.6));
   s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", NumberRule::within(0.0, 1.0));
   s.crank_stamps = reader.choice("crank_stamps", kCrankStampsNames);
