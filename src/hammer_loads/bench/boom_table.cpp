@@ -41,6 +41,9 @@ void waitForBus(simulation::MachineSettings& m) {
   m.joint_rate = 100.0, m.joint_count = kTwoPi / 4096.0;
 }
 
+/// Of an odometry of 10 Hz, scaled to 100 Hz (config/simulated_machine.yaml).
+void stampAsDrivers(simulation::MachineSettings& m) { m.boom_stamps = {1.08e-3, 5e-4, 8e-3}; }
+
 constexpr BoomKind kBoomKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0, nullptr},
                                    {"bulk modulus 30 % lower", 0.7, 0.0, 0.0, nullptr},
                                    {"bulk modulus 40 % higher", 1.4, 0.0, 0.0, nullptr},
@@ -53,7 +56,8 @@ constexpr BoomKind kBoomKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0, nullptr
                                    {"worn boom", 1.0, 0.0, 0.0, wear},
                                    {"worn boom, pressed on rock", 1.0, 4000.0, 0.0, wear},
                                    {"sensors over a bus", 1.0, 0.0, 0.0, waitForBus},
-                                   {"sensors over a bus, pressed on rock", 1.0, 4000.0, 0.0, waitForBus}};
+                                   {"sensors over a bus, pressed on rock", 1.0, 4000.0, 0.0, waitForBus},
+                                   {"stamps of real drivers", 1.0, 0.0, 0.0, stampAsDrivers}};
 
 struct Way {
   const char* name;

@@ -86,7 +86,13 @@ std::vector<Kind> sensorKinds() {
                s.crank.stamp_noise = 1e-3, s.crank.loss_share = 0.002;
              }};
   lossy.stamps = CrankStamps::kSteady;
+  const auto polled = [](double late_share, double late_mean) {
+    return [=](MachineSettings& s) { s.crank.driver = {0.108 / s.crank.rate, late_share, late_mean}; };
+  };
   return {
+      {"stamps of a real driver", {1000.0}, polled(5e-4, 8e-4), 1.0, false, 0.054e-3},
+      {"the same, 1 % late by 4 ms", {1000.0, 200.0}, polled(0.01, 4e-3), 1.0, false},
+      {"stamps jitter by 0.57 ms, as those", {1000.0}, [](MachineSettings& s) { s.crank.stamp_noise = 5.7e-4; }},
       {"jitter of 0.3 ms in order", {1000.0, 200.0}, mute(3e-4)},
       {"the same, speeds lag by 2 ms", {1000.0, 200.0}, held(3e-4, 2e-3, 1.0)},
       {"the same, speeds lag by 20 ms", {1000.0, 200.0}, held(3e-4, 2e-2, 1.0)},
