@@ -159,6 +159,38 @@ TEST(StampSequence, FollowsTheLineWhereManyChangePlaces) {
   EXPECT_TRUE(sequence.isSteady());
 }
 
+/// A stamp that is late by many intervals is no loss: the next one is in its place again, or waited behind it.
+TEST(StampSequence, LateStampsAreNoLostSamples) {
+  const auto late = [](std::int64_t t, std::mt19937& random) {
+    const double more = std::uniform_real_distribution<>()(random) < 0.01 ? 5e6 : 0.0;
+    return t + static_cast<std::int64_t>(5e4 * std::normal_distribution<>()(random) + more);
+  };
+  for (const bool ordered : {false, true}) {
+    Stream s = stream(15000, 0.002, late);
+    for (std::size_t i = 1; i < s.stamp.size() && ordered; ++i) s.stamp[i] = std::max(s.stamp[i], s.stamp[i - 1] + 1);
+    StampSequence sequence(CrankStamps::kSteady, 0.25);
+    EXPECT_LT(scatterOf(sequence, s), 3e-4) << ordered << " [s]";
+  }
+}
+
+/// While the readings exclude a loss, stamps that wander by whole intervals move no line.
+TEST(StampSequence, ReadingsThatCountOutweighStampsThatWander) {
+  for (const bool counted : {false, true}) {
+    StampSequence sequence(CrankStamps::kSteady, 0.25);
+    double worst = 0.0;
+    for (int i = 0; i < 6000; ++i) {
+      const std::int64_t wander = i >= 4000 && i < 4060 ? 3 * kMs / 2 : 0;
+      const std::int64_t instant = sequence.place(kStart + i * kMs + wander, Repeats::kNo).stamp;
+      sequence.confirm(counted);
+      if (i > 1000) worst = std::max(worst, std::abs(1e-9 * static_cast<double>(instant - kStart - i * kMs)));
+    }
+    if (counted)
+      EXPECT_LT(worst, 0.3e-3);
+    else
+      EXPECT_GT(worst, 0.9e-3) << "lost samples, as far as stamps alone show";
+  }
+}
+
 TEST(StampSequence, AGapGoesOnByWholeIntervals) {
   Stream s = stream(8000, 0.0, [](std::int64_t t, std::mt19937&) { return t / (10 * kMs) * 10 * kMs; });
   const auto from = static_cast<std::ptrdiff_t>(5000), to = from + 100;

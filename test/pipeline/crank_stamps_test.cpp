@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/bench/session_run.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
@@ -96,6 +97,50 @@ TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
       EXPECT_GT(blows, 15u);
     }
   }
+}
+
+/// Single late stamps and single lost samples look alike until the next stamp; the angle tells them apart at once.
+TEST(CrankLosses, AreToldFromLateStamps) {
+  const Settings settings = test::settingsWith("crank_stamps: steady");
+  for (const double rate : {200.0, 1000.0}) {
+    for (const double noise : {0.05, 0.2}) {
+      SCOPED_TRACE(testing::Message() << rate << " Hz, noise of " << noise << " intervals");
+      simulation::MachineSettings machine = eightSeconds();
+      machine.crank.rate = rate;
+      machine.crank.stamp_noise = noise / rate;
+      machine.crank.loss_share = 0.004;
+      machine.crank.driver = {0.0, 0.01, 2e-2};
+      machine.crank.drop_outs.push_back({5.0, 5.1});
+      const simulation::Session session = simulation::recordSession(machine);
+      test::Player player(settings, false, session);
+      std::size_t i = 0;
+      double worst = 0.0;
+      int blows = 0;
+      player.playTo(8.0, [&](double, const SampleResult& result) {
+        const double instant = session.taken[i++];
+        if (instant < 3.0 || result.refusal) return;
+        worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
+        blows += static_cast<int>(result.turn_ends);
+      });
+      EXPECT_LT(worst, 0.5 / rate) << " [s]";
+      EXPECT_GE(blows, 20);
+    }
+  }
+}
+
+/// No reading shows a latency that all stamps have in common, so that only its stated deviation covers it.
+TEST(CrankLatency, IsCoveredByItsDeviation) {
+  simulation::MachineSettings machine = eightSeconds();
+  machine.crank.latency = 5e-3;
+  const simulation::Session session = simulation::recordSession(machine);
+  const auto covered = [&](const char* keys) {
+    const Settings settings = test::settingsWith(keys);
+    const accuracy::SessionRun run =
+        accuracy::runSession(session, machine.start_stamp, settings.mechanism, settings.pipeline);
+    return accuracy::judgeAtStamps(run, session, machine, 0.0).covered_z;
+  };
+  EXPECT_LT(covered("{crank_latency_std_s: 0, withhold_above: 10}"), 0.75);
+  EXPECT_GT(covered("{crank_latency_std_s: 0.005, withhold_above: 10}"), 0.88);
 }
 
 /// Where samples are taken at equal intervals a reading ahead shows lost ones, but a rod that rings moves a crank by as

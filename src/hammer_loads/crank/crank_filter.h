@@ -13,6 +13,7 @@
 #include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/crank/estimate_between.h"
+#include "hammer_loads/crank/sample_clock.h"
 #include "hammer_loads/crank/speed_trust.h"
 #include "hammer_loads/crank/supply.h"
 #include "hammer_loads/crank/weighed_sample.h"
@@ -60,9 +61,8 @@ class CrankFilter {
   /// Weight and motion of the hull at the coming sample. The step up to it is predicted with the mean of this and the
   /// last sample's.
   void setHullMotion(const HullMotion& hull) noexcept;
-  /// Interval of samples that are taken at equal ones [s]: a reading that is whole intervals ahead has lost samples
-  /// before it; 0: not known.
-  void setInterval(double interval) noexcept { interval_ = interval; }
+  /// Of the coming sample: a reading that is whole intervals ahead has lost samples before it.
+  void setClock(const SampleClock& clock) noexcept { clock_ = clock; }
   /// Standard deviation of a shift that all stamps have in common [s]: no reading shows it.
   void considerLatency(double deviation) noexcept { stamps_off_ = deviation; }
   /// An elastic connecting rod has the crank beside the estimate by that [rad], [rad/s]: as much of it is not known.
@@ -106,6 +106,8 @@ class CrankFilter {
   }
   /// Time of the last step beyond its stamps, by lost samples [s]; < 0: one that was counted there was lost later.
   double lostTime() const noexcept { return lost_time_; }
+  /// The last reading excludes that the step took an interval more or less.
+  bool countsIntervals() const noexcept { return counts_intervals_; }
   /// Steps of the encoder on its shaft that were found since the beginning.
   int slips() const noexcept { return slip_.count(); }
   /// From the next sample on the encoder's zero is larger by that angle of the crank [rad]: the estimate restarts
@@ -204,6 +206,8 @@ class CrankFilter {
   Innovation withoutRod(double dt, Innovation innovation) const noexcept;
   std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                      const WeighedSample& sample) noexcept;
+  void followLostTime(SampleStep& to) noexcept;
+  void predictTo(SampleStep& to, double dt) noexcept;
   double timeLost(double dt, const Innovation& innovation) const noexcept;
   bool mayBeRod(const Innovation& innovation) const noexcept;
   bool mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept;
@@ -272,7 +276,8 @@ class CrankFilter {
   double speed_variance_;               ///< identified variance of measured speeds [rad2/s2]
   EncoderSlip slip_;
   RunningMean<> usual_step_{kSteps};  ///< [s]
-  double interval_{};                 ///< interval of the samples, where they are taken at equal ones [s]
+  SampleClock clock_;                 ///< clock of the coming sample
+  bool counts_intervals_{};           ///< see countsIntervals()
   double lost_time_{};                ///< time of the last step beyond that by its stamps [s]
   double stamps_off_{};               ///< standard deviation of what all stamps are off alike [s]
   SpeedTrust speed_trust_;

@@ -133,19 +133,39 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - known), floor);
 }
 
-/// (5) Samples were lost before this one, where they are taken at equal intervals: the reading is whole intervals
-/// ahead.
+/// (1) Once more, over another time.
+void CrankFilter::predictTo(SampleStep& to, double dt) noexcept {
+  now_ = to.last;
+  to.dt = dt;
+  to.struck = predict(dt, true, now_) > 0;
+  to.behind = takeOffLag(to.last, dt, to.struck, to.read, to.sample);
+  to.innovation = to.sample.ofAngle(now_);
+}
+
+/// (5) A reading that is impossible after the time between the stamps, but fits after some intervals more or less, has
+/// lost samples before it.
+void CrankFilter::followLostTime(SampleStep& to) noexcept {
+  if (HAMMER_LOADS_ABLATE(lost_samples) || !to.innovation.exceeds(gate::kImpossible)) return;
+  const double stamped = to.dt;
+  for (const double lost : {clock_.suspected_loss, timeLost(stamped, to.innovation)}) {
+    if (lost == 0.0 || !clock_.may_have_lost) continue;
+    predictTo(to, stamped + lost);
+    lost_time_ = lost;
+    if (!to.innovation.exceeds(gate::kRare)) return;
+    lost_time_ = 0.0;
+    predictTo(to, stamped);
+  }
+}
+
+/// Whole intervals by which the reading is ahead, where samples are taken at equal ones [s]; by its speed alone.
 double CrankFilter::timeLost(double dt, const Innovation& innovation) const noexcept {
   const double speed = now_.encoderSpeed();
-  if (HAMMER_LOADS_ABLATE(lost_samples) || !(interval_ > 0.0) || std::abs(speed) < kLearnSpeed ||
-      !innovation.exceeds(gate::kImpossible))
-    return 0.0;
-  if (mayBeRod(innovation)) return 0.0;
-  const double intervals = innovation.value / (speed * interval_), whole = std::nearbyint(intervals);
-  const bool counted_before = whole < 0.0 && dt + whole * interval_ > 0.5 * interval_;
+  const double interval = clock_.interval;
+  if (!(interval > 0.0) || std::abs(speed) < kLearnSpeed || mayBeRod(innovation)) return 0.0;
+  const double intervals = innovation.value / (speed * interval), whole = std::nearbyint(intervals);
+  const bool counted_before = whole < 0.0 && dt + whole * interval > 0.5 * interval;
   if (!(whole > 0.0 || counted_before) || std::abs(innovation.value) > EncoderSlip::kMost) return 0.0;
-  const double rest = (intervals - whole) * speed * interval_;
-  return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
+  return whole * interval;
 }
 
 /// Returns true if an elastic rod may have caused the innovation: any but a large step of a crank that has calmed down.

@@ -25,6 +25,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   CrankBelief& last = earlier_[1 - before_];
   last = now_;
   lost_time_ = 0.0;
+  counts_intervals_ = false;
   restart_load_ *= std::max(0.0, 1.0 - dt / look_back::kTenTurns);
   doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
   step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
@@ -48,14 +49,10 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
 /// Time that the stamps lost, steps of an encoder. The update ends with a slip that the next sample must confirm, or
 /// with an invalid prediction.
 std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
-  lost_time_ = timeLost(to.dt, to.innovation);
-  if (lost_time_ != 0.0) {
-    now_ = to.last;
-    to.dt += lost_time_;
-    to.struck = predict(to.dt, true, now_) > 0;
-    to.behind = takeOffLag(to.last, to.dt, to.struck, to.read, to.sample);
-    to.innovation = to.sample.ofAngle(now_);
-  }
+  followLostTime(to);
+  const double way = now_.encoderSpeed() * clock_.interval;
+  counts_intervals_ =
+      exceeds(way, to.innovation.total, 2.0 * gate::kImpossible) && !to.innovation.exceeds(gate::kImpossible);
   const EncoderSlip::Step step = followSlip(to.dt, to.innovation, to.sample);
   if (step == EncoderSlip::Step::kPerhaps) {  // else an outlier as any other
     countSurprise(true);

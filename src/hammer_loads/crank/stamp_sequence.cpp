@@ -14,20 +14,25 @@ namespace {
 constexpr double kMemorySamples = 4096.0;   // samples
 constexpr double kScatterSamples = 300.0;   // over which scatter is learned, but no fewer than kWarm runs
 constexpr int kWarm = 20;                   // runs from which on the line is good enough to judge by
+constexpr int kUnsure = 300;                // stamps that show a miscount before them, however they jitter
 constexpr int kFirst = 4;                   // runs until there is a line
 constexpr int kKnown = 6;                   // runs until regular bursts show themselves
+constexpr double kAlone = 1.02;             // samples in the mean: stamps do not repeat
 constexpr double kBurst = 2.0;              // samples in the mean
 constexpr double kRegular = 0.1;            // scatter of bursts over the time between them
 constexpr double kClip = gate::kVeryRare;   // root mean squares: a stamp further off counts as that far off
 constexpr double kExact = 0.01;             // of the interval: stamps without scatter have this much
 constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for certain
 constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
-constexpr double kNoLoss = 3.0;             // likewise that none was: 20 to 1
-constexpr double kLeastScatter = 0.15;      // of the interval: a run's beginning is not known better
-constexpr double kGrown = 2.0;              // scatter about the line over that of white jitter with such steps
+constexpr double kOneStamp = 0.3;           // of it that a single stamp contributes: drivers are late now and then
+constexpr double kLeastIndependence = 0.2;
+constexpr double kNoLoss = 3.0;         // likewise that none was: 20 to 1
+constexpr double kLeastScatter = 0.15;  // of the interval: a run's beginning is not known better
+constexpr double kGrown = 2.0;          // scatter about the line over that of white jitter with such steps
 
 // Limits of the sequence.
 constexpr double kMany = 5.0;              // irregular stamps of a thousand: not a single late message
+constexpr double kHeldUp = 0.1;            // of the interval: a message that waited behind a late one
 constexpr double kSingle = 1.5;            // likewise
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
 // Numerical: kLeastStep
@@ -38,6 +43,7 @@ void SteadyClockFit::begin(std::int64_t stamp) noexcept {
   *this = SteadyClockFit{};
   origin_ = stamp_ = stamp;
   run_length_ = 1;
+  unsure_stamps_ = kUnsure;
 }
 
 bool SteadyClockFit::isKnown() const noexcept { return runs_ >= kKnown; }
@@ -57,13 +63,17 @@ double SteadyClockFit::scatterGain() const noexcept {
   return 1.0 / std::min<double>(runs_ - kFirst + 1, std::max<double>(kWarm, kScatterSamples / mean_length_));
 }
 
+void SteadyClockFit::confirm(bool counted) noexcept {
+  unsure_stamps_ = counted ? std::max(0, unsure_stamps_ - 1) : kUnsure;
+}
+
 /// The line takes up the run that has ended, by its last sample.
 void SteadyClockFit::endRun() noexcept {
   const double end = residual_, step = end - end_residual_;
   end_residual_ = end;
   if (++runs_ == 1) return;  // the first one is the line's beginning
   mean_length_ += (run_length_ - mean_length_) / std::min<double>(runs_, kScatterSamples);
-  const double n = std::min<double>(runs_, kMemorySamples / mean_length_);
+  const double n = remembered_ = std::min(remembered_ + 1.0, kMemorySamples / mean_length_);
   double used = end;
   if (runs_ >= kWarm) {
     const double most = kClip * std::max(std::sqrt(end_square_), kExact * interval_);
@@ -75,18 +85,69 @@ void SteadyClockFit::endRun() noexcept {
   const double gain = scatterGain();
   end_square_ += gain * (square(used) - end_square_);
   step_square_ += gain * (square(step) - step_square_);
+  end_mean_ += gain * (used - end_mean_);
+  if (mean_length_ < kAlone && exceeds(end_mean_, end_square_ / (kScatterSamples * independence()), gate::kImpossible))
+    remembered_ = std::min(remembered_, kScatterSamples);  // samples that were lost unseen have bent the line
 }
 
-/// The line, by whole intervals.
-void SteadyClockFit::shift(double intervals) noexcept {
-  lost_evidence_ = gained_evidence_ = 0.0;
-  instant_ += intervals * interval_;
-  residual_ -= intervals * interval_;
-  end_residual_ -= intervals * interval_;
+/// The line, by [ns].
+void SteadyClockFit::move(double by) noexcept {
+  instant_ += by;
+  residual_ -= by;
+  end_residual_ -= by;
 }
 
-/// residual: of a run's first sample. Shifts the line by whole intervals.
-void SteadyClockFit::watchLost(double residual) noexcept {
+/// The readings show a loss: what the stamps say of another one before it stays.
+void SteadyClockFit::skip(double intervals) noexcept {
+  move(intervals * interval_);
+  if (mean_length_ >= kAlone) lost_ = gained_ = {};
+}
+
+/// Stamps that are late alike, one after the other, say less than independent ones.
+double SteadyClockFit::independence() const noexcept {
+  const double alike = end_square_ > 0.0 ? std::clamp(1.0 - 0.5 * step_square_ / end_square_, 0.0, 1.0) : 0.0;
+  return std::max(kLeastIndependence, (1.0 - alike) / (1.0 + alike));  // a loss makes them alike as well
+}
+
+/// off: lateness of a stamp; step: from the one before. A stamp that follows a late one at once was held up by it and
+/// says nothing more of lost samples. Of stamps that repeat one is enough, as the last sample of each waited least.
+void SteadyClockFit::gatherEvidence(double off, double scatter, double step) noexcept {
+  const bool repeats = mean_length_ >= kAlone;
+  const bool held_up = is_late_ && step < 0.5 * interval_ && !repeats;
+  is_late_ = off > kGap * scatter || (held_up && off > 0.5 * interval_);
+  const bool is_fine = runs_ > square(2.0 * scatter / (kLeastScatter * interval_));  // the line at its end
+  if (!repeats && (unsure_stamps_ == 0 || !is_fine)) return;
+  const double per_interval = (repeats ? 1.0 : independence()) * interval_ / square(scatter);
+  const double most = repeats ? kEvidence + 1.0 : kOneStamp * kEvidence;
+  const auto by = [&](double late) { return std::min(per_interval * (late - 0.5 * interval_), most); };
+  if (!held_up) lost_.add(by(off), off);
+  gained_.add(by(-off), off);
+}
+
+/// By how much the line moves, as it was off by whole intervals [ns].
+double SteadyClockFit::correctCount(double off, double scatter) noexcept {
+  const double now = std::nearbyint(off / interval_);
+  double by = 0.0;
+  if (mean_length_ >= kAlone) {
+    if (off > kGap * scatter + 2.0 * interval_)
+      by = now * interval_;
+    else if (lost_.logarithm > kEvidence)
+      by = std::max(1.0, now) * interval_;
+    else if (gained_.logarithm > kEvidence)
+      by = std::min(-1.0, now) * interval_;
+  } else if (lost_.logarithm > kEvidence) {
+    by = std::max(1.0, std::nearbyint(lost_.mean / interval_)) * interval_;
+  } else if (gained_.logarithm > kEvidence) {
+    by = std::min(-1.0, std::nearbyint(gained_.mean / interval_)) * interval_;
+  }
+  if (by == 0.0) return 0.0;
+  move(by);
+  lost_ = gained_ = {};
+  return by;
+}
+
+/// residual: of a run's first sample; step: of its stamp from the one before. Corrects the count of samples.
+void SteadyClockFit::watchLost(double residual, double step) noexcept {
   if (runs_ < kFirst) {
     start_mean_ = residual;
     return;
@@ -94,20 +155,9 @@ void SteadyClockFit::watchLost(double residual) noexcept {
   double off = residual - start_mean_;
   if (runs_ >= kWarm && interval_ > 0.0) {
     const double scatter = std::max(std::sqrt(start_variance_), kLeastScatter * interval_);
-    const double per_interval = interval_ / square(scatter);
-    lost_evidence_ = std::max(0.0, lost_evidence_ + per_interval * (off - 0.5 * interval_));
-    gained_evidence_ = std::max(0.0, gained_evidence_ + per_interval * (-off - 0.5 * interval_));
-    double shift = 0.0;
-    if (off > kGap * scatter + 2.0 * interval_)
-      shift = std::nearbyint(off / interval_);
-    else if (lost_evidence_ > kEvidence)
-      shift = std::max(1.0, std::nearbyint(off / interval_));
-    else if (gained_evidence_ > kEvidence)
-      shift = std::min(-1.0, std::nearbyint(off / interval_));
-    if (shift != 0.0) {
-      this->shift(shift);
-      off -= shift * interval_;
-    }
+    gatherEvidence(off, scatter, step);
+    off -= correctCount(off, scatter);
+    suspected_ = std::max(0.0, std::nearbyint(off / interval_));
     off = std::clamp(off, -kClip * scatter, kClip * scatter);
   }
   const double gain = scatterGain();
@@ -117,11 +167,12 @@ void SteadyClockFit::watchLost(double residual) noexcept {
 
 std::int64_t SteadyClockFit::add(std::int64_t stamp) noexcept {
   const bool new_run = stamp != stamp_;
-  stamp_ = stamp;
+  const auto step = static_cast<double>(stamp - std::exchange(stamp_, stamp));
+  suspected_ = 0.0;
   const double now = static_cast<double>(stamp - origin_);
   if (new_run) endRun();
   instant_ += interval_;
-  if (new_run) watchLost(now - instant_);
+  if (new_run) watchLost(now - instant_, step);
   residual_ = now - instant_;
   run_length_ = new_run ? 1 : run_length_ + 1;
   return origin_ + static_cast<std::int64_t>(std::llround(instant_));
@@ -175,8 +226,9 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   }
   const std::int64_t fitted = fit_.add(header);
   const bool irregular = header <= newest_;
+  const bool held_up = header > fitted && static_cast<double>(header - newest_) < kHeldUp * fit_.interval();
   irregular_ += irregular;
-  irregularity_ += (irregular ? 1.0 : 0.0) - irregularity_ / look_back::kManyReadings;
+  irregularity_ += (irregular || held_up ? 1.0 : 0.0) - irregularity_ / look_back::kManyReadings;
   header_ = header;
   newest_ = std::max(newest_, header);
   if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;
@@ -190,6 +242,7 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
     const auto half = static_cast<std::int64_t>(0.5 * fit_.interval());
     instant = std::min(fitted, placed_ + std::max(half, kLeastStep));
   }
+  is_crowded_ = instant <= placed_;
   placed_ = instant > placed_ ? instant : placed_ + kLeastStep;
   return {Kind::kPlaced, placed_, placed_ != header};
 }

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include "hammer_loads/crank/sample_clock.h"
+
 namespace hammer_loads {
 
 /// A sensor's own clock, seen through the stamps that its samples got on their way: a line by sequence number, its
@@ -21,9 +23,14 @@ class SteadyClockFit {
   /// The next sample's stamp [ns]; its instant on the line so far [ns].
   std::int64_t add(std::int64_t stamp) noexcept;
   /// Samples were lost before the last one: it and the coming ones are this number of intervals later.
-  void skip(double intervals) noexcept { shift(intervals); }
+  void skip(double intervals) noexcept;
   /// The last stamp is where it must be without a loss before it, though one would show.
   bool contradictsLoss() const noexcept;
+  /// Whether the readings show that none was lost before the last sample. While they do, stamps that wander by whole
+  /// intervals do not move the line.
+  void confirm(bool counted) noexcept;
+  /// Number of lost samples that would explain the lateness of the last stamp; a stamp that is merely late looks alike.
+  double suspected() const noexcept { return suspected_; }
   double interval() const noexcept { return interval_; }  ///< [ns]
   /// Root mean square of the stamps about the line [ns].
   double scatter() const noexcept { return std::sqrt(end_square_); }
@@ -37,8 +44,8 @@ class SteadyClockFit {
  private:
   double scatterGain() const noexcept;
   void endRun() noexcept;
-  void shift(double intervals) noexcept;
-  void watchLost(double residual) noexcept;
+  void move(double by) noexcept;
+  void watchLost(double residual, double step) noexcept;
 
   std::int64_t origin_{};  ///< first stamp [ns]; all else relative to it, so that no digits are lost
   std::int64_t stamp_{};   ///< last [ns]
@@ -48,9 +55,29 @@ class SteadyClockFit {
   double end_residual_{};  ///< residual of the last sample of the run before [ns]
   int run_length_{};       ///< samples with the last stamp
   double mean_length_{1.0};
-  double end_square_{}, step_square_{};         ///< mean squares of the runs' end residuals and of their steps [ns2]
-  double start_mean_{}, start_variance_{};      ///< mean [ns] and variance [ns2] of the runs' first residuals
-  double lost_evidence_{}, gained_evidence_{};  ///< logarithm of likelihood ratio
+  double end_square_{}, step_square_{};     ///< mean squares of the runs' end residuals and of their steps [ns2]
+  double end_mean_{};                       ///< mean of the runs' end residuals [ns]
+  double start_mean_{}, start_variance_{};  ///< mean [ns] and variance [ns2] of the runs' first residuals
+  /// Evidence that the line is off by whole intervals, from the stamp on that began to show it.
+  struct Evidence {
+    double logarithm{};  ///< logarithm of the likelihood ratio
+    double mean{};       ///< mean lateness of the stamps [ns]
+    int stamps{};
+
+    void add(double by, double late) noexcept {
+      logarithm += by;
+      mean += (late - mean) / ++stamps;
+      if (!(logarithm > 0.0)) *this = {};
+    }
+  };
+  double independence() const noexcept;
+  void gatherEvidence(double off, double scatter, double step) noexcept;
+  double correctCount(double off, double scatter) noexcept;
+  Evidence lost_, gained_;
+  double suspected_{};      ///< lost samples by which the last stamp alone is late
+  double remembered_{1.0};  ///< runs in the line's memory
+  int unsure_stamps_{};     ///< number of stamps that may still show a miscount which no reading has excluded
+  bool is_late_{};          ///< the last stamp is later than scatter makes it
   int runs_{};
 };
 
@@ -133,13 +160,17 @@ class StampSequence {
   /// The readings show that samples were lost before the last one: it and the coming ones are so much later [s], whole
   /// intervals. Its instant [ns].
   std::int64_t skip(double time) noexcept;
-  /// Interval at which the samples are taken, where stamps are being refitted by it and the last one allows for lost
-  /// samples before it [s]; else 0.
-  double interval() const noexcept {
-    return steady_ && fit_.isKnown() && !fit_.contradictsLoss() ? 1e-9 * fit_.interval() : 0.0;
+  SampleClock clock() const noexcept {
+    if (!steady_ || !fit_.isKnown()) return {};
+    const double interval = 1e-9 * fit_.interval();
+    return {interval, interval * fit_.suspected(), !fit_.contradictsLoss()};
   }
+  /// See SteadyClockFit.
+  void confirm(bool counted) noexcept { fit_.confirm(counted); }
   /// Step of which header stamps are whole multiples though the samples are not taken so [s]; 0: none.
   double rounding() const noexcept { return rounding_.step(); }
+  /// The last sample's instant was not after the one before, as the line has gone back: it got one just after that.
+  bool isCrowded() const noexcept { return is_crowded_; }
   /// Stamps are being refitted by sequence.
   bool isSteady() const noexcept { return steady_; }
   /// Stamps that repeated or changed places since the start.
@@ -161,6 +192,7 @@ class StampSequence {
   bool doubled_{};    ///< messages do come twice
   bool uncounted_{};  ///< messages passed for duplicates since the beginning of the fit
   bool steady_{};
+  bool is_crowded_{};
   SteadyClockFit fit_;
   StampRounding rounding_;
 };

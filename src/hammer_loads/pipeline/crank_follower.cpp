@@ -91,7 +91,7 @@ std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& m
 CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   const CrankSample sample{measured_.angle, verdict_.speed_is_dead ? std::nullopt : measured_.speed};
   tracker_->setHullMotion(hull);
-  tracker_->setInterval(sequence_.interval());
+  tracker_->setClock(sequence_.clock());
   tracker_->considerLatency(0.5 * sequence_.rounding());
   if (verdict_.order == CrankSampleGate::Order::kFirst) {
     tracker_->start(sample);
@@ -100,6 +100,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
     return Taken::kBegan;
   }
   const Tracking tracking = tracker_->update(verdict_.step, sample);
+  sequence_.confirm(tracker_->countsIntervals());
   followLostTime();
   if (tracking == Tracking::kOutlier) return Taken::kRefused;
   if (tracking != Tracking::kContinued) {
@@ -117,9 +118,10 @@ void CrankFollower::followLostTime() noexcept {
   if (tracker_->slips() > slips_) slipped_ = stamp_;
   slips_ = tracker_->slips();
   const double lost = tracker_->lostTime();
-  // Single stamps show in some ten samples that one had been lost before them, and the crank has made up for it.
-  const bool had_been_lost = lost < 0.0 && !sequence_.fit().inBursts();
-  if (lost == 0.0 || had_been_lost) return;
+  // Single stamps show only some ten samples later that one was lost or counted too many. The crank has made up for it
+  // by then, so that the step between the two instants is wrong, and not the later one.
+  const bool was_made_up = !sequence_.fit().inBursts() && (lost < 0.0 || sequence_.isCrowded());
+  if (lost == 0.0 || was_made_up) return;
   stamp_ = sequence_.skip(lost);
   verdict_.step += lost;
 }
