@@ -41,7 +41,7 @@ void waitForBus(simulation::MachineSettings& m) {
   m.joint_rate = 100.0, m.joint_count = kTwoPi / 4096.0;
 }
 
-/// Of an odometry of 10 Hz, scaled to 100 Hz (config/simulated_machine.yaml).
+/// Stamps of an odometry of 10 Hz, scaled to 100 Hz (config/simulated_machine.yaml).
 void stampAsDrivers(simulation::MachineSettings& m) { m.boom_stamps = {1.08e-3, 5e-4, 8e-3}; }
 
 constexpr BoomKind kBoomKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0, nullptr},

@@ -61,7 +61,7 @@ class CrankFilter {
   /// Weight and motion of the hull at the coming sample. The step up to it is predicted with the mean of this and the
   /// last sample's.
   void setHullMotion(const HullMotion& hull) noexcept;
-  /// Of the coming sample: a reading that is whole intervals ahead has lost samples before it.
+  /// Sets the clock of the coming sample: a reading that is whole intervals ahead has lost samples before it.
   void setClock(const SampleClock& clock) noexcept { clock_ = clock; }
   /// Standard deviation of a shift that all stamps have in common [s]: no reading shows it.
   void considerLatency(double deviation) noexcept { stamps_off_ = deviation; }

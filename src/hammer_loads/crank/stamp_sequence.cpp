@@ -110,7 +110,7 @@ double SteadyClockFit::independence() const noexcept {
 }
 
 /// off: lateness of a stamp; step: from the one before. A stamp that follows a late one at once was held up by it and
-/// says nothing more of lost samples. Of stamps that repeat one is enough, as the last sample of each waited least.
+/// says nothing more of lost samples. One stamp that repeats is enough, as the last sample of each waited least.
 void SteadyClockFit::gatherEvidence(double off, double scatter, double step) noexcept {
   const bool repeats = mean_length_ >= kAlone;
   const bool held_up = is_late_ && step < 0.5 * interval_ && !repeats;

@@ -26,8 +26,8 @@ class SteadyClockFit {
   void skip(double intervals) noexcept;
   /// The last stamp is where it must be without a loss before it, though one would show.
   bool contradictsLoss() const noexcept;
-  /// Whether the readings show that none was lost before the last sample. While they do, stamps that wander by whole
-  /// intervals do not move the line.
+  /// Takes whether the readings show that none was lost before the last sample. While they do, stamps that wander by
+  /// whole intervals do not move the line.
   void confirm(bool counted) noexcept;
   /// Number of lost samples that would explain the lateness of the last stamp; a stamp that is merely late looks alike.
   double suspected() const noexcept { return suspected_; }

@@ -107,7 +107,7 @@ struct PipelineSettings {
   BaseTilt base;                    ///< inclination of the ground that the machine stands on
   CrankSensor crank_sensor;         ///< mounting of the crank's sensor
   double crank_latency{};           ///< header stamp less the instant of the measurement [s], >= 0
-  double crank_latency_std{};       ///< its standard deviation [s], >= 0
+  double crank_latency_std{};       ///< standard deviation of the crank's latency [s], >= 0
   double crank_angle_resolution{};  ///< encoder count [rad], >= 0; 0: read off the readings
   double crank_angle_noise{};       ///< standard deviation beside the count [rad], >= 0
   CrankStamps crank_stamps{};       ///< instants that the samples get

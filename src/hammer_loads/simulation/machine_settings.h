@@ -110,7 +110,7 @@ struct CrankSensorSettings {
   double ratio{1.0};   ///< encoder turns per crank turn [-], > 0
   Eccentricity eccentricity[2];  ///< once and twice a turn
   double hysteresis{};           ///< the shown angle lies still over that much after the shaft turns back [rad]
-  double task_period{};          ///< of a controller that reads the encoder and shows its last mean [s]; 0: none
+  double task_period{};          ///< period of a controller that reads the encoder and shows its last mean [s]; 0: none
   int task_mean{1};              ///< readings of that controller in one mean, >= 1
   struct Interval {
     double from{}, to{};  ///< [s]

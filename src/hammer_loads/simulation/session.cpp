@@ -198,7 +198,7 @@ void SessionStream::take(Session& session) {
   burst_.clear();
 }
 
-/// What the sensor shows before it counts. A controller's mean replaces any low-pass.
+/// Angle and speed that the sensor shows before it counts. A controller's mean replaces any low-pass.
 SessionStream::Shown SessionStream::shown(const CrankTruth& truth) noexcept {
   const CrankSensorSettings& sensor = settings_.crank;
   const Encoded now = encodedAt(sensor, truth);
