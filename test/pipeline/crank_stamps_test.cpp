@@ -100,7 +100,7 @@ TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
 }
 
 /// Single late stamps and single lost samples look alike until the next stamp; the angle tells them apart at once.
-TEST(CrankLosses, AreToldFromLateStamps) {
+TEST(CrankLosses, DifferFromLateStamps) {
   const Settings settings = test::settingsWith("crank_stamps: steady");
   for (const double rate : {200.0, 1000.0}) {
     for (const double noise : {0.05, 0.2}) {

@@ -136,7 +136,7 @@ TEST(Stamps, AreInOrderWhereAskedFor) {
 
 /// A Husky's odometry (robot_localization, test/test1.bag; 3952 messages at 10 Hz) about its own line, in intervals:
 /// standard deviation 0.0314, quantiles of 1, 50 and 99 % -0.057, 0.000 and 0.053.
-TEST(Stamps, OfAPolledDriverAreThoseOfARealOne) {
+TEST(Stamps, EqualThoseOfARealPolledDriver) {
   MachineSettings s = flawedRun();
   s.crank.rate = 1000.0;
   s.crank.driver.tick = 0.108 / s.crank.rate;
@@ -177,7 +177,7 @@ TEST(Stamps, AreLateNowAndThenOnEveryTopic) {
 }
 
 /// The mean of the last readings of a controller's task, at the instants of that task.
-TEST(Encoder, OfAControllerShowsItsLastMean) {
+TEST(Encoder, ShowsTheLastMeanOfAController) {
   MachineSettings s = flawedRun();
   s.crank.rate = 100.0;
   s.crank.counts = 0;
@@ -197,7 +197,7 @@ TEST(Encoder, OfAControllerShowsItsLastMean) {
   }
 }
 
-TEST(Encoder, WithHysteresisStaysBehindEitherWay) {
+TEST(Encoder, StaysBehindEitherWayWithHysteresis) {
   MachineSettings s = flawedRun();
   s.crank.counts = 0;
   const Session plain = recordSession(s);
