@@ -72,6 +72,7 @@ void HammerBridge::begin(const Settings& settings) {
   beginCount();
   reference_ = {};
   goes_on_ = false;
+  mechanism_period_ = -1;
   limits_.reset();
   if (!settings_.limits.empty())
     limits_.emplace(settings_.limits, life_->machine().channels, pipeline_->counts().misuse);
