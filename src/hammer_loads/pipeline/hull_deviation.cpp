@@ -11,8 +11,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kStands = 0.05;  // [rad/s] at most
-
 // Differences to one side: 1e-6 of a slope by what bends in them, 1e-9 by rounding.
 constexpr double kAngleStep = 1e-6, kSpeedStep = 1e-5, kAccelerationStep = 1e-2;  // [rad], [rad/s], [rad/s2]
 // Numerical: kAngleStep, kSpeedStep, kAccelerationStep
@@ -201,14 +199,6 @@ double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept {
 bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noexcept {
   const CrankPosition& at = crank.position;
   return std::abs(at.angle.offset) < gate * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
-}
-
-/// While the zero is not shown a slow crank near the blow may have met the tool, or bounce on it.
-bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std) noexcept {
-  const double range = gate::kUsual * deviationFromBlow(filter, angle_std),
-               offset = std::abs(crank.position.angle.offset);
-  if (filter.constantErrors().zeroIsShown()) return isBesideBlow(crank, deviationFromBlow(filter, angle_std));
-  return crank.position.isMirrored() || (offset < range && std::abs(crank.speed) > kStands);
 }
 
 }  // namespace hammer_loads

@@ -69,8 +69,6 @@ class Pipeline {
   /// Names of the hammer's columns in SampleResult::load_columns, which follow those of the sensor.
   std::vector<std::string> hammerColumns() const { return columns_.names(); }
   const CrankTrust& crankTrust() const noexcept { return trust_; }
-  /// Standard deviation of crank_zero_rad by the turns so far, at most that given [rad of reading].
-  double crankZeroStd() const noexcept;
   const ZeroWatch& zeroWatch() const noexcept { return zero_; }
   const ElasticFollower& elastic() const noexcept { return elastic_; }
   const UnknownForce& unknownForce() const noexcept { return unknown_; }
@@ -84,8 +82,7 @@ class Pipeline {
   void restart(bool revised) noexcept;
   void follow(CrankFollower::Taken taken) noexcept;
   std::optional<Refusal> whyWithheld() noexcept;
-  Eigen::Matrix3d contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
-  Eigen::Matrix3d zeroDoubt(const DriveReaction& drive) const noexcept;
+  HullWrench contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
   ElasticFollower::Beside weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
   void fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept;
   double speedScale() const noexcept;

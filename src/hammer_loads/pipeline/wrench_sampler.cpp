@@ -58,7 +58,7 @@ bool WrenchSampler::isKnown(double time, const WrenchOutput& output, const Sampl
   if (kind_ == OutputKind::kMean) return true;
   if (output.stamp == result.stamp) return result.isPublished();
   if (elastic_->ranOverStep()) return !elastic_->isBesideBlowAt(time);
-  return !result.uncertain && !isBesideBlow(*tracker_, output.crank, output.deviation.angle);
+  return !isBesideBlow(output.crank, deviationFromBlow(*tracker_, output.deviation.angle));
 }
 
 /// Stamp of the next output, if it is not after the sample.

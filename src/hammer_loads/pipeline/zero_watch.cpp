@@ -10,13 +10,10 @@ constexpr double kSearchShows =
 constexpr double kSearchShowsAhead = 2.4 * kDegree;  // likewise, positive: up to 0.8 deg
 constexpr double kFilterAgrees = 0.8 * kDegree;
 constexpr double kAgrees = 1.5;   // consistency of readings and model
-constexpr double kOfStep = 0.08;  // of the way between samples: what is seen no better
+constexpr double kOfStep = 0.12;  // of the way between samples: what is seen no better
 constexpr double kDeviations = gate::kVeryRare;
 constexpr double kFilterShows =
     1.2 * kDegree;  // by the filter, positive: with a right zero it shows up to 0.5 deg, on a light hull 0.9 deg
-constexpr double kSearchErrs = 4.0 * kDegree,  // of the search, of readings at 100 Hz as well
-    kSearchErrsAhead = 3.0 * kDegree;
-constexpr int kTurnsToShow = 20;  // a machine that neither judge explains by then has another fault than its zero
 constexpr double kRefined = 0.5 * kDegree;
 
 }  // namespace
@@ -45,15 +42,6 @@ bool ZeroWatch::agrees(const CrankFilter& filter) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];
   return errors.knows() && filter.consistency() < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
-}
-
-bool ZeroWatch::doubts(const CrankFilter& filter) const noexcept {
-  const ConstantErrors& errors = filter.constantErrors();
-  if (filter.consistency() < kAgrees || errors.turns() > kTurnsToShow) return false;
-  const auto& found = search_.found();
-  if (!found) return true;
-  const double more = found->error - errors.estimate()[ConstantErrors::kZero];
-  return more < -kSearchErrs || more > kSearchErrsAhead;
 }
 
 double ZeroWatch::toMove(const CrankFilter& filter) noexcept {

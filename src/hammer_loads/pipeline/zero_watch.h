@@ -28,12 +28,9 @@ class ZeroWatch {
   bool withholds() const noexcept { return isOff() && (!settled_ || std::abs(moved_) > kMost); }
   /// The zero in force is another one than the parameter's.
   bool isOff() const noexcept { return std::abs(moved_) > kNone; }
-  /// The filter's estimate of the zero may be wrong: readings and model do not agree, nor does the search with it.
-  bool doubts(const CrankFilter& filter) const noexcept;
   bool isSettled() const noexcept { return settled_; }  ///< the filter agrees with the zero that was found
   /// By how much the zero in force is larger than the parameter's [rad of the crank's angle].
   double moved() const noexcept { return moved_; }
-  const ZeroSearch& search() const noexcept { return search_; }
 
  private:
   static constexpr double kNone = 0.3 * kDegree;      ///< an error that was there and is gone leaves less

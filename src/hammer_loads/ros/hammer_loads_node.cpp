@@ -91,12 +91,9 @@ void HammerLoadsNode::announceRun() {
   run_info_.publish(info);
 }
 
-/// The next input begins a run, and its run_info replaces that of the run before. The standard deviation of the
-/// encoder's zero by the turns goes on as a parameter, so that the log of the new run alone gives the same outputs.
+/// The next input begins a run, and its run_info replaces that of the run before.
 void HammerLoadsNode::beginRun() {
-  Checked<Settings> settings =
-      withChanges(bridge_.settings(), {{"crank_zero_std_rad", bridge_.pipeline().crankZeroStd()}});
-  bridge_.begin(settings.value ? *std::move(settings.value) : Settings(bridge_.settings()));
+  bridge_.reset();
   log_->forgetLatched(run_info_.getTopic());
 }
 
@@ -121,8 +118,7 @@ void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
   if (changed)
     settings = withChanges(bridge_.settings(), {{"output_rate_Hz", config.output_rate_Hz},
                                                 {"tolerance", config.tolerance},
-                                                {"withhold_above", config.withhold_above},
-                                                {"crank_zero_std_rad", bridge_.pipeline().crankZeroStd()}});
+                                                {"withhold_above", config.withhold_above}});
   for (const std::string& problem : settings.problems)
     ROS_WARN("set_parameters: %s; nothing is changed", problem.c_str());
   if (settings.value) {
