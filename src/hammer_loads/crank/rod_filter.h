@@ -69,7 +69,7 @@ class RodFilter {
   bool hasMoved() const noexcept { return running_ && samples_ > 0; }
   /// Within that, by the way forward from the sample before; time after it [s].
   RodMotion between(double time) const noexcept;
-  /// Blow within that step, its time likewise.
+  /// Blow within that step, its time from the start of the step [s].
   const std::optional<TwoBodies::Blow>& blowOfStep() const noexcept { return blow_; }
   bool hasStruck() const noexcept { return motion_.state.angle.side == Side::kAfterBlow; }
   double sinceBlow() const noexcept { return since_blow_; }        ///< [s]

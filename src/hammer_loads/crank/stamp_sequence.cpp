@@ -26,7 +26,7 @@ constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for c
 constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
 constexpr double kOneStamp = 0.3;           // of it that a single stamp contributes: drivers are late now and then
 constexpr double kLeastIndependence = 0.2;
-constexpr double kNoLoss = 3.0;         // likewise that none was: 20 to 1
+constexpr double kNoLoss = 3.0;         // logarithm of the odds that none was lost: 20 to 1
 constexpr double kLeastScatter = 0.15;  // of the interval: a run's beginning is not known better
 constexpr double kGrown = 2.0;          // scatter about the line over that of white jitter with such steps
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "hammer_loads/util/csv_cells.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/number_text.h"
 
@@ -26,19 +27,6 @@ constexpr std::size_t kResults = kPins + kPinColumns.size();
 using Cells = std::vector<std::string>;
 using Places = std::array<std::size_t, kStates>;  ///< position of each of kStateColumns in a row
 using Problems = std::vector<std::string>;
-
-/// Cells without the spaces around them; one empty cell for a blank line.
-Cells cellsOf(const std::string& line) {
-  constexpr char kSpaces[] = " \t\r";
-  Cells cells;
-  std::istringstream rest(line + ',');  // the last cell may be empty
-  for (std::string cell; std::getline(rest, cell, ',');) {
-    cell.erase(0, std::min(cell.find_first_not_of(kSpaces), cell.size()));
-    cell.erase(cell.find_last_not_of(kSpaces) + 1);
-    cells.push_back(std::move(cell));
-  }
-  return cells;
-}
 
 bool isBlank(const Cells& cells) { return cells.size() == 1 && cells[0].empty(); }
 
@@ -176,15 +164,15 @@ std::vector<std::string> evaluateTable(const HullModel& model, std::istream& in,
   constexpr std::size_t kMostProblems = 20;
   std::string line;
   std::getline(in, line);
-  if (isBlank(cellsOf(line))) return {"header: missing, must be a line with the names of the columns"};
+  if (isBlank(csvCells(line))) return {"header: missing, must be a line with the names of the columns"};
   if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);  // mark of UTF-8
-  const Cells header = cellsOf(line);
+  const Cells header = csvCells(line);
   Problems problems;
   const Places places = placesOf(header, problems);
   if (!problems.empty()) return problems;
   std::vector<EvaluatedRow> rows;
   for (std::size_t row = 1; std::getline(in, line); ++row) {
-    const Cells cells = cellsOf(line);
+    const Cells cells = csvCells(line);
     if (isBlank(cells)) continue;
     if (cells.size() == header.size())
       evaluateRow(model, cells, places, format("row %zu: ", row), rows, problems);

@@ -109,6 +109,7 @@ std::uint8_t* BagWriter::beginMessage(std::uint32_t connection, const ros::Time&
   chunk.first = std::min(chunk.first, time);
   chunk.last = std::max(chunk.last, time);
   ++chunk.counts[connection];
+  ++messages_;
   index_[connection].emplace_back(time, static_cast<std::uint32_t>(chunk_.size()));
 
   static const std::string kPattern = [] {
@@ -133,9 +134,9 @@ void BagWriter::endMessage() {
 }
 
 std::uint64_t BagWriter::sizeBound() const noexcept {
-  std::uint64_t entries = 0;
-  for (const auto& [connection, places] : index_) entries += kRecord + kIndexEntry * places.size();
-  return position_ + packedBound(chunk_.size()) + kRecord + entries + index_size_ + kRecord + 8 * connections_.size();
+  const std::uint64_t of_chunk =
+      packedBound(chunk_.size()) + kRecord + kRecord * index_.size() + kIndexEntry * messages_;
+  return position_ + of_chunk + index_size_ + kRecord + 8 * connections_.size();
 }
 
 void BagWriter::closeChunk() {
@@ -167,6 +168,7 @@ void BagWriter::closeChunk() {
     places.clear();
   }
   chunk_.clear();
+  messages_ = 0;
   index_size_ += kRecord + 8 * chunks_.back().counts.size();
   chunks_.emplace_back();
 }

@@ -96,6 +96,7 @@ class BagWriter {
   std::vector<ChunkInfo> chunks_;                 ///< the last one is being filled
   std::string chunk_, packed_;                    ///< bytes of that one
   std::map<std::uint32_t, Places> index_;         ///< places by connection
+  std::uint64_t messages_{};                      ///< number of messages in that one
   std::uint64_t index_size_{};                    ///< largest possible size of the file's index [byte]
 };
 

@@ -34,17 +34,21 @@ bool BandMeans::follow(const double* values) noexcept {
     begun_ = true;
     before_ = now_ = added_up_to_ = result.stamp;
     std::fill(integral_.begin(), integral_.end(), 0.0);
-    std::copy_n(values, values_.size(), values_.begin());
-    if (!known_) std::fill(values_.begin(), values_.end(), kNaN);
+    keep(values);
     return false;
   }
   if (!known_ && result.beside_blow && 3 * means_.size() < 2 * means_.capacity()) return false;
   before_ = now_;
   now_ = result.stamp;
   values_before_.swap(values_);
+  keep(values);
+  return true;
+}
+
+/// Loads that are not published are not known.
+void BandMeans::keep(const double* values) noexcept {
   std::copy_n(values, values_.size(), values_.begin());
   if (!known_) std::fill(values_.begin(), values_.end(), kNaN);
-  return true;
 }
 
 void BandMeans::addUpTo(StampNs stamp) noexcept {
@@ -68,7 +72,5 @@ void BandMeans::form(const WrenchOutput& mean, const double* deviations, const d
   wrenchValues(mean.deviation.common, common_.data());
   if (!known_) std::fill_n(mean_.begin(), kHullChannels, kNaN);
 }
-
-void BandMeans::end() noexcept { addUpTo(now_); }
 
 }  // namespace hammer_loads

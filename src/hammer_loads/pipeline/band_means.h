@@ -28,14 +28,14 @@ class BandMeans {
       take(mean.stamp, mean_.data(), deviations_.data(), common_.data());
     }
     means_.clear();
-    end();
+    addUpTo(now_);
   }
 
  private:
   bool follow(const double* values) noexcept;
+  void keep(const double* values) noexcept;
   void form(const WrenchOutput& mean, const double* deviations, const double* common) noexcept;
   void addUpTo(StampNs stamp) noexcept;
-  void end() noexcept;
 
   const Pipeline* pipeline_;
   WrenchSampler sampler_;

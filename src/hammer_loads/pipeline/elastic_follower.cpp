@@ -63,8 +63,7 @@ void ElasticFollower::rest() noexcept {
   for (RodFilter& filter : filters_) filter.abandon();
 }
 
-/// The other one goes along on each fourth blow: pins wear over months, and where the likelier one contradicts the
-/// readings both run.
+/// The other filter runs on each fourth blow, since pins wear, and wherever the likelier one contradicts the readings.
 bool ElasticFollower::runsAlone(std::int64_t blow) const noexcept {
   return best_ != nullptr && best_->isProven() && blow % kOthersTurn != 0;
 }
@@ -98,8 +97,7 @@ void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) no
   if (std::none_of(filters_.begin(), filters_.end(), [](const RodFilter& rod) { return rod.isRunning(); })) judge();
 }
 
-/// Pins with joint clearance: where it shows, or where tight ones contradict the readings. Tight pins can imitate joint
-/// clearance by a soft rod and much damping, but not the impacts.
+/// Returns pins with clearance where it shows or tight ones contradict the readings: those cannot imitate its impacts.
 const RodFilter& ElasticFollower::likelier() const noexcept {
   const RodFilter &tight = filters_[0], &play = filters_[1];
   if (!play.isProven()) return tight;
@@ -107,8 +105,7 @@ const RodFilter& ElasticFollower::likelier() const noexcept {
   return !tight.isProven() || exceeds(play.motion().play, doubt, gate::kImpossible) ? play : tight;
 }
 
-/// A rod stiffer than the rate of the samples shows explains them no better than a rigid one: the level is linkage
-/// then.
+/// The level is linkage where the rod is stiffer than the rate of the samples can show.
 void ElasticFollower::judge() noexcept {
   runs_ = false;
   ++blows_;

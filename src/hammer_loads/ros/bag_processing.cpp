@@ -10,6 +10,7 @@
 #include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/bag_warnings.h"
 #include "hammer_loads/ros/hammer_inputs.h"
+#include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
@@ -37,9 +38,9 @@ class HammerRuns {
       end();
       begin();
     }
-    for (; next_reference_ < job_.reference.size() && !(timeOf(job_.reference[next_reference_]) > item.time);
-         ++next_reference_)
-      flow_->measured(job_.reference[next_reference_].stamp, job_.reference[next_reference_].load);
+    const std::vector<MeasuredLoad>& loads = job_.reference;
+    for (; next_load_ < loads.size() && loads[next_load_].stamp <= stampOf(item.time); ++next_load_)
+      flow_->measured(loads[next_load_].stamp, loads[next_load_].load);
     inputs_->forEach([&](auto& input) {
       if (item.connection->topic != input.topic || !(input.wanted || input.latched)) return;
       item.to(input.message);
@@ -75,15 +76,11 @@ class HammerRuns {
     for (const auto& take : latched_) take(*flow_);
   }
 
-  static ros::Time timeOf(const MeasuredLoad& row) {
-    return ros::Time().fromNSec(static_cast<std::uint64_t>(row.stamp));
-  }
-
   const std::vector<BagRun>& runs_;
   const BagJob& job_;
   const Sinks sinks_;
   BagReport& report_;
-  std::size_t next_{}, next_reference_{};
+  std::size_t next_{}, next_load_{};
   std::optional<HammerBridge> flow_;
   std::optional<HammerInputs> inputs_;                       ///< inputs of this run
   std::vector<std::function<void(HammerBridge&)>> latched_;  ///< messages that are the same in every run

@@ -125,7 +125,7 @@ void HammerBridge::cylinderPressure(std::size_t cylinder, Chamber chamber, const
 void HammerBridge::reference(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) {
   beginRun(record_time);
   const geometry_msgs::Wrench& w = message.wrench;
-  reference_.measured(stampOf(message.header.stamp), {w.force.x, w.force.z, w.torque.y});
+  measured(stampOf(message.header.stamp), {w.force.x, w.force.z, w.torque.y});
 }
 
 void HammerBridge::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {

@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <string_view>
+#include <sstream>
 
+#include "hammer_loads/util/csv_cells.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/number_text.h"
 
@@ -14,18 +15,7 @@ namespace {
 
 constexpr double kLatest = 4294967295.0;  // [s], as a message's stamp
 
-std::vector<std::string_view> fieldsOf(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    std::string_view field = line.substr(0, comma);
-    field.remove_prefix(std::min(field.find_first_not_of(' '), field.size()));
-    field.remove_suffix(field.size() - std::min(field.find_last_not_of(' ') + 1, field.size()));
-    fields.push_back(field);
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
+using Cells = std::vector<std::string>;
 
 /// Places of the columns in a line.
 struct Columns {
@@ -33,8 +23,8 @@ struct Columns {
   std::array<std::optional<std::size_t>, ReferenceComparison::kComponents> load;
 };
 
-std::optional<Columns> columnsOf(const std::vector<std::string_view>& header) {
-  const auto place = [&](std::string_view name) -> std::optional<std::size_t> {
+std::optional<Columns> columnsOf(const Cells& header) {
+  const auto place = [&](const char* name) -> std::optional<std::size_t> {
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end()) return std::nullopt;
     return static_cast<std::size_t>(found - header.begin());
@@ -49,17 +39,17 @@ std::optional<Columns> columnsOf(const std::vector<std::string_view>& header) {
   return columns;
 }
 
-/// Nothing: a field is no number.
-std::optional<MeasuredLoad> rowOf(const std::vector<std::string_view>& fields, const Columns& columns) {
-  if (columns.stamp >= fields.size()) return std::nullopt;
-  const auto stamp = decimalNumber(std::string(fields[columns.stamp]));
+/// Reads a row. Nothing: a cell is no number.
+std::optional<MeasuredLoad> rowOf(const Cells& cells, const Columns& columns) {
+  if (columns.stamp >= cells.size()) return std::nullopt;
+  const auto stamp = decimalNumber(cells[columns.stamp]);
   if (!stamp || !(*stamp >= 0.0 && *stamp <= kLatest)) return std::nullopt;
   MeasuredLoad row;
   row.stamp = std::llround(*stamp * 1e9);
   for (std::size_t i = 0; i < row.load.size(); ++i) {
     row.load[i] = kNaN;
-    if (!columns.load[i] || *columns.load[i] >= fields.size() || fields[*columns.load[i]].empty()) continue;
-    const auto load = decimalNumber(std::string(fields[*columns.load[i]]));
+    if (!columns.load[i] || *columns.load[i] >= cells.size() || cells[*columns.load[i]].empty()) continue;
+    const auto load = decimalNumber(cells[*columns.load[i]]);
     if (!load || !std::isfinite(*load)) return std::nullopt;
     row.load[i] = *load;
   }
@@ -75,21 +65,19 @@ Checked<std::vector<MeasuredLoad>> readReferenceTable(const std::string& csv) {
   std::vector<MeasuredLoad> rows;
   std::optional<Columns> columns;
   std::size_t number = 0;
-  for (std::string_view rest = csv; !rest.empty();) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
     ++number;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.empty() || line.front() == '#') continue;
-    const std::vector<std::string_view> fields = fieldsOf(line);
-    const std::string quoted = "'" + std::string(line.substr(0, 60)) + "', ";
+    const Cells cells = csvCells(line);
+    const std::string quoted = "'" + line.substr(0, 60) + "', ";
     if (!columns) {
-      columns = columnsOf(fields);
+      columns = columnsOf(cells);
       if (!columns) return problem(number, quoted + "must name stamp and at least one of force_x, force_z, torque_y");
       continue;
     }
-    const auto row = rowOf(fields, *columns);
+    const auto row = rowOf(cells, *columns);
     if (!row) return problem(number, quoted + "must have a stamp in seconds since 1970 and numbers in its columns");
     if (!rows.empty() && row->stamp <= rows.back().stamp)
       return problem(number, quoted + "must be later than the line before");
