@@ -10,7 +10,7 @@ from report.quantities import QUANTITIES, value_of
 from store import COLUMN_TEXT
 
 # Copied as they are, with another run_id.
-COPIED = ["refusals", "warnings", "channels", "cycles", "residues"]
+COPIED = ["refusals", "warnings", "alarms", "reference", "channels", "cycles", "residues"]
 OPTIONAL = {"turns": ["turns", "blows"]}
 OUTCOME = ("machine", "bag", "status", "reason", "input_sha256", "parameters_sha256")
 
@@ -149,6 +149,8 @@ class Loader:
 
     def _copy(self, source, table, shift):
         columns = source.columns(table)
+        if not columns:  # recordings of before 1.0 have neither alarms nor a reference
+            return
         self._make_rows_of_turns(table, columns)
         known = self._columns_of(table)
         names = [name for name in columns if name.lower() in known]

@@ -40,6 +40,14 @@ CREATE VIEW parameters AS
 
 CREATE TABLE refusals(run_id INTEGER NOT NULL, reason TEXT NOT NULL, count BIGINT NOT NULL, PRIMARY KEY(run_id, reason));
 CREATE TABLE warnings(run_id INTEGER NOT NULL, place INTEGER NOT NULL, key TEXT, text TEXT, PRIMARY KEY(run_id, place));
+CREATE TABLE alarms(
+  run_id INTEGER NOT NULL, name TEXT NOT NULL, level INTEGER, unit TEXT, value DOUBLE PRECISION,
+  value_std DOUBLE PRECISION, limit_value DOUBLE PRECISION, since_ns BIGINT, until_ns BIGINT, turns BIGINT,
+  PRIMARY KEY(run_id, name, since_ns));
+CREATE TABLE reference(
+  run_id INTEGER NOT NULL, component TEXT NOT NULL, unit TEXT, samples BIGINT, rms DOUBLE PRECISION,
+  rms_error DOUBLE PRECISION, bias DOUBLE PRECISION, scale DOUBLE PRECISION, correlation DOUBLE PRECISION,
+  within_two_std DOUBLE PRECISION, PRIMARY KEY(run_id, component));
 
 CREATE TABLE run_figures(
   run_id INTEGER NOT NULL,    -- [-] number of the run

@@ -1,6 +1,7 @@
 """Shipped questions on a fleet of which the answers are known."""
 import csv
 import io
+import sqlite3
 import subprocess
 import sys
 import unittest
@@ -120,3 +121,38 @@ class Queries(MergeTest):
 
 if __name__ == "__main__":
     unittest.main()
+
+    def after(self, name, machine, *sql, seconds=40.0):
+        """An outcome whose database was changed."""
+        outcome = self.add(name, machine, of=sample.Machine(machine), seconds=seconds)
+        with sqlite3.connect(str(self.directory / "bags" / f"{name}.sqlite")) as database:
+            for line in sql:
+                database.execute(line)
+        database.close()
+        return outcome
+
+    def test_exceeded_limits_are_counted_by_machine_and_shown(self):
+        alarm = "INSERT INTO alarms VALUES(1, 'hold_down_force', 2, 'N', %s, NULL, 3000.0, %d, %d, %d)"
+        limit = "INSERT INTO parameters VALUES(1, 'limit_hold_down_force_error_N', '3000.0', NULL)"
+        self.merge(self.after("o", "orange", limit, alarm % (2900.0, 10, 20, 4), alarm % (2400.0, 30, 40, 7)),
+                   self.after("p", "orange", limit, alarm % (2700.0, 50, 50, 1), seconds=60.0))
+        row, = self.answer("alarms")
+        self.assertEqual((row["machine"], row["name"], row["alarms"], row["turns"], row["farthest_value"]),
+                         ("orange", "hold_down_force", "3", "12", "2400.0"))
+        out = self.directory / "orange.html"
+        self.assertEqual(report(self.directory / "merged.sqlite", "--machine", "orange", "--html", out).returncode, 0)
+        shown = Reader(out.read_text(encoding="utf-8")).table("Limits exceeded")["hold_down_force"]
+        self.assertEqual((shown["Revolutions"], shown["Times"]), ("12", "3"))
+
+    def test_measured_loads_are_weighted_by_their_samples(self):
+        reference = "INSERT INTO reference VALUES(1, 'force_z', 'N', %d, 4000.0, %s, %s, 1.0, 0.99, 0.95)"
+        self.merge(self.after("o", "orange", reference % (100, 30.0, 10.0)),
+                   self.after("p", "orange", reference % (300, 50.0, -10.0), seconds=60.0))
+        row, = self.answer("references")
+        self.assertEqual((row["machine"], row["component"], row["runs"], row["samples"]), ("orange", "force_z", "2", "400"))
+        self.assertAlmostEqual(float(row["rms_error"]) ** 2, (900.0 + 3 * 2500.0) / 4)
+        self.assertAlmostEqual(float(row["bias"]), -5.0)
+
+    def test_recordings_without_tables_of_alarms_are_merged(self):
+        self.merge(self.after("o", "orange", "DROP TABLE alarms", "DROP TABLE reference"))
+        self.assertEqual(self.ask("SELECT count(*) FROM runs r JOIN bags b USING(bag_id) WHERE machine = 'orange'"), [(1,)])

@@ -33,7 +33,7 @@ def lines(subject):
 
 
 def limits(subject):
-    """None where no limit was given, and of merged files, which hold no alarms."""
+    """Exceeded limits by name and level; None where no limit was given."""
     if "alarms" not in subject.database.tables() or not given(subject):
         return None
     rows = []
