@@ -1,4 +1,4 @@
-/// Torques of the oil as pressures show them whose sensors sit behind hoses.
+/// Oil torques as read by pressure sensors at the end of hoses.
 #pragma once
 
 #include <cmath>
@@ -7,11 +7,11 @@
 
 namespace hammer_loads {
 
-/// Per mode a lag of first order over the oil's torque, by its time constant [s].
+/// First-order lag of the oil's torque, one per mode, with its time constant [s].
 struct BehindHose {
-  ModeVector torque = ModeVector::Zero(), rate = torque;  ///< modal; and by the second, over the last step
+  ModeVector torque = ModeVector::Zero(), rate = torque;  ///< modal torque and its rate over the last step
 
-  /// Over a step [s] in which the oil's torque goes along a line.
+  /// Advances by a step [s] in which the oil's torque is linear in time.
   void follow(int mode, double step, double lag, double from, double to) noexcept {
     const double behind = lag * (to - from) / step, before = torque[mode];
     torque[mode] = to - behind + std::exp(-step / lag) * (before - from + behind);

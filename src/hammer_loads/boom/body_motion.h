@@ -1,4 +1,4 @@
-/// Newton and Euler for the links of a chain: how each moves, and the load of its inertia on what holds it.
+/// Newton-Euler recursion of the links of a chain: motion of each link, and the load of its inertia on its joint.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct PlacedBody {
 };
 using PlacedBodies = std::array<PlacedBody, kMaxLinks>;  ///< index of links as in Chain
 
-/// Index of links as in Chain; the root has no load: its own goes into the ground.
+/// Index of links as in Chain. The root has no entry, since its load goes into the ground.
 struct ChainLoads {
   std::array<BodyMotion, kMaxLinks> motion;  ///< accelerations less gravity
   std::array<Wrench, kMaxLinks> beyond;      ///< by inertia and weight of a link and all beyond it, in the root's frame

@@ -67,7 +67,7 @@ std::vector<Section> makeSections(const std::vector<SectionParameters>& given, c
   return sections;
 }
 
-/// A joint on oil needs inertia about its axis, else it would vibrate at an infinite frequency.
+/// A joint with a cylinder needs inertia about its axis; otherwise its frequency would be infinite.
 void checkInertia(const Chain& chain, const std::vector<Cylinder>& cylinders, std::vector<std::string>& problems) {
   JointVector middle(chain.joints());
   for (int j = 0; j < chain.joints(); ++j) {

@@ -61,7 +61,7 @@ struct RigidVerdict {
   bool suffices{};  ///< true if the error is within rigid_tolerance
 };
 
-/// Boom with its vibration. For each sample call move() when the boom moved, advance() for the vibration if wanted,
+/// Boom with its vibration. Call for each sample move() if the boom has moved, advance() if the vibration is wanted,
 /// then loads(). After make() nothing allocates or throws; loads() reports an input whose results are not finite.
 class Boom {
  public:
@@ -136,9 +136,9 @@ class Boom {
   /// zeros of the joints' sensors. They are equal in all samples at a pose. Values of the last deviations(), zero
   /// before.
   const JointVector& weightDeviation() const noexcept { return weight_std_; }
-  /// Standard deviations of the joints' torques by bending of the links as the boom vibrates [N m]: a mass beyond the
-  /// middle of a link follows the joints, the link's own mass less. Zero without vibration. Values of the last
-  /// deviations().
+  /// Standard deviations of the joints' torques by bending of the links as the boom vibrates [N m]. A mass beyond the
+  /// middle of a link follows the joints; the link's own mass follows them less. Zero without vibration. Values of the
+  /// last deviations().
   JointVector bendingDeviation() const noexcept;
   /// Faults of a cylinder under these loads, sum of CylinderFlag. The steady part is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
@@ -193,7 +193,7 @@ class Boom {
   Eigen::Index in_plane_{};
   JointVector weight_std_;     ///< at response_at_
   JointMatrix bending_;        ///< at response_at_: torque of a joint per N m/s2 at the middle of a link [s2]
-  JointVector response_at_;    ///< steady_position_ where it belongs; NaN: nowhere yet
+  JointVector response_at_;    ///< steady_position_ for which response_ was found; NaN before
   Eigen::VectorXd variance_;   ///< one entry a row of response_in_plane_
   Eigen::VectorXd deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();

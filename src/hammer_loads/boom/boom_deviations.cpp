@@ -136,8 +136,9 @@ double Boom::ownInertia(int link, int joint, int other) const noexcept {
   return a.dot(body.inertia * b) + body.mass * a.cross(com - pose_.p_BJ_B[j]).dot(b.cross(com - pose_.p_BJ_B[k]));
 }
 
-/// A link that gives in its middle by 1/(kBending^2 J) per moment there, J the inertia of what turns: all beyond turns
-/// as both its joints do by half of that, and its own mass does not as the one before it would.
+/// Bending of a link, modelled as a hinge in its middle of compliance 1/(kBending^2 J), where J is the inertia beyond
+/// it. All beyond turns by half of the hinge's angle at each of both joints; the link's own mass does not turn with the
+/// joint before it.
 JointMatrix Boom::findBending() const noexcept {
   const BoomModes& modes = vibration_.modes();
   JointMatrix by_moment = JointMatrix::Zero(chain_.joints(), std::max(0, modes.count - 1));

@@ -43,7 +43,7 @@ void checkRange(const CylinderParameters& p, std::vector<std::string>& problems)
     problems.push_back(format("%s_linkage_branch: %.9g, must be 1 or -1", p.name.c_str(), p.linkage->branch));
 }
 
-/// Friction, and what is off with sensors.
+/// Friction and sensor errors.
 void checkOptional(const CylinderParameters& p, std::vector<std::string>& problems) {
   const auto within = [&](const char* key, double value, const char* unit, double least, double most) {
     if (value >= least && value <= most) return;
@@ -150,7 +150,7 @@ Cylinder::Reach Cylinder::worstReach(const Chain& chain) const {
     if (miss > worst.miss) worst = {miss, angle, length};
   };
   judge(lower), judge(upper);
-  if (linkage_) {  // longest and shortest between them are 1e-6 of a length off
+  if (linkage_) {  // the extremes between two steps are off by 1e-6 of a length
     constexpr int kSteps = 1000;
     for (int i = 1; i < kSteps; ++i) judge(lower + (upper - lower) * i / kSteps);
     return worst;

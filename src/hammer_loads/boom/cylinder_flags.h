@@ -8,8 +8,9 @@
 namespace hammer_loads {
 
 enum CylinderFlag : std::uint16_t {
-  kChamberEmpty = 1,   ///< a chamber's oil would have to pull: it parts, and the cylinder is softer than computed
-  kForceReversed = 2,  ///< the force is against the steady one: the pins cross their clearance
+  kChamberEmpty =
+      1,  ///< a chamber's pressure would be negative: its oil cavitates, and the cylinder is softer than computed
+  kForceReversed = 2,  ///< the force opposes the steady one: the pins cross their clearance
   kReliefReached = 4,  ///< a chamber carries its relief pressure: the valve opens, the joint yields
   kZeroMomentArm = 8,  ///< the cylinder does not hold the joint
 };

@@ -5,7 +5,7 @@
 namespace hammer_loads {
 namespace {
 
-/// The part of it up to `end` [-] goes out, the rest stays.
+/// Removes and returns the part up to `end` [-]; the rest remains.
 HeldForces::Piece cut(HeldForces::Piece& piece, double end) noexcept {
   const ModeVector bump = 6.0 * (piece.mean - 0.5 * (piece.from + piece.to)), rise = piece.to - piece.from;
   HeldForces::Piece first;

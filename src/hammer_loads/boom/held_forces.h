@@ -1,4 +1,5 @@
-/// Forces of the hammer that a filter in its sensors' time has not reached yet, and those about a reading.
+/// Forces of the hammer that a filter delayed to the time of its sensors has not reached yet, and the forces about a
+/// reading.
 #pragma once
 
 #include <array>
@@ -10,7 +11,8 @@
 
 namespace hammer_loads {
 
-/// A line of pieces, modal: in at the end as the crank shows them, out at the front. No allocation.
+/// Queue of pieces of the modal forces. The crank appends them at the end; the filter takes them from the front. No
+/// allocation.
 class HeldForces {
  public:
   /// Linear between its ends but for the mean, as TorqueStep; a blow may end it.
@@ -29,8 +31,8 @@ class HeldForces {
   void strike(const ModeVector& jump) noexcept;
   /// Takes at most this much of the front [s] as one piece, less where a blow ends it. At least one must be held.
   Piece take(double most) noexcept;
-  /// Forces at a time after the front [s] >= 0, and the jumps of the velocities by blows up to there. Beyond the known
-  /// forces the last one counts; if none is held, `present`.
+  /// Forces at a time after the front [s] >= 0, and the jumps of the velocities by blows until then. After the last
+  /// known force that one is returned; `present` if the queue is empty.
   Driven drivenAt(double ahead, const ModeVector& present) const noexcept;
   /// each(piece), from the front on.
   template <typename Each>

@@ -1,4 +1,4 @@
-/// Ability of the machine to press the hammer onto the rock, by its weight and its cylinders.
+/// Hold-down capacity of the machine, limited by its weight and its cylinders.
 #pragma once
 
 #include <array>
@@ -21,10 +21,11 @@ struct Supports {
 /// Factors by which a mean load may act before a support or a cylinder yields. Infinity: the load relieves it, or the
 /// machine's supports are not known; 0: it yields already.
 struct HoldDown {
-  double machine{};                           ///< before the machine tips over an edge of its supports or lifts
-  int edge{};                                 ///< edge of machine: 0 front, 1 left, 2 rear, 3 right
-  std::array<double, kMaxJoints> cylinder{};  ///< before a relief valve opens or at a zero moment arm, per cylinder
-  double least{};                             ///< smallest of all factors
+  double machine{};  ///< factor at which the machine tips over an edge of its supports or lifts
+  int edge{};        ///< edge of machine: 0 front, 1 left, 2 rear, 3 right
+  std::array<double, kMaxJoints>
+      cylinder{};  ///< factor at which a relief valve opens, per cylinder; 0 at a zero moment arm
+  double least{};  ///< smallest of all factors
   bool holds() const noexcept { return least >= 1.0; }
 };
 

@@ -1,4 +1,4 @@
-/// Motion of each mode in the last few milliseconds, to which a reading with a late stamp belongs.
+/// Motion of each mode in the last few milliseconds, for readings with late stamps.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@ namespace hammer_loads {
 /// One entry a mode; zero for unused modes.
 using ModeVector = Eigen::Matrix<double, kMaxJoints, 1>;
 
-/// Forces of the hammer at an instant, modal, and what blows from the present to there make of the velocities: less
-/// than nothing where they have been [m sqrt(kg)/s].
+/// Modal forces of the hammer at an instant, and the change of the modal velocities by blows between the present and
+/// that instant, negative for an instant in the past [m sqrt(kg)/s].
 struct Driven {
   ModeVector force = ModeVector::Zero(), jump = force;
 };
 
-/// The last steps of all modes, each from its begin to its end: between two of them blows and readings change what is
-/// known. No allocation.
+/// Last steps of all modes, each with the states at its begin and its end. Blows and readings change the state between
+/// two steps. No allocation.
 class ModeHistory {
  public:
   static constexpr std::size_t kSteps = 64;  ///< 12 ms at 5 kHz
@@ -46,7 +46,7 @@ class ModeHistory {
     double ago{};         ///< [s]
     double since{};       ///< time since its step's begin [s]
   };
-  /// Finds the place at a time before the present [s]. Returns false if that is too long ago.
+  /// Finds the place at a time before the present [s]. Returns false if the history does not reach it.
   bool find(double ago, Place& place) const noexcept;
   /// A mode at an instant, with the force of the hammer, modal, and that by the second.
   struct Moment {

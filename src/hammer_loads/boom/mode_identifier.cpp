@@ -16,7 +16,7 @@ constexpr double kDampingWalk = 0.01;  // per second, of log damping
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
 // Prior: kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // random walk of the rock's force [N/sqrt(s)]
-constexpr double kContactWalkSeen = 3e5;  // with an IMU, which shows each landing: landings are no noise then
+constexpr double kContactWalkSeen = 3e5;  // with an IMU, which shows each landing: a landing is then no noise
 // Prior: kContactWalkSeen
 constexpr double kUnknownContact = 1e4;  // deviation of the rock's force at the start [N]
 // Prior: kContactWalk, kUnknownContact
@@ -81,7 +81,7 @@ void ModeIdentifier::setModes(const BoomModes& given, const LogOil& stiffer) noe
   useOil();
 }
 
-/// Displacements and velocities of the modes by T; frequencies, dampings and offsets stay.
+/// Transforms the displacements and velocities of the modes by T. Frequencies, dampings and offsets are unchanged.
 void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   const auto apply = [&](double* values, int stride) {  // in the states' order
     withCount<3>(count_, [&](auto count) {
@@ -230,7 +230,8 @@ void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, k
   }
 }
 
-/// P <- P + Q: forces that are wrong, oil that warms up; where readings do not fit, what was found may be wrong.
+/// P <- P + Q: errors of the forces and changes of the oil's temperature; more where readings contradict the identified
+/// values.
 void ModeIdentifier::walk(int mode, double step) noexcept {
   const int x = at(mode, kX);
   const double v_walk = square(kForcePart) * force_power_[static_cast<std::size_t>(mode)] * 2.0 * kForceTime * step;
@@ -244,7 +245,7 @@ void ModeIdentifier::walk(int mode, double step) noexcept {
   wander(x + kDamping, kDampingWalk, kDampingDeviation);
 }
 
-/// The rock's force wanders within the step as well, and the modes' velocities with it.
+/// The random walk of the rock's force within the step also changes the modes' velocities.
 void ModeIdentifier::walkContact(double step) noexcept {
   const double force = square(bears_ && imuSpeaks() ? kContactWalkSeen : kContactWalk) * step;
   covariance_(kContact, kContact) += force;

@@ -1,4 +1,4 @@
-/// Stiffness of each cylinder's oil and damping of the boom's modes, followed from what sensors see of its vibration.
+/// Stiffness of each cylinder's oil and damping of the boom's modes, identified from sensor readings of the vibration.
 #pragma once
 
 #include <algorithm>
@@ -19,34 +19,36 @@
 
 namespace hammer_loads {
 
-/// Time by which an angle is ahead of the crank [s], and its standard deviation.
+/// Time by which the measured crank angle leads the crank [s], and its standard deviation.
 struct CrankLead {
   double mean{}, deviation{};
 };
 
 /// Extended Kalman filter: per mode displacement, velocity and logarithm of damping over the given one; per cylinder
-/// the logarithm of its oil's stiffness over that of the modes given; per channel an offset. Steps are those of
-/// Vibration, with readings in any order between them. No allocation. Frequencies are of second order in the identified
-/// stiffnesses, and shapes are those of the modes given; the caller therefore gives new modes before the stiffnesses
-/// are far away.
+/// the logarithm of its oil's stiffness over that of the modes given; per channel an offset. The steps are those of
+/// Vibration, with readings in any order between them. No allocation. Frequencies are expanded to second order in the
+/// identified stiffnesses, and the mode shapes are those given. The caller therefore provides new modes before the
+/// stiffnesses have changed much.
 ///
-/// First guesses: stiffnesses wrong by 30 % together and each beside by its own deviation, damping by a factor 1.6.
-/// Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
+/// Prior: a common error of 30 % of all stiffnesses, an own error of each, and a factor of 1.6 of the damping. The
+/// forces on the boom have independent errors of 5 % of their root mean square, correlated over 10 ms.
 ///
-/// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
-/// should be, stiffnesses and damping are those given. Where no oil has explained them yet it is sought once more from
-/// those given before that is said, with modes that follow it at once (seeks()): one cylinder that is much softer makes
-/// other shapes. At first they wait until frequencies are known, since stamps that are late would lead them far away.
+/// A hull that bounces on rock is moved by forces that the model lacks. While the residuals of the accelerations are
+/// twice their expected size, the given stiffnesses and damping are used. If no stiffness has explained the
+/// accelerations so far, the identification restarts once from the given values, with modes that are recomputed at each
+/// step (seeks()), because a cylinder that is much softer changes the mode shapes. Initially the modes are kept until
+/// the frequencies are known, since late stamps would lead the estimate far away.
 ///
-/// Stamps of sensors with a clock of their own may be late, each clock's by one time, a random walk. The filter lives
-/// in the IMU's time: the hammer's forces and blows act later by its delay, which is what shows it; pressures are late
-/// beside it by another. From 0.2 s on after the frequencies are known delays are followed, and for a second
-/// frequencies and damping count as less known again. Their jitter about that, as behind a bus, is learned from the
-/// residuals. A crank whose angle leads, as by a zero that is off, makes all sensors look late alike: what its model
-/// expects of that (expectCrankLead()) is taken for the crank's, and the motion given in the sensors' time.
+/// Sensors with clocks of their own may have late stamps. Each clock has one delay, a random walk. The filter runs in
+/// the IMU's time: the hammer's forces and blows act later by the IMU's delay, which makes the delay observable; the
+/// pressures have a delay relative to the IMU. Delays are estimated from 0.2 s after the frequencies are known; for a
+/// second, the variances of frequencies and damping are inflated. The jitter of the stamps, as behind a bus, is
+/// estimated from the residuals. A leading crank angle, as by a wrong zero, makes all sensors look equally late. The
+/// part of it that the crank's model expects (expectCrankLead()) is attributed to the crank, and the motion is returned
+/// in the sensors' time.
 ///
-/// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
-/// 6 ms, in 1 ms where an IMU shows it. Pressures show the displacements; the force is what these need.
+/// The rock's force is a further state where followContact() was called: a random walk whose intensity fits a landing,
+/// 10 kN in 6 ms, or in 1 ms with an IMU. The pressures measure the displacements, which determine the force.
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
@@ -56,57 +58,61 @@ class ModeIdentifier {
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
   // Prior: kLeftFrequency, kLeftDamping
 
-  /// learns: stiffnesses and damping; else they are exact as given, and only the motion is followed. own_std: of
-  /// each cylinder's oil against the common one, standard [-].
+  /// learns: stiffnesses and damping are identified; otherwise the given values are exact, and only the motion is
+  /// estimated. own_std: of each cylinder's oil against the common one, standard [-].
   explicit ModeIdentifier(double damping_ratio, bool learns = true,
                           const LogOil& own_std = LogOil::Constant(CylinderParameters::kStiffnessDeviation));
 
-  /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
-  /// of the joints carry over, and what is found. stiffer: logarithms of their oil's stiffness over the last ones'.
+  /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. The displacements and
+  /// velocities of the joints and the identified values are kept. stiffer: logarithms of their oil's stiffness over the
+  /// last ones'.
   void setModes(const BoomModes& given, const LogOil& stiffer = LogOil::Zero()) noexcept;
   /// Logarithms of each cylinder's stiffness over that of the modes given [-].
   LogOil oil() const noexcept;
   /// Covariance of the logarithms of two cylinders' stiffnesses [-].
   double oilCovariance(int one, int other) const noexcept { return covariance_(at(one, kOil), at(other, kOil)); }
-  /// Over a step [s], as Vibration::advance(), by its modal forces.
+  /// Advances by a step [s] under modal forces, see Vibration::advance().
   void advance(double step, const TorqueStep& modal) noexcept;
   /// Applies a blow, see Vibration::strike().
   void strike(const JointVector& impulse) noexcept;
-  /// Vibration unknown, as after a gap; what is known of frequencies and damping stays. swing: how far each mode goes
-  /// as a rule, standard [m sqrt(kg)]; empty: not known.
+  /// Resets the motion, as after a gap, and keeps the frequencies and damping. swing: standard deviation of each mode's
+  /// displacement [m sqrt(kg)]; empty: not known.
   void forgetMotion(const JointVector& swing = {}) noexcept;
-  /// From now on a force of the rock is followed; torque: on the joints per newton of it [N m/N]. Call at each pose.
+  /// Estimates the rock's force from now on. torque: joint torques per newton of it [N m/N]. Call at each pose.
   void followContact(const JointVector& torque) noexcept;
   /// Sets whether the rock bears on the hull, by the mean of that force.
   void bear(bool bears) noexcept { bears_ = bears; }
-  /// No more: the hull counts as free.
+  /// Ends the estimate of the rock's force; the hull is free.
   void leaveContact() noexcept;
-  /// Sets whether frequencies and damping are kept, whatever the next readings show; the motion is followed all the
-  /// same. This is for a hammer at rest. No known force excites the boom then, and noise and the walk of the rock's
-  /// force would be taken for soft oil, by a factor e of frequency in half a minute.
+  /// Sets whether frequencies and damping are kept while the motion is still estimated. This is for a hammer at rest.
+  /// No known force excites the boom then, and noise and the walk of the rock's force would be taken for soft oil, by a
+  /// factor e of frequency in half a minute.
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
-  /// By how much time the crank's angle leads as far as its own model knows [s].
+  /// Sets the lead of the crank's angle that the crank's model expects [s].
   void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
   /// Sets a cylinder's seals: the known part of their friction acts on the modes, the rest damps them.
   void setSeals(std::size_t cylinder, const Seals& seals) noexcept { seals_[cylinder] = seals; }
-  /// Readings of one instant by one clock, at the present time or a little before. A channel in [0, kMaxChannels) keeps
-  /// its offset; others, and values that are no number, do not count. A reading far off counts less. Three at a time,
-  /// but each pressure by itself, are linear about what was known before them.
+  /// Updates by readings of one instant and one clock, at the present time or a little before. Each channel in [0,
+  /// kMaxChannels) has an offset; readings of other channels and values that are not finite are ignored. A reading far
+  /// from its prediction has less weight. Three readings at a time are linearised about the state before them; each
+  /// pressure is linearised separately.
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
-  /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them, or may yet turn out to be.
+  /// True if the accelerations agree with hammer, oil and, if it is estimated, the rock's force, or if they may still
+  /// come to agree.
   bool explains() const noexcept { return explains_ || (learns_ && !seeks_ && explained_for_ <= kProven); }
   bool imuStampsJitter() const noexcept { return jitterVariance(Clock::kImu, 0) > 0.0; }  ///< beyond its delay
-  /// By which the readings of an IMU are to be given later: its stamps are early [s].
+  /// Time by which an IMU with early stamps must be read later [s].
   double waiting() const noexcept { return waiting_; }
   /// True if the identified oil is refuted: the caller gives modes of the nominal oil.
   bool forgets() const noexcept { return !explains_; }
-  /// Give modes of the oil as it is found, known or not.
+  /// True if the caller must provide modes of the current estimate of the oil, even if it is uncertain.
   bool seeks() const noexcept { return seeks_; }
-  /// Returns true if the delay of the pressures is identified, against an IMU: alone they show delay and oil together.
+  /// Returns true if the delay of the pressures relative to an IMU is identified. Without an IMU, delay and oil cannot
+  /// be separated.
   bool knowsLag() const noexcept { return isDelayFollowed(Clock::kPressures) && imuSpeaks(); }
-  /// Mean square of the errors of predicted oil torques over their variance, of some 1 s [-]: right pressures at 500 Hz
-  /// have 0.3 to 0.7, one of 20 machines 1.2 for a moment; those that lag by 5 ms 1.2 and more. 0 where nothing is
-  /// learned.
+  /// Mean square of the innovations of the oil torques over their variance, averaged over 1 s [-]. Correct pressures at
+  /// 500 Hz have 0.3 to 0.7 (one of 20 machines briefly 1.2), pressures that lag by 5 ms have 1.2 and more. 0 without
+  /// identification.
   double oilSurprise() const noexcept { return learns_ ? oil_surprise_ : 0.0; }
 
   int modes() const noexcept { return count_; }
@@ -119,26 +125,30 @@ class ModeIdentifier {
   double dampingVariance(int mode) const noexcept;    ///< variance of the logarithm of the damping [-]
   double frequencyDeviation(int mode) const noexcept { return std::sqrt(frequencyVariance(mode)); }  ///< standard
   double dampingDeviation(int mode) const noexcept { return std::sqrt(dampingVariance(mode)); }      ///< standard
-  /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
+  /// True if the frequency of every mode is known to 3 %, which is better than most given stiffnesses.
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
-  /// Frequencies and damping are yet to be found with the delay of an IMU that speaks.
+  /// True if frequencies and damping have yet to be identified together with the delay of a present IMU.
   bool waitsForDelay() const noexcept { return unlearns_for_ > 0.0 || (imuSpeaks() && !isDelayFollowed(Clock::kImu)); }
-  /// Torque on a cylinder's joint by damping beyond that given, rms of an oscillation [N m]; not in the pressures.
+  /// Torque on a cylinder's joint by damping in excess of the given one, rms over an oscillation [N m]. The pressures
+  /// do not contain it.
   double dampingBesideOil(std::size_t cylinder) const noexcept;
   ModeState motion(int mode) const noexcept;  ///< estimated motion
-  /// Modal torque of the oil as pressures show it whose stamp is this time [s] after the present, or before it.
+  /// Modal torque of the oil that pressures show with a stamp this long [s] after the present, or before it if
+  /// negative.
   double oilTorqueRead(int mode, double ahead) const noexcept;
   JointVector displacement() const noexcept;  ///< estimated displacement of the joints [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
-  double contact() const noexcept { return state_[kContact]; }  ///< the rock's force [N]; below 0: an error
+  double contact() const noexcept {
+    return state_[kContact];
+  }  ///< the rock's force [N]; a negative value is an estimation error
   double contactDeviation() const noexcept { return std::sqrt(covariance_(kContact, kContact)); }  ///< standard [N]
-  /// By which a clock's stamps are late [s]; 0 as long as it is not followed.
+  /// Delay of a clock's stamps [s]; 0 until it is estimated.
   double delay(Clock clock) const noexcept;
-  /// Standard [s]; less known where one clock's delay may be another's.
+  /// Standard deviation [s]; larger where the delays of two clocks cannot be separated.
   double delayDeviation(Clock clock) const noexcept;
-  /// By how much time the crank's angle leads, as its model expects and the sensors show [s].
+  /// Lead of the crank's angle by its model and the sensors [s].
   double crankLead() const noexcept { return crank_lead_; }
   /// Covariance of the errors of the modes' accelerations [m2 kg/s4].
   JointMatrix accelerationCovariance() const noexcept;
@@ -147,7 +157,7 @@ class ModeIdentifier {
   static constexpr double kDelayDeviation = 2e-3;  ///< standard deviation of a delay that is not known [s]
   // Prior: kDelayDeviation
   static constexpr double kForcePart = 0.05;  ///< deviation of the modal force over its root mean square
-  static constexpr double kForceTime = 0.01;  ///< for which a force stays wrong the same way [s]
+  static constexpr double kForceTime = 0.01;  ///< correlation time of a force error [s]
   // Prior: kForcePart, kForceTime
   static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
@@ -158,7 +168,8 @@ class ModeIdentifier {
 
   static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }
   static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
-  /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
+  /// Offsets are stored from the modes downwards in the order of their first use, so that the states in use form one
+  /// block.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
   int begin() const noexcept { return (kMaxChannels - channels_) / 2 * 2; }  // an even place
   int end() const noexcept { return kModes + kParts * count_; }
@@ -180,8 +191,9 @@ class ModeIdentifier {
     return clock == Clock::kCrank ? 0.0 : imuDelay() + (clock == Clock::kPressures ? pressureLag() : 0.0);
   }
   double delayVariance(Clock clock) const noexcept;
-  /// Delay of a mode's oscillation in a clock's readings [s], by the sensors' time, and the amplitude that is left. A
-  /// delay of pressures against an IMU comes from a hose: it delays by less than its time constant, and attenuates.
+  /// Delay of a mode's oscillation in a clock's readings [s], in the sensors' time, and the remaining amplitude. A
+  /// delay of pressures relative to an IMU is caused by a hose, which delays by less than its time constant and
+  /// attenuates.
   struct Lag {
     double held{}, left{1.0};
   };
@@ -212,8 +224,8 @@ class ModeIdentifier {
   bool imuSpeaks() const noexcept;
   bool mayYetExplain() const noexcept;
   bool isExplained() const noexcept;
-  /// [s]: of agreement with the oil, which does not change from one second to the next; of frequencies that were lost,
-  /// or are unlearned; of a hull without rock, whose mean force has no longer memory.
+  /// Durations [s]: of agreement with the identified oil, which does not change within a second; of lost frequencies;
+  /// of inflated variances; of a hull without rock, the memory of the mean force.
   static constexpr double kProven = look_back::kFiveTurns;
   double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< factor on the variance of the pressures
   double byDelay(Clock clock, const State& row) const noexcept;
@@ -221,7 +233,7 @@ class ModeIdentifier {
   StateList keptStates() const noexcept;
   struct Seen;
   using SeenModes = std::array<Seen, kMaxJoints>;
-  /// A reading; by the second; what its instant's deviation makes of it beside that.
+  /// Predicted reading, its rate, and its change by the second order of the instant's error.
   struct Predicted {
     double value{}, rate{}, bend{};
   };
@@ -256,32 +268,32 @@ class ModeIdentifier {
   double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_, keeps_oil_{};
   LogOil own_std_;
-  double known_for_{};  ///< time for which every frequency has been known, until a delay is followed [s]
-  double lost_for_{};   ///< time for which one has not been since then [s]
+  double known_for_{};  ///< time since every frequency has been known, until a delay is estimated [s]
+  double lost_for_{};   ///< time for which a frequency has been lost since then [s]
   bool explains_{true}, seeks_{};
-  double explained_for_{};    ///< time for which readings have agreed with the oil that was found [s]
-  double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
-  double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]
+  double explained_for_{};    ///< time for which readings have agreed with the identified oil [s]
+  double oil_surprise_{1.0};  ///< mean square of the oil torques' innovations over its expectation [-]
+  double surprise_{1.0};      ///< mean square of the accelerations' innovations over its expectation [-]
   BoomModes modes_;
   ModeHistory history_;
   int count_{};
   bool follows_contact_{};
   ModeVector contact_ = ModeVector::Zero();  ///< modal force of the rock per newton
   bool bears_{};                             ///< the rock bears on the hull
-  double free_for_{};                        ///< time for which it has not, while pressures came [s]
+  double free_for_{};                        ///< time for which it has not, while pressures were received [s]
   CrankLead expected_lead_;
   double crank_lead_{};
-  double unlearns_for_{};      ///< time for which what was found still counts as less known [s]
+  double unlearns_for_{};      ///< remaining time of the inflated variances [s]
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
   HeldForces held_;
   std::optional<BehindHose> behind_hose_;  ///< torques behind the hoses, where they are followed
-  double waiting_{};                       ///< by which the sensors' time is behind the crank's stamps [s]
-  std::optional<ModeVector> struck_;       ///< by a blow that has just been: of the velocities
+  double waiting_{};                       ///< time by which the sensors' time is behind the crank's stamps [s]
+  std::optional<ModeVector> struck_;       ///< jump of the velocities by a blow at the present instant
   bool moving_known_{};                    ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< aligned to cache lines: saves 10 % of a reading
   std::array<Seals, kMaxJoints> seals_;
-  /// Modal, at the present time; and by the second.
+  /// Modal forces at the present time, and their rates.
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
@@ -293,7 +305,7 @@ class ModeIdentifier {
   std::array<int, kMaxChannels> slot_{};          ///< state of each channel's offset; -1: not in use
   std::array<double, kMaxChannels> age_{};        ///< since the channel's last reading [s]
   std::array<Clock, kMaxChannels> clock_{};       ///< whose stamps it has
-  std::array<TimingNoise, kMaxChannels> jitter_;  ///< jitter of its stamps, as the channel shows it
+  std::array<TimingNoise, kMaxChannels> jitter_;  ///< jitter of its stamps, estimated by the channel
 };
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-// Delays of stamps: when they are followed, given up, and how far they are known.
+// Delays of stamps: start and end of their estimation, and their deviations.
 #include <algorithm>
 #include <cmath>
 
@@ -15,8 +15,9 @@ constexpr double kDelayWalk = 2e-5;  // random walk of a delay in a second [s]: 
 constexpr double kOilWithDelay = 0.1;      // deviation of log stiffness, beside what was known without a delay
 constexpr double kWrongPart = 0.05;        // relative error of an identified delay
 constexpr double kWrongByPressures = 0.3;  // by them alone
-constexpr double kDoubt = 0.6;             // deviations of an expected lead: they are large, see ConstantErrors
-constexpr double kWrongLead = 0.3;         // relative error of the crank's lead, which may be a sensor's
+constexpr double kDoubt =
+    0.6;  // number of deviations of an expected lead; the deviations are large, see ConstantErrors
+constexpr double kWrongLead = 0.3;  // relative error of the crank's lead, which may be a sensor's
 
 /// Value nearer to 0 of two of equal sign; else 0.
 double lesserOf(double a, double b) noexcept {
@@ -25,8 +26,8 @@ double lesserOf(double a, double b) noexcept {
 
 }  // namespace
 
-/// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. Their values
-/// without it may be wrong.
+/// Starts the estimation of a delay once the frequencies have been known for a while; earlier, a delay would compensate
+/// any other error. The frequencies found without the delay may be wrong.
 void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (!learns_ || isDelayFollowed(clock) || known_for_ < look_back::kTurn || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
@@ -54,20 +55,20 @@ void ModeIdentifier::advanceDelays(double step) noexcept {
     known_for_ = identified() ? known_for_ + step : 0.0;
     return;
   }
-  // Where the rock bears on a hull unseen, an identified delay imitates its force.
+  // An identified delay imitates the force of a rock that bears on the hull unnoticed.
   lost_for_ = identified() ? 0.0 : lost_for_ + step;
   if (lost_for_ > kProven) forgetOil();
 }
 
 bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < look_back::kHalfTurn; }
 
-/// On rock, and until it is clear that there is none, pressures alone do not show their delay: whatever force they lack
-/// may be the rock's.
+/// Pressures alone do not show their delay on rock, nor until it is clear that there is none, as any missing force may
+/// be the rock's.
 bool ModeIdentifier::delayShows(Clock clock) const noexcept {
   return clock == Clock::kImu || free_for_ > kProven || imuSpeaks();
 }
 
-/// By the crank's time.
+/// Delay relative to the crank's stamps.
 double ModeIdentifier::delayVariance(Clock clock) const noexcept {
   const auto& P = covariance_.block<2, 2>(kDelays, kDelays);
   return clock == Clock::kImu ? P(0, 0) : P.sum();
@@ -77,8 +78,8 @@ double ModeIdentifier::delay(Clock clock) const noexcept {
   return isDelayFollowed(clock) ? delayByCrank(clock) - crankLead() : 0.0;
 }
 
-/// Delay that all followed clocks have in common, as far as it is expected; the more the rest exceeds the expectation,
-/// the less of it counts. A sensor without delay shows no lead.
+/// Common delay of all clocks with an estimated delay, weighted by its agreement with the expected lead: the more the
+/// rest exceeds the expectation, the lower its weight. A sensor without delay shows no lead.
 double ModeIdentifier::findCrankLead() const noexcept {
   double common = 0.0;
   bool first = true;
@@ -96,12 +97,12 @@ ModeIdentifier::Lag ModeIdentifier::lagOf(Clock clock, int mode) const noexcept 
   const double late = pressureLag();
   if (!imuSpeaks() || !(late > 0.0)) return {late, 1.0};
   const double doubt = std::sqrt(covariance_(delayAt(clock), delayAt(clock)));
-  if (!(late > gate::kVeryRare * doubt)) return {late, 1.0};  // a hose is bent by it
+  if (!(late > gate::kVeryRare * doubt)) return {late, 1.0};  // only a hose causes so large a delay
   const double omega = modeAt(mode).omega, turned = omega * late;
   return {std::atan(turned) / omega, 1.0 / std::sqrt(1.0 + square(turned))};
 }
 
-/// A lag of first order, by a line over the step; a shorter one is seen well enough as that of each mode.
+/// First-order lag with a linear input over the step. A shorter lag is described well enough by a delay of each mode.
 void ModeIdentifier::followHose(double step, const States& now, const States& next) noexcept {
   const double late = pressureLag();
   if (!(late > step && lagOf(Clock::kPressures, 0).left < 1.0)) return behind_hose_.reset();
@@ -116,7 +117,7 @@ void ModeIdentifier::followHose(double step, const States& now, const States& ne
   }
 }
 
-/// Corrects the hose's torque by what readings have shown of the motion, taken as a free oscillation over the hose's
+/// Corrects the torque behind the hose by the correction of the motion, taken as a free oscillation over the hose's
 /// time constant.
 void ModeIdentifier::correctHose(const State& by) noexcept {
   if (!behind_hose_) return;
@@ -131,20 +132,20 @@ double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
   if (clock == Clock::kCrank) return 0.0;
   const double wrong = imuSpeaks() ? kWrongPart : kWrongByPressures;
   const double lead = crankLead();
-  double largest = 0.0;  // the delay of one clock may be that of the other
+  double largest = 0.0;  // the delays of both clocks cannot be separated
   for (Clock each : {Clock::kImu, Clock::kPressures})
     if (isDelayFollowed(each)) largest = std::max(largest, std::abs(delayByCrank(each) - lead));
   return std::sqrt(delayVariance(clock) + square(wrong * largest) + square(kWrongLead * lead));
 }
 
-/// Variance of what is predicted by a delay that is not followed yet: noise, so that the oil is not made what would
-/// have such stamps. Without an IMU pressures hardly show their delay, and it may never be followed.
+/// Variance of the prediction by a delay that is not estimated yet. It is treated as noise, so that the delay does not
+/// bias the oil. Without an IMU, pressures hardly show their delay, and it may never be estimated.
 double ModeIdentifier::byDelay(Clock clock, const State& row) const noexcept {
   if (!learns_ || clock == Clock::kCrank || !imuSpeaks() || isDelayFollowed(clock)) return 0.0;
   return square(kDelayDeviation * row[delayAt(clock)]);
 }
 
-/// Standard deviation of the instant of one of the IMU's readings [s].
+/// Standard deviation of the instant of an IMU reading [s].
 double ModeIdentifier::imuStampDeviation() const noexcept {
   const double unknown = learns_ ? square(kDelayDeviation) : 0.0;
   return std::sqrt((isDelayFollowed(Clock::kImu) ? delayVariance(Clock::kImu) : unknown) +

@@ -60,7 +60,7 @@ void ModeIdentifier::forgetOil() noexcept {
   setFirstGuesses();
 }
 
-/// Stiffnesses, damping and delay of the state, within bounds.
+/// Clamps stiffnesses, damping and delay of the state to their bounds.
 void ModeIdentifier::useOil() noexcept {
   for (int k = 0; k < count_; ++k) {
     double& oil = state_[at(k, kOil)];
@@ -78,7 +78,7 @@ void ModeIdentifier::useOil() noexcept {
   for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }
 
-/// Mean square over an oscillation of a mode's acceleration by damping beside the oil's.
+/// Mean square over an oscillation of a mode's acceleration by damping that is not the oil's.
 double ModeIdentifier::besideOil(int k) const noexcept {
   const Mode mode = modeAt(k);
   const ModeState now = stateOf(k);
@@ -98,7 +98,7 @@ ModeIdentifier::States ModeIdentifier::statesNow() const noexcept {
   return now;
 }
 
-/// Modal, against the joints' motion.
+/// Modal force of the seals against the joints' motion.
 ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
   ModeVector force = ModeVector::Zero();
   for (int i = 0; i < count_; ++i) {
@@ -142,8 +142,8 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
     with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
     for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
-    // The first term stands for damping beside the oil, which is neither linear nor of one mode; the rest for errors of
-    // the mode's shape.
+    // The first term is that of damping that is not the oil's, which is neither linear nor of a single mode; the rest
+    // is that of errors of the mode's shape.
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
     covariance(k, k) += besideOil(k) + square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +

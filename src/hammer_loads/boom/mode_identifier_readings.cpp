@@ -1,4 +1,4 @@
-// Readings: what a sensor shows of the modes, and what that says of their oil.
+// Updates by readings: their prediction from the modes, and the correction of modes and oil.
 #include <algorithm>
 #include <cmath>
 
@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kFarOff = gate::kRare;  // standard deviations beyond which a reading counts less
 constexpr double kSurpriseShare = 3e-4;  // weight of one reading in the mean of squares: 1.7 s at 1 kHz
-constexpr double kSurprised = 5.0;       // limit of that mean: at 4, one pose of eight on rock identified wrong oil
-constexpr double kCalm = 1.8;            // limit of that mean for agreement
+constexpr double kSurprised =
+    5.0;                       // limit of that mean: at 4, the oil was identified wrongly in one of eight poses on rock
+constexpr double kCalm = 1.8;  // limit of that mean for agreement
 constexpr double kWorstSurprise = square(gate::kImpossible);  // limit of the contribution of one reading
 constexpr std::size_t kTogether = 3;                          // readings that are linear about one state
 
@@ -43,7 +44,8 @@ double ModeIdentifier::oilTorqueRead(int mode, double ahead) const noexcept {
   return torqueRead(lag, mode, ahead, momentAt(mode, ahead + waiting_ - lag.held));
 }
 
-/// By pressures whose stamp is this time after the present. then: what the mode did when its swing was what they show.
+/// Oil torque in pressures whose stamp is this time after the present. then: the mode at the instant whose oscillation
+/// they show.
 double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead,
                                   const ModeHistory::Moment& then) const noexcept {
   if (behind_hose_ && lag.left < 1.0)
@@ -52,16 +54,15 @@ double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead,
   return force + lag.left * (torque - force);
 }
 
-/// View of a mode for readings of one instant. by_oil: decrease of its acceleration per unit of each logarithm of
-/// stiffness.
+/// Mode at the instant of a reading. by_oil: decrease of its acceleration per unit of each logarithm of stiffness.
 struct ModeIdentifier::Seen {
   ModeHistory::Moment then;
   std::array<double, kMaxJoints> by_oil;
   double acceleration, stiff, damped, rock;
-  double cosine, sine;           ///< derivatives of the state then by the displacement and velocity of now
-  double read{};                 ///< predicted reading of the oil's torque
-  double left{1.0}, fades_by{};  ///< amplitude of an oscillation behind a hose, and the part of it that one more second
-                                 ///< of delay takes
+  double cosine, sine;  ///< derivatives of the state then by the displacement and velocity of now
+  double read{};        ///< predicted reading of the oil's torque
+  double left{1.0},
+      fades_by{};  ///< amplitude of an oscillation behind a hose, and its relative decrease per second of delay
 };
 
 ModeIdentifier::Seen ModeIdentifier::see(int mode, double ahead) const noexcept {
@@ -99,7 +100,7 @@ ModeIdentifier::Predicted ModeIdentifier::findRow(const VibrationReading& readin
     const Seen& seen = modes[static_cast<std::size_t>(k)];
     const ModeState& then = seen.then.state;
     const double whole = by_oil,
-                 lost = by_oil * (1.0 - seen.left);  // of what swings about the forces; they themselves are not lost
+                 lost = by_oil * (1.0 - seen.left);  // of the oscillation about the forces, which the hose transmits
     by_oil *= seen.left;
     const double held = by_oil - by_a, damped = seen.damped * then.v, stiff = seen.stiff * then.x;
     const double of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
@@ -130,13 +131,14 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
   const double since_imu = imu_age_;
   if (clock == Clock::kImu) imu_age_ = 0.0;
   if (clock != Clock::kCrank) followDelay(clock);
-  for (std::size_t r = 0; r < count; ++r)  // all of them first: a new one makes the block of what is in use larger
+  for (std::size_t r = 0; r < count; ++r)  // all of them first, since a new one enlarges the block of states in use
     if (counts(readings[r])) useChannel(readings[r]);
   const State known = state_;
-  // An oil torque is a product of stiffness and displacement: three of them about one state cost a tenth of accuracy.
+  // An oil torque is a product of stiffness and displacement; linearising three of them about one state increases the
+  // error by a tenth.
   const std::size_t together = clock == Clock::kPressures ? 1 : kTogether;
   for (std::size_t first = 0; first < count; first += together) {
-    if (first > 0 && learns_) useOil();  // what the one before has shown
+    if (first > 0 && learns_) useOil();  // by the reading before
     take(readings + first, std::min(together, count - first));
   }
   correctHose(state_ - known);
@@ -147,9 +149,9 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
   if (clock != Clock::kCrank) crank_lead_ = findCrankLead();
 }
 
-/// Rock bears and never pulls. Where it seems to for longer than a force is wrong and by more than it is unsure, that
-/// is of offsets and of where the boom stands; of pressures later than clocks are, it is what a hose has left of the
-/// swing.
+/// Corrects a rock force that pulls. Rock only pushes: a pull that exceeds its deviation and lasts longer than a force
+/// error stems from offsets and from the pose. If the pressures lag more than clocks do, it stems from the attenuation
+/// by a hose.
 void ModeIdentifier::takeAsBearing(double step) noexcept {
   if (!follows_contact_ || pressureLag() > kDelayDeviation) return;
   const double pulls = -contactDeviation() - state_[kContact];
@@ -164,9 +166,9 @@ bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
   return reading.channel >= 0 && reading.channel < kMaxChannels && std::isfinite(reading.value);
 }
 
-/// A stiffness that is not known makes as much of a torque uncertain as there is of it. Where readings do not correct
-/// it, a motion that an IMU led astray would excuse itself by the large torque that it predicts: there it is that which
-/// was read.
+/// Limits the uncertainty of a torque by an unknown stiffness to the torque that was read. The uncertainty is
+/// proportional to the torque. A motion that an IMU has made wrong would otherwise be accepted because of the large
+/// torque that it predicts.
 void ModeIdentifier::excuseNoMoreThanRead(const VibrationReading& reading, double difference,
                                           State& row) const noexcept {
   if (!reading.of_oil || !keeps_oil_ || !imuSpeaks() || !exceeds(difference, square(reading.noise), kFarOff)) return;
@@ -175,7 +177,7 @@ void ModeIdentifier::excuseNoMoreThanRead(const VibrationReading& reading, doubl
   for (int i = 0; i < count_; ++i) row[at(i, kOil)] *= part;
 }
 
-/// Rows about one state, then one reading after the other.
+/// Finds the rows of all readings about one state, then updates by one reading after the other.
 void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) noexcept {
   SeenModes seen;
   States then;
@@ -233,15 +235,15 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
   takeBack(kept, difference / S, S, gain_S);
 }
 
-/// Accelerations may be off as those of an oil not yet found, or of stamps that are late.
+/// True while the errors of the accelerations may stem from an oil that is not identified yet or from late stamps.
 bool ModeIdentifier::mayYetExplain() const noexcept {
   return learns_ && !(identified() && (isDelayFollowed(Clock::kImu) || explained_for_ > kProven));
 }
 
-/// By the oil that was found.
+/// True if the identified oil explains the accelerations.
 bool ModeIdentifier::isExplained() const noexcept { return explains_ && surprise_ < kCalm && learns_ && identified(); }
 
-/// S of a reading, by the variance of what is predicted; 0: it does not count.
+/// Innovation variance S of a reading from the variance of its prediction; 0 if the reading is ignored.
 double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
   const double S = predicted + square(reading.noise) + square(reading.neglected);
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;

@@ -1,5 +1,5 @@
-// The sensors' time: hammer's forces and blows act on the modes as the IMU's stamps have them, the motion is that of
-// the crank's.
+// The sensors' time: forces and blows act on the modes at the IMU's stamps; the returned motion is that at the crank's
+// stamps.
 #include <algorithm>
 #include <cmath>
 
@@ -9,13 +9,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastStep = 0.25;  // part of the crank's step, where the delay has just been identified
+constexpr double kLeastStep = 0.25;  // part of the crank's step, just after the delay was identified
 // Numerical: kLeastStep
 
 }  // namespace
 
-/// The forces of so long that what is held then is the IMU's delay; it changes little in a step. Where its stamps are
-/// early it is the sensors' time that waits for the crank.
+/// Takes forces from the queue until the IMU's delay remains in it; the delay changes little in a step. With early
+/// stamps the sensors' time waits for the crank.
 void ModeIdentifier::takeForces(double step) noexcept {
   const double early = std::max(0.0, -imuDelay());
   const double own = std::max(kLeastStep * step, step + waiting_ - early);
@@ -51,7 +51,7 @@ void ModeIdentifier::takeBlow(const ModeVector& jump) noexcept {
   struck_ = jump;
 }
 
-/// A blow that comes a little later leaves so much less of what it has changed. force: by which it changes the forces.
+/// Correction for a blow that acts a little later. force: change of the forces by the blow.
 void ModeIdentifier::addBlowToDelay(const ModeVector& force) noexcept {
   for (int k = 0; k < count_ && isDelayFollowed(Clock::kImu); ++k) {
     const Mode m = modeAt(k);
@@ -66,20 +66,20 @@ void ModeIdentifier::addBlowToDelay(const ModeVector& force) noexcept {
   struck_.reset();
 }
 
-/// At the crank's stamps.
+/// State at the crank's stamp.
 ModeState ModeIdentifier::motion(int mode) const noexcept {
   return momentAt(mode, imuDelay() + waiting_ - crankLead()).state;
 }
 
-/// By the sensors' time.
+/// State in the sensors' time.
 ModeHistory::Moment ModeIdentifier::momentAt(int mode, double ahead) const noexcept {
   ModeHistory::Place place;
   if (ahead < 0.0 && history_.find(-ahead, place)) return history_.at(place, mode, modeAt(mode).omega, stateOf(mode));
   return momentAhead(mode, ahead);
 }
 
-/// Through what is held, by Taylor to the third order: some 1e-4 of it for 0.5 ms of the fastest mode. Beyond that, and
-/// before what history has, on with the last force.
+/// State carried through the queued forces by a Taylor series of third order, with an error of 1e-4 for 0.5 ms of the
+/// fastest mode. Beyond the queue, and before the history, the last force is kept.
 ModeHistory::Moment ModeIdentifier::momentAhead(int mode, double ahead) const noexcept {
   const Mode m = modeAt(mode);
   const double beside = forceOfSeals(statesNow())[mode] + rockOn(mode) * state_[kContact],

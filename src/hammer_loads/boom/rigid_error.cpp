@@ -11,11 +11,11 @@
 namespace hammer_loads {
 namespace {
 
-/// A step of a mode under a force sin(mu t), from any phase on: its state by itself, and what rest becomes by sine and
-/// cosine alone.
+/// Step of a mode under a force sin(mu t) from any phase: its free transition and its responses to sine and cosine from
+/// rest.
 struct PulseStep {
   ModeStep itself;
-  ModeState by_sine, by_cosine;  ///< the cosine is the sine's derivative over mu, and so is what it does
+  ModeState by_sine, by_cosine;  ///< the cosine is the sine's derivative over mu, and so is its response
 
   PulseStep() = default;
   PulseStep(const Mode& mode, double mu, double h) noexcept

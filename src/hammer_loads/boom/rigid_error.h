@@ -10,7 +10,7 @@ namespace hammer_loads {
 /// rest. Small when the pulse is long against the longest period; about 1 when it is short: then impulse times natural
 /// frequency, not the peak, is what the joints hold. Sampled, good to 1 %. 0 without modes or torque,
 /// infinity for one that is not finite.
-/// Neglects: what earlier pulses left (blow rate near a natural frequency).
+/// Neglects: vibration by earlier pulses (blow rate near a natural frequency).
 double rigidError(const BoomModes& modes, double damping_ratio, const JointVector& peak_torque,
                   double pulse_length) noexcept;
 

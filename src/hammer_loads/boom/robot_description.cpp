@@ -98,7 +98,7 @@ void checkJoint(const urdf::Joint& joint, std::vector<std::string>& problems) {
   }
 }
 
-/// Else the parsers that walk from link to link would not come to an end.
+/// Refuses loops, in which a parser that walks from link to link would not end.
 void checkIsTree(const urdf::ModelInterface& model, std::vector<std::string>& problems) {
   std::set<std::string> children;
   for (const auto& [name, joint] : model.joints_) {
@@ -118,7 +118,7 @@ void checkIsTree(const urdf::ModelInterface& model, std::vector<std::string>& pr
   }
 }
 
-/// Links that hang on each other would keep each other alive.
+/// Breaks cyclic references, which would keep the links alive.
 void release(const urdf::ModelInterface& model) {
   for (const auto& [name, link] : model.links_) link->child_links.clear();
 }

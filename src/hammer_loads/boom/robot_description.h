@@ -11,7 +11,7 @@ class ModelInterface;
 
 namespace hammer_loads {
 
-/// Text and tree of a URDF. All complaints are worded here, and none goes to the console. Copies share the tree.
+/// Text and tree of a URDF. All problems are reported here and none on the console. Copies share the tree.
 class RobotDescription {
  public:
   RobotDescription() : RobotDescription(std::string()) {}

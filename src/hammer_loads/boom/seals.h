@@ -22,7 +22,8 @@ struct Seals {
   }
 };
 
-/// By the boom file; arm [m/rad]; torque of the oil [N m]; driven: rate of the joint beside its vibration [rad/s].
+/// Seals by the boom file. arm [m/rad]; torque of the oil [N m]; driven: rate of the joint without its vibration
+/// [rad/s].
 inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, double driven) noexcept {
   // A rod's speed [m/s] near standstill, as Stribeck's.
   constexpr double kSlowRod = 0.002;

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-/// No product of it with lengths and levers of a chain that could be built overflows [N], [N m].
+/// Bound of a load; its products with the lengths and levers of any machine do not overflow [N], [N m].
 constexpr double kMostLoad = 1e200;
 // Numerical: kMostLoad
 

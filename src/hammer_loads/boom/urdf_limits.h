@@ -1,4 +1,4 @@
-/// Bounds of a robot description's text, checked before parsers that call themselves for each level of it.
+/// Bounds of a robot description's text, checked before it is given to recursive parsers.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace hammer_loads {
 
-/// Far beyond any machine, and far below what fills a thread's stack.
+/// The bounds exceed any machine and are far below what exhausts a thread's stack.
 struct UrdfLimits {
   static constexpr std::size_t kBytes = std::size_t{16} << 20;  ///< length of the text
   static constexpr int kDepth = 64;                             ///< tags within tags

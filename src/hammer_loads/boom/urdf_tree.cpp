@@ -22,7 +22,7 @@ KDL::Joint toKdl(const urdf::Joint& joint) {
   }
 }
 
-/// The description gives the inertia about the centre of mass in axes of its own, KDL wants the link's.
+/// The description states the inertia about the centre of mass in its own axes; KDL expects the link's axes.
 KDL::RigidBodyInertia toKdl(const urdf::InertialSharedPtr& body) {
   if (!body) return KDL::RigidBodyInertia::Zero();
   const KDL::Frame place = toKdl(body->origin);

@@ -1,4 +1,4 @@
-/// From a robot description to KDL's bodies. ROS has this as kdl_parser, which brings roscpp with it.
+/// Conversion of a robot description to KDL's bodies. kdl_parser of ROS does the same, but depends on roscpp.
 #pragma once
 
 #include <urdf_model/model.h>

@@ -11,7 +11,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kSmall = 0.1;      // [rad]
-constexpr double kOilStep = 0.003;  // by which the modes' oil is off before they are found again
+constexpr double kOilStep = 0.003;  // change of the log stiffness after which the modes are computed again
 // Numerical: kOilStep
 constexpr double kMostOil = ModeIdentifier::kMostOil;
 
@@ -41,7 +41,7 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   if (posed_ && farthest <= 0.5 * settings_.refresh_angle && stiffer.isZero(0.0)) return;
   const bool kept = posed_ && known();
   const JointVector displacement = jointsOf(modes_, x_), velocity = jointsOf(modes_, v_);
-  // Ahead of a moving boom, so that the modes are as often early as late and phases do not drift.
+  // Ahead of a moving boom, so that the errors of the modes cancel on average and phases do not drift.
   position_ = middle;
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
   if (!position_.allFinite()) position_ = position;
@@ -61,8 +61,8 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   }
 }
 
-/// Logarithm. Shapes and the weight's share are right only with the right oil, and what is found then holds at any
-/// pose.
+/// Logarithm of the stiffness for which the modes are computed. The shapes and the weight's share are right only with
+/// the right stiffness, which then holds at any pose.
 LogOil Vibration::oilToTake() const noexcept {
   const LogOil none = LogOil::Zero();
   if (!identifies() || !known()) return none;
@@ -154,8 +154,9 @@ void Vibration::leaveContact() noexcept {
   follows_readings_ = follows_readings_ && identifier_->learns();
 }
 
-/// A landing shakes the hull at once; whether it stands on rock at all shows in the mean. Where it does not, the mean
-/// is what the readings' motion needs beside the hammer: without it a hull that hangs in the air would carry a load.
+/// Judges contact by the mean of the rock's force. A landing acts at once, but only the mean shows whether the hull
+/// stands on rock. If it does not, the mean is an error of the motion's forces and is subtracted; otherwise a hull in
+/// the air would carry a load.
 void Vibration::useMotion() noexcept {
   const bool bears = identifier_->followsContact() && mean_contact_ > least_contact_;
   identifier_->bear(bears);
@@ -176,8 +177,8 @@ void Vibration::useIdentified() noexcept {
   for (int k = 0; k < modes_.count; ++k) modes_.omega[k] = modes_.given_omega[k] * identifier_->frequencyRatio(k);
 }
 
-/// Uncertainty of a logarithm of stiffness by damping beside the oil's. It belongs to no single mode, and the part of
-/// its force, 2 zeta of the stiffness's, that is in phase with the stiffness's is not known.
+/// Uncertainty of a logarithm of stiffness by damping that is not the oil's. Such damping belongs to no single mode,
+/// and the part of its force, 2 zeta of the stiffness's, that is in phase with the stiffness's is not known.
 double Vibration::oilDoubt(int cylinder) const noexcept {
   double doubt = 0.0;
   for (int k = 0; k < modes_.count; ++k)

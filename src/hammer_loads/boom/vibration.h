@@ -14,56 +14,59 @@ namespace hammer_loads {
 
 struct VibrationSettings {
   double damping_ratio{};  ///< damping ratio of every mode [-], in (0, 1)
-  double refresh_angle{};  ///< new modes for each such move of a joint; theirs is off by half of it [rad], >= 0
+  double refresh_angle{};  ///< move of a joint after which the modes are computed again; their pose is off by at most
+                           ///< half of it [rad], >= 0
 };
 
-/// Vibration of the joints about the pose that joint_states report. Between refreshes the modes stay; at a refresh
-/// displacements and velocities of the joints carry over, so that what the boom's own motion does to the energy is kept
-/// to first order. At a zero moment arm there is no answer (known() is false) and the boom comes to rest.
+/// Vibration of the joints about the pose that joint_states report. The modes are kept between refreshes. At a refresh
+/// the displacements and velocities of the joints are transformed, so that the effect of the boom's slow motion on the
+/// energy is right to first order. At a zero moment arm the vibration is not known (known() is false) and the boom
+/// comes to rest.
 ///
-/// The load must be the part that comes from motion relative to the hull, the links' mass being in the hull's already.
+/// The load must be the part by motion relative to the hull, since the hull's mass includes that of the moving links.
 class Vibration {
  public:
-  static constexpr double kSwingTime = look_back::kFiveTurns;  ///< over which swings are followed [s]
+  static constexpr double kSwingTime = look_back::kFiveTurns;  ///< averaging time of the vibration's amplitude [s]
 
   Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings);
 
   /// Pose at the end of the step that advance() takes next, g_B: gravity in the root's axes [m/s2]. Finds new modes
   /// when a joint has moved far enough.
   void setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
-  /// At rest without load, as after a gap in the samples; the next setPose() finds new modes.
+  /// Sets the boom at rest without load, as after a gap in the samples. The next setPose() computes new modes.
   void rest() noexcept;
   /// Resets to the start: at rest, frequencies and damping as given. This discards what wrong readings have identified.
   void startAnew() noexcept;
   /// Recent root mean square of each mode's displacement [m sqrt(kg)]; rest() leaves it as it is.
   JointVector usualSwing() const noexcept { return swing_.cwiseSqrt(); }
-  /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
+  /// Advances by a step [s] >= 0 of any size. Exact for torques that are linear between the ends plus a parabola with
+  /// the given mean.
   /// Where torques are so large that the state would not be finite, the boom comes to rest.
   void advance(double step, const TorqueStep& torque) noexcept;
   /// A blow's impulse as joint torque times time [N m s].
   void strike(const JointVector& impulse) noexcept;
 
-  /// Frequencies and damping as readings show them, from now on (`boom_stiffness: identified`).
+  /// Identifies frequencies and damping from now on (`boom_stiffness: identified`).
   void identify() { identifier_.emplace(settings_.damping_ratio, true, own_oil_); }
   bool identifies() const noexcept { return identifier_ && identifier_->learns(); }
-  /// See ModeIdentifier; nothing without identify().
+  /// See ModeIdentifier; no effect without identify().
   void keepOil(bool keep) noexcept {
     if (identifier_) identifier_->keepOil(keep);
   }
-  /// From now on the rock may bear on the hull: its force is followed with the motion that readings show. torque: on
-  /// the joints per newton [N m/N]; call at each pose. Where its mean over some 0.5 s is less than least_force [N] the
-  /// hull counts as free.
+  /// Estimates the force of the rock on the hull from now on, together with the motion. torque: joint torques per
+  /// newton [N m/N]; call at each pose. The hull is free while the mean of the force over 0.5 s is less than
+  /// least_force [N].
   void followContact(const JointVector& torque, double least_force) noexcept;
-  void leaveContact() noexcept;  ///< no more: the hull counts as free
-  /// By how much time the crank's angle, and the load with it, lead as far as is known. See ModeIdentifier.
+  void leaveContact() noexcept;  ///< ends the estimate of the rock's force; the hull is free
+  /// Sets the expected lead of the crank's angle, and thereby of the load. See ModeIdentifier.
   void expectCrankLead(const CrankLead& lead) noexcept {
     if (identifier_) identifier_->expectCrankLead(lead);
   }
-  /// See ModeIdentifier; nothing where it is not used.
+  /// See ModeIdentifier; empty where it is not used.
   void setSeals(std::size_t cylinder, const Seals& seals) noexcept {
     if (identifier_) identifier_->setSeals(cylinder, seals);
   }
-  /// A sensor's readings at the end of the last step, see ModeIdentifier; nothing without identify() or
+  /// Updates by a sensor's readings at the end of the last step, see ModeIdentifier. No effect without identify() or
   /// followContact().
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
   void observe(int channel, VibrationReading reading) noexcept {
@@ -75,7 +78,7 @@ class Vibration {
   struct OilAgainstOthers {
     double stiffer{}, deviation{}, expected{};
   };
-  /// Nothing while frequencies are not found, and without other cylinders.
+  /// Empty until the frequencies are identified, and for a single cylinder.
   std::optional<OilAgainstOthers> oilAgainstOthers(std::size_t cylinder) const noexcept;
   /// Stiffness of a cylinder's oil over that of the boom file: logarithm as identified, and its standard deviation,
   /// which includes the effect of damping beside the oil.
@@ -84,12 +87,12 @@ class Vibration {
   };
   /// Oil of a cylinder; none while frequencies are not identified.
   std::optional<OilFound> oilFound(std::size_t cylinder) const noexcept;
-  /// Filter that follows the readings, if one does.
+  /// Filter that estimates the motion from readings; null without one.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
-  /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
-  /// Else they are those of the hammer's load alone.
+  /// True if displacement and velocity are estimated from readings, as all frequencies are known or the rock bears on
+  /// the hull. Otherwise they are the response to the hammer's load alone.
   bool followsReadings() const noexcept { return follows_readings_; }
-  /// Force of the rock [N]. For a hull that counts as free: 0, or the mean force missing in the readings' motion.
+  /// Force of the rock [N]. For a free hull 0, or the mean force that the motion of the readings requires.
   double contact() const noexcept { return contact_; }
 
   bool known() const noexcept { return modes_.count > 0; }
@@ -99,11 +102,12 @@ class Vibration {
   double loadOn(int mode) const noexcept { return force_[mode]; }             ///< modal, at the end of the last step
   JointVector displacement() const noexcept;                                  ///< [rad], zero for held joints
   JointVector velocity() const noexcept;                                      ///< [rad/s]
-  /// Displacement a short step [s] on, by the velocity [rad]; zero where it is no small vibration any more.
+  /// Displacement after a short step [s], extrapolated by the velocity [rad]; zero where the vibration is no longer
+  /// small.
   JointVector displacementAfter(double step) const noexcept;
   JointVector acceleration() const noexcept;  ///< [rad/s2]
-  /// -M q'': what vibration adds to the static torque of the load, so that hammer + vibration = what the cylinders hold
-  /// (K q + C q') for the joints that they hold, and as above for the held ones [N m].
+  /// -M q'': torque of the vibration in addition to the static torque of the load [N m]. Hammer and vibration together
+  /// are the torque of the cylinders, K q + C q', at the joints with a cylinder, and the reaction at held joints.
   JointVector torque() const noexcept;
   /// Torque that the oil carries, K q + C q', and its rate; by the readings where they are followed [N m, N m/s]. With
   /// the weight's share of K: the torque beside that of the weight where the vibration has taken it.

@@ -22,8 +22,8 @@ struct VibrationReading {
   double ahead{};              ///< instant of the reading less the present one [s]; negative: it is older
   Clock clock{Clock::kCrank};  ///< clock whose stamps are late by ModeIdentifier::delay()
   double noise{};              ///< standard deviation of one reading, unit of value
-  double neglected{};    ///< part that modes cannot describe: it lowers the weight of the reading, but not the reaction
-                         ///< to a surprise
+  double neglected{};    ///< part that the modes cannot describe: it lowers the weight of the reading, but not the
+                         ///< reaction to a large innovation
   double offset_std{};   ///< standard deviation of its offset at the start, unit of value
   double offset_walk{};  ///< random walk of the offset in a second, unit of value
 };
@@ -33,10 +33,10 @@ VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, d
 /// Reading of an accelerometer at p along n [m/s2]: acceleration less gravity g (all in the tip's axes).
 VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
                                         const Eigen::Vector3d& g_T, double acceleration);
-/// A joint's angle [rad]: above 100 Hz it shows the vibration.
+/// Reading of a joint's angle [rad]. Sampled above 100 Hz, it shows the vibration.
 VibrationReading jointAngleReading(int joint, double angle);
-/// Torque of the load on a joint by its cylinder's measured force [N m] (-force times arm), less weight and motion:
-/// what the oil carries of hammer and rock.
+/// Torque of hammer and rock on a joint by its cylinder's measured force [N m]: -force times arm, less weight and
+/// motion.
 VibrationReading oilTorqueReading(int joint, double torque);
 
 }  // namespace hammer_loads

@@ -17,7 +17,7 @@ constexpr double kBelowCritical = 1e-6;  // distance to critical damping, relati
 void VibrationSpread::follow(const Vibration& vibration) noexcept {
   const BoomModes& now = vibration.modes();
   const bool same = now.count == modes_.count && now.count > 0 && now.shape == modes_.shape;
-  if (same && !vibration.identifies()) return;  // as it was
+  if (same && !vibration.identifies()) return;  // unchanged
   if (now.count != modes_.count) {
     modes_ = now;
     rest();
@@ -51,7 +51,7 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
   waits_ = vibration.followsReadings();
 }
 
-/// Starts the runs from the state known by readings, when these end.
+/// Starts the runs from the estimated state when the readings end.
 void VibrationSpread::start(const Vibration& vibration) noexcept {
   if (!waits_) rest();
   for (int k = 0; k < modes_.count; ++k) {
@@ -109,7 +109,7 @@ void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadS
   if (!finite) rest();
 }
 
-/// False: it is not finite any more.
+/// Returns false if the state is no longer finite.
 bool VibrationSpread::advanceRun(int run, double step, const Paths& force) noexcept {
   const auto i = static_cast<std::size_t>(run);
   double all = 0.0;

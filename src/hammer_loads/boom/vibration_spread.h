@@ -1,4 +1,4 @@
-/// Uncertainty of the vibration: the same hammer on oil that is stiffer, softer or more damped, and errors of its load.
+/// Uncertainty of the vibration by the stiffness and damping of the oil and by errors of the load.
 #pragma once
 
 #include <algorithm>
@@ -9,37 +9,37 @@
 
 namespace hammer_loads {
 
-/// Errors of the hammer's load that are independent of each other, one standard deviation each; they last, as that of
-/// an encoder's zero does. Columns: joint torques of each [N m].
+/// Independent and lasting errors of the hammer's load, such as that of an encoder's zero, one standard deviation each.
+/// Columns: joint torques of each [N m].
 using LoadSpread = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, 4>;
 
-/// Runs beside a Vibration, with its steps: one run for each thing that may be otherwise. Not linearised in the
-/// frequency, whose error changes phases. While the vibration follows readings its own errors are known better: the
-/// runs wait, and start from where it is. No allocation.
+/// Perturbed runs beside a Vibration, with its steps: one run for each uncertain quantity. They are not linearised in
+/// the frequency, whose error changes phases. While readings determine the vibration, its own covariance is better: the
+/// runs wait and later start from its state. No allocation.
 class VibrationSpread {
  public:
   static constexpr int kStiffer = 0, kSofter = 1, kDamped = 2, kLoads = 3, kMaxRuns = 7;
 
   explicit VibrationSpread(const OilDeviation& given = {}) : given_(given) {}
 
-  /// After Vibration::setPose(): its modes and, where they are identified, how well.
+  /// Takes the modes after Vibration::setPose() and, if they are identified, their standard deviations.
   void follow(const Vibration& vibration) noexcept;
-  /// Advances as Vibration::advance(); errors of the load at the step's end, linear from those at its begin.
+  /// Advances as Vibration::advance(). The errors of the load are those at the step's end, and linear over the step.
   void advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept;
   void strike(const JointVector& impulse) noexcept;
   void rest() noexcept;
-  /// At rest as far as is known; in truth each mode may swing so far, whatever its phase, and does so less and less.
-  /// swing: standard deviations [m sqrt(kg)].
+  /// Sets the estimated vibration to rest, with an unknown decaying vibration of each mode at any phase. swing:
+  /// standard deviations [m sqrt(kg)].
   void begin(const JointVector& swing) noexcept { swing_ = swing; }
 
-  /// While the vibration follows readings: advance() does nothing.
+  /// Pauses the runs while readings determine the vibration: advance() has no effect.
   bool waits() const noexcept { return waits_; }
-  /// Deviation of a mode: as given or, where that is less, as identified.
+  /// Standard deviation of a mode: the smaller one of the given and the identified.
   const OilDeviation& deviation(int mode) const noexcept { return deviation_[static_cast<std::size_t>(mode)]; }
   int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }
-  /// By what the joints' accelerations of a run differ from those of the vibration, at the same instant [rad/s2].
+  /// Difference of the joints' accelerations of a run from those of the vibration at the same instant [rad/s2].
   JointVector accelerationDifference(int run, const JointVector& vibration) const noexcept;
-  /// Returns true if a vibration of unknown state was going on when it began to be followed.
+  /// Returns true if an unknown vibration existed when the runs began.
   bool swings() const noexcept { return swing_.size() > 0; }
   /// Standard deviation of the joints' accelerations by that unknown vibration, of one mode [rad/s2].
   JointVector accelerationOfSwing(int mode) const noexcept;

@@ -1,4 +1,4 @@
-/// A force with its moment, and how it reads at another point and in other axes.
+/// A force with its moment, and its transformation to another point and other axes.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,7 +8,7 @@ namespace hammer_loads {
 /// X_QP: pose of frame P in frame Q; takes coordinates in P to coordinates in Q.
 using Pose = Eigen::Isometry3d;
 
-/// w_P: moment about the origin of frame P, axes of P. Who acts on whom is said where a wrench is used.
+/// w_P: moment about the origin of frame P, axes of P. The users of a wrench state which body acts on which.
 struct Wrench {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
