@@ -89,10 +89,11 @@ TEST(LinkageFits, RefuseTablesThatAreNone) {
   EXPECT_FALSE(readStrokeTable("stroke_m,angle_rad\n0.1,0.2\n0.1\n", problem));
   EXPECT_EQ(problem, "line 3: 0.1, must be two numbers: a stroke up to 100 m, an angle up to 7 rad");
   EXPECT_FALSE(readStrokeTable("stroke_m,angle_rad\n0.1,nan\n", problem));
+  EXPECT_FALSE(readStrokeTable("stroke_m,angle_rad\n0.1,0.2,\n", problem));
   EXPECT_FALSE(readStrokeTable("stroke_m,angle_rad\n0.1,0.2\n", problem));
   EXPECT_EQ(problem, "1 rows, must be at least 12 over the whole stroke");
   std::string good = "# tape measure\r\nstroke_m,angle_rad\r\n";
-  for (int i = 0; i < 12; ++i) good += format("%g,%g\r\n", 0.05 * i, 0.1 * i);
+  for (int i = 0; i < 12; ++i) good += format(i % 2 == 0 ? "%g,%g\r\n" : "%g, %g\r\n", 0.05 * i, 0.1 * i);
   const std::optional<StrokeTable> table = readStrokeTable(good, problem);
   ASSERT_TRUE(table);
   EXPECT_EQ(table->angle.back(), 1.1);

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <optional>
 #include <random>
 #include <sstream>
+#include <string>
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <utility>
+#include <vector>
 
 #include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/csv_cells.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -244,21 +248,20 @@ std::optional<StrokeTable> readStrokeTable(const std::string& csv, std::string& 
   bool headed = false;
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty() || line.front() == '#') continue;
-    if (!headed && line != "stroke_m,angle_rad") {
+    const std::vector<std::string> cells = csvCells(line);
+    if (cells[0].empty() ? cells.size() == 1 : cells[0].front() == '#') continue;
+    if (!std::exchange(headed, true)) {
+      if (cells == std::vector<std::string>{"stroke_m", "angle_rad"}) continue;
       problem = format("line %zu: %.40s, must be the header stroke_m,angle_rad", number, line.c_str());
       return {};
     }
-    if (!std::exchange(headed, true)) continue;
-    double stroke = 0.0, angle = 0.0;
-    char beyond = 0;
-    if (std::sscanf(line.c_str(), "%lf,%lf%c", &stroke, &angle, &beyond) != 2 || !(std::abs(stroke) <= 100.0) ||
-        !(std::abs(angle) <= 7.0)) {
+    const std::optional<double> stroke = decimalNumber(cells[0]), angle = decimalNumber(cells.back());
+    if (cells.size() != 2 || !stroke || !angle || std::abs(*stroke) > 100.0 || std::abs(*angle) > 7.0) {
       problem = format("line %zu: %.40s, must be two numbers: a stroke up to 100 m, an angle up to 7 rad", number,
                        line.c_str());
       return {};
     }
-    table.stroke.push_back(stroke), table.angle.push_back(angle);
+    table.stroke.push_back(*stroke), table.angle.push_back(*angle);
   }
   if (table.stroke.size() >= kLeastTableRows) return table;
   problem = format("%zu rows, must be at least %zu over the whole stroke", table.stroke.size(), kLeastTableRows);
