@@ -43,7 +43,7 @@ ToolImpulse toolImpulse(const StrikingRocker& rocker, double speed_before, doubl
   if (!(rebound > 0.0) || !(friction_arm > 0.0)) return tool;
   // Deviates: P1 has the friction of the approach in the rebound as well.
   const double arm = std::abs(k.x), back = strikingInertia(rocker) * rebound / (arm - friction_arm);
-  const double more = 2.0 * friction_arm / (arm + friction_arm) * back;  // than by the arm of the approach
+  const double more = 2.0 * friction_arm / (arm + friction_arm) * back;  // in excess of that by the arm of the approach
   tool.z += more;
   tool.x += rocker.friction * sliding * (more - 2.0 * back);
   tool.energy -= 0.5 * arm * more * rebound;
@@ -51,7 +51,7 @@ ToolImpulse toolImpulse(const StrikingRocker& rocker, double speed_before, doubl
   return tool;
 }
 
-/// Blow on a tool that was met before the dead centre, as close to it as matters. The rocker goes on in its direction.
+/// Blow on a tool that was met before the dead centre, but close to it. The rocker keeps its direction.
 RockerBlow earlyBlow(const StrikingRocker& rocker, const BlowInertia& inertia, double speed, double factor) noexcept {
   RockerBlow blow;
   blow.rocker_speed_before = inertia.u_before * speed;

@@ -1,4 +1,4 @@
-/// The blow: what the rocker gives to the tool and to its support within no time.
+/// The blow: instantaneous impulses of the rocker on the tool and on its support.
 #pragma once
 
 #include <limits>
@@ -15,21 +15,21 @@ struct RockerBlow {
   double rocker_speed_before{};  ///< [rad/s], < 0 for a real blow
   double rocker_speed_after{};   ///< [rad/s]
   double restitution{};          ///< R = -after/before [-]
-  double energy{};               ///< given to the tool along z: the links' loss less the work of friction [J]
-  double friction_work{};        ///< work of friction at the striking face in both phases [J], >= 0
-  double tool_impulse_x{};       ///< BY the tool ON the rocker [N s]
-  double tool_impulse_z{};       ///< BY the tool ON the rocker [N s], > 0 for a real blow
-  double support_impulse_x{};    ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
-  double support_impulse_z{};    ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
-  double support_impulse_y{};    ///< BY the links ON the hull about D [N m s]; 0 of blowInSupport
-  double drive_impulse_y{};      ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
+  double energy{};          ///< energy transferred to the tool along z: the links' loss less the work of friction [J]
+  double friction_work{};   ///< work of friction at the striking face in both phases [J], >= 0
+  double tool_impulse_x{};  ///< BY the tool ON the rocker [N s]
+  double tool_impulse_z{};  ///< BY the tool ON the rocker [N s], > 0 for a real blow
+  double support_impulse_x{};  ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
+  double support_impulse_z{};  ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
+  double support_impulse_y{};  ///< BY the links ON the hull about D [N m s]; 0 of blowInSupport
+  double drive_impulse_y{};    ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
   double restitution_std{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
   double energy_std{std::numeric_limits<double>::quiet_NaN()};       ///< standard, where R was measured [J]
-  /// restitution or energy are what no blow has, by more than two deviations: both are NaN
+  /// restitution or energy are impossible by more than two deviations: both are NaN
   bool impossible{};
 };
 
-/// A blow as the crank felt it.
+/// A blow as measured by the change of the crank's speed.
 struct CrankBlow {
   double speed{};          ///< crank speed just before the blow [rad/s], > 0
   double speed_std{};      ///< standard [rad/s]
@@ -37,7 +37,7 @@ struct CrankBlow {
   double factor_std{};     ///< standard [-]
   double drive_inertia{};  ///< Jc [kg m2], > 0
   double inertia_std{};    ///< standard, relative [-]
-  bool early{};            ///< the tool was met before the dead centre
+  bool early{};            ///< the rocker met the tool before the dead centre
 };
 
 /// Point in hammer_hull axes, from the pivot D [m].
@@ -58,8 +58,9 @@ struct StrikingRocker {
 };
 
 /// Rocker of the mechanism at psi = 0: S on -x, K at the striking offset over that line, joint C at the angle C-D-S.
-/// Level linkage: m_n = J2/l2^2 (J2: rod about B): crank and B keep their speed, C's jumps. Else the rod is massless.
-/// Neglects the impulse along rod and rocker that a rod's centre of mass off its line needs (A and D share it).
+/// Level linkage: m_n = J2/l2^2 (J2: rod about B): crank and B keep their speed, C's jumps. At the other levels the rod
+/// is massless. Neglects the impulse along rod and rocker that a rod's centre of mass off its line needs (A and D share
+/// it).
 StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept;
 
 /// Blow by P1 (1)-(9) for given rocker speeds psi' before and after [rad/s], x_K of the sign of the speed before and f
@@ -79,9 +80,9 @@ HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before, d
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept;
 
 /// Blow measured by its factor on the crank's speed. Restitution, speeds of the rocker, tool impulse and energy are
-/// those of rocker and tool, before the linkage takes the rocker up (BlowInertia); the support's impulse is that of the
-/// links' whole change of momentum, to u+ k w-. Level pulse: as rocker. A tool met early slows the rocker together with
-/// the crank, by which the rod holds it: it gets what both lose, and a restitution is not known.
+/// those between rocker and tool, before the linkage accelerates the rocker (BlowInertia); the support's impulse is
+/// that of the links' whole change of momentum, to u+ k w-. Level pulse: as rocker. If the tool is met early, the rod
+/// couples the rocker to the crank: the tool receives the momentum that both lose, and the restitution is not known.
 RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept;
 
 /// Blow of a crank that does not keep its speed: [rad/s] before, > 0, and after.

@@ -8,10 +8,10 @@
 
 namespace hammer_loads {
 
-/// Difference of a level's wrench to that of the richest over what the hammer's constants leave open of level linkage
-/// (WrenchColumns): root mean squares over a working turn, the largest of force x, force z and moment [-]. A hammer
-/// that is given as exact leaves nothing open: then it is infinite, unless there is no difference. The richest is
-/// elastic, unless the rod is given as rigid.
+/// Difference of a level's wrench from that of the most detailed level, divided by the uncertainty of level linkage by
+/// the hammer's constants (WrenchColumns): root mean squares over a working turn, the largest of force x, force z and
+/// moment [-]. Infinite for a hammer whose constants are exact, unless there is no difference. The most detailed level
+/// is elastic, or linkage for a rigid rod.
 struct LevelChoice {
   Level level{};  ///< the cheapest within tolerance
   double tolerance{};
@@ -19,16 +19,16 @@ struct LevelChoice {
   std::array<double, 3> difference{};  ///< relative differences of levels pulse, rocker and linkage
 };
 
-/// Works one turn with the machine at level linkage: constant net drive torque that makes up for the blow, so that each
-/// turn is like the one before; the speed at the blow such that the turn takes 1/turn_rate [s]. Weight counts in the
-/// wrench, hull vertical; in the turn's motion it is neglected. The part of an elastic rod, with the file's values or
-/// else a first guess (RodPrior), is that of one blow that leaves the rocker at its tool (TwoBodies), in means over
-/// `interval` [s] > 0. tolerance, turn_rate, g [m/s2] > 0, g may be 0. The crank's acceleration is taken as known: what
-/// a poorer level does to the estimate of the drive inertia is not seen.
+/// Simulates one periodic turn at level linkage: the constant net drive torque replaces the energy of the blow, and the
+/// speed at the blow is such that the turn takes 1/turn_rate [s]. Weight counts in the wrench, hull vertical; in the
+/// turn's motion it is neglected. The part of an elastic rod, with the file's values or else a first guess (RodPrior),
+/// is that of one blow that leaves the rocker at its tool (TwoBodies), in means over `interval` [s] > 0. tolerance,
+/// turn_rate, g [m/s2] > 0, g may be 0. The crank's acceleration is taken as known; the effect of a simpler level on
+/// the estimated drive inertia is neglected.
 LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double turn_rate, double g,
                         double interval = 1e-3);
 
-/// One line for a person: which and why, with the figures.
+/// Message of one line: the chosen level and the reason, with the figures.
 std::string describe(const LevelChoice& choice);
 
 }  // namespace hammer_loads

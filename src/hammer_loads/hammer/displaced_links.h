@@ -1,4 +1,4 @@
-/// Load that the moving links add to a hull whose mass holds them where they are on average.
+/// Load of the moving links on a hull whose mass includes them at their mean places.
 #pragma once
 
 #include "hammer_loads/hammer/hammer_model.h"
@@ -6,8 +6,8 @@
 namespace hammer_loads {
 
 /// A robot description's hull includes the mass and the inertia of the moving links at the mean of their places over a
-/// turn. This is the rest: their weight and what the hull's motion does to them (frameWrench) where they are, less the
-/// same at that mean. Refers to the model, which must outlive it.
+/// turn. This is the difference: their weight and their inertia in the hull's motion (frameWrench) at their actual
+/// places, less the same at the mean places. Refers to the model, which must outlive it.
 class DisplacedLinks {
  public:
   explicit DisplacedLinks(const HullModel& model);

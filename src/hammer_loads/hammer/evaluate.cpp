@@ -30,7 +30,7 @@ using Problems = std::vector<std::string>;
 
 bool isBlank(const Cells& cells) { return cells.size() == 1 && cells[0].empty(); }
 
-/// On one line, shortened when long.
+/// Text on one line, shortened when long.
 std::string shown(const std::string& cell) {
   constexpr std::size_t kLongest = 60;
   std::string text = cell.size() > kLongest ? cell.substr(0, kLongest) + "..." : cell;
@@ -89,7 +89,7 @@ void evaluateRow(const HullModel& model, const Cells& all, const Places& places,
   rows.push_back({given, resultsOf(model, {*angle, numbers[kSpeed], numbers[kAcceleration]}, gravity)});
   const auto& results = rows.back().results;
   for (std::size_t i = 0; i < kResults; ++i) {
-    // A pin's force may have no limit at the blow; what is too large has no finite drive torque, the first of the pins.
+    // A pin's force may be infinite at the blow; an overflow shows in the drive torque, the first of the pins.
     if (std::isfinite(results[i]) || (i > kPins && std::isnan(results[i]))) continue;
     const char* column = i < kPins ? kMotionAndWrenchColumns[i] : kPinColumns[i - kPins];
     return problems.push_back(place + column + format(": %g, must be finite: the state is too large", results[i]));

@@ -1,4 +1,4 @@
-/// Everything the model says of given states: what the command evaluate prints.
+/// All results of the model for given states, as printed by the command evaluate.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-/// Level pulse has no pins of its own: motion and pins are the rocker's.
+/// Results of one state. At level pulse, motion and pin forces are those of level rocker.
 struct Evaluation {
   double rocker_angle{};         ///< psi [rad], in [0, pi)
   double rod_angle{};            ///< beta [rad], in (-pi, pi]
@@ -30,7 +30,7 @@ Evaluation evaluate(const HullModel& model, const CrankMotion& crank, Gravity gr
 /// hull, 1 crank, 2 rod, 3 rocker) in hull axes.
 constexpr std::array<const char*, 9> kPinColumns{"drive_torque_y_Nm", "R01_x_N", "R01_z_N", "R12_x_N", "R12_z_N",
                                                  "R23_x_N",           "R23_z_N", "R03_x_N", "R03_z_N"};
-/// In the order of kPinColumns.
+/// Pin forces in the order of kPinColumns.
 std::array<double, kPinColumns.size()> pinValues(const PinReactions& pins) noexcept;
 
 /// Columns that a table of states must have, in any order; others are ignored, so that a table of results can be read
@@ -47,7 +47,7 @@ std::optional<CrankAngle> crankAngleFromText(const std::string& text);
 
 /// Reads a CSV table of states; writes the states as given with their results to 17 digits, in the order of the rows.
 /// Blank lines are skipped, but counted. Returns one line for each bad cell, at most 20; then nothing is written. A
-/// state whose results are too large for a double is bad, too.
+/// state whose results overflow a double is an error, too.
 std::vector<std::string> evaluateTable(const HullModel& model, std::istream& in, std::ostream& out);
 
 }  // namespace hammer_loads

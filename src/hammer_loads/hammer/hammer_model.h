@@ -1,5 +1,5 @@
-/// The hammer as the rooms above see it: loads, momentum, blow, links and pins of one mechanism at one level. They
-/// include this header alone, so that another linkage stays below it.
+/// Interface of the hammer model for the other rooms: loads, momentum, blow, links and pins of one mechanism at one
+/// level. They include this header alone, so that another linkage can replace the present one.
 #pragma once
 
 #include "hammer_loads/hammer/blow.h"
@@ -43,18 +43,18 @@ inline PinReactions pinForces(const HullModel& model, const LinkMotion& links, c
   return pinForces(model.mechanism(), model.level(), links, crank, hull, NearBlow(near_blow, angle_error));
 }
 
-/// Blow by what the crank's speed did at it; where that is not known, of a crank that keeps its speed.
+/// Blow by the change of the crank's speed; if that is not known, the crank keeps its speed.
 inline RockerBlow measuredBlow(const HullModel& model, const CrankBlow& crank) noexcept {
   if (!(crank.drive_inertia > 0.0)) return blowAtCrankSpeed(model.mechanism(), model.level(), crank.speed);
   return measuredBlow(model.mechanism(), model.level(), crank);
 }
 
-/// The drive as the hull feels it at the model's level; Jc [kg m2].
+/// Reaction of the drive on the hull at the model's level; Jc [kg m2].
 inline DriveReaction driveReaction(const HullModel& model, double drive_inertia) noexcept {
   return driveReaction(model.mechanism(), model.level(), drive_inertia);
 }
 
-/// BY everything that moves in the hammer, links and drive, ON the hull.
+/// Wrench BY links and drive ON the hull.
 inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive, const CrankMotion& crank,
                              const HullMotion& hull) noexcept {
   HullWrench wrench = hullWrench(model, crank, hull);
@@ -90,7 +90,7 @@ class WrenchAtAngle {
   const LinksAtAngle& at_;
 };
 
-/// From motion relative to the hull alone: without weight, in a hull at rest.
+/// Wrench by motion relative to the hull alone, without weight and in a hull at rest.
 inline HullWrench motionWrench(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
                                const CrankMotion& crank) noexcept {
   return hullWrench(model, drive, links, crank, Gravity{});

@@ -1,4 +1,4 @@
-/// Hull wrench at any level of the model behind one call, level pulse included.
+/// Hull wrench at any level of the model, including level pulse, by one function.
 #pragma once
 
 #include "hammer_loads/hammer/hull_wrench.h"

@@ -138,7 +138,8 @@ inline void addTurningLinkage(const Mechanism& mechanism, const LinkMotion& l, d
   addTurning(momentsAboutDLinkage(mechanism, l), forces, speed, hull, wrench);
 }
 
-/// Level rocker in a hull that moves. A hull that does not turn costs nothing and gives hullWrenchRocker to the bit.
+/// Level rocker in a hull that moves. For a hull that does not turn the result equals that of hullWrenchRocker to the
+/// bit.
 HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, const Motion& m, const CrankMotion& crank,
                                           const HullMotion& hull) noexcept {
   HullWrench wrench = hullWrenchRocker(mechanism, m, crank, hull.gravity);
@@ -187,7 +188,7 @@ HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level 
   return linkMomentum(mechanism, level, linkMotion(mechanism.linkage(), angle), speed);
 }
 
-/// Level elastic, of two bodies that move so. links: rigid ones at the crank's angle.
+/// Level elastic, for the motion of the two bodies. links: rigid ones at the crank's angle.
 inline HullWrench hullWrenchOf(const Mechanism& mechanism, const TwoBodies& bodies, const TwoBodyState& state,
                                const TwoBodyAccelerations& a, const LinkMotion& links, Gravity gravity) noexcept {
   const LinkMotion turned = withRocker(links, state.beside);

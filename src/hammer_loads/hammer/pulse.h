@@ -14,8 +14,8 @@ constexpr double kLeastLobe = 0.1;
 /// Fz(t) = H sin(mu (t - t1)) for t1 < t < T after the blow that began the turn, 0 before t1.
 /// Deviates: P0 (15) prints sin(mu t); (16) needs the shift (model.md 7).
 ///
-/// The lobe begins with the last rise through zero that counts, without one with the turn. Without a positive lobe (H
-/// or Q not positive) mu = 0, t1 = T.
+/// The lobe begins with the last rise through zero that counts, or with the turn if there is none. Without a positive
+/// lobe (H or Q not positive) mu = 0, t1 = T.
 struct HalfSinePulse {
   double period{};               ///< T [s]
   double amplitude{};            ///< H, peak of Fz [N]
@@ -28,7 +28,7 @@ struct HalfSinePulse {
   double half_sine_rms_error{};  ///< rms over the turn of (Fz - half sine)/H [-]
 };
 
-/// Point of a revolution. Impulses are exact, so that sparse points lose none of them.
+/// Point of a revolution. Impulses are exact at any distance of the points.
 struct TurnPoint {
   double time{};       ///< after the turn's start [s]
   double force_z{};    ///< [N]

@@ -1,4 +1,4 @@
-/// Errors of a hammer's constants, on its loads.
+/// Effect of errors of a hammer's constants on its loads.
 #pragma once
 
 #include <Eigen/Core>

@@ -5,8 +5,8 @@
 
 namespace hammer_loads::life {
 
-/// Unit of topic/field, topic/name/field or stress/NAME, as the comment of the message's field states it; "-" where it
-/// has none or is not known.
+/// Unit of topic/field, topic/name/field or stress/NAME by the comment of the message's field; "-" for no unit and for
+/// an unknown name.
 inline std::string unitOf(const std::string& channel) {
   if (channel.find("stress/") != std::string::npos) return "MPa";
   const std::string field = channel.substr(channel.rfind('/') + 1);

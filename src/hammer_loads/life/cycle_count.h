@@ -1,4 +1,4 @@
-/// A count of load cycles on a grid, as a value: closed cycles, residue and what was left out. Counts add exactly.
+/// A count of load cycles on a grid: closed cycles, residue and the number of samples left out. Counts add exactly.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct ClosedCycles {
   bool operator<(const ClosedCycles& o) const { return steps != o.steps ? steps < o.steps : low < o.low; }
 };
 
-/// Inputs so far.
+/// Number of samples so far, by their treatment.
 struct SampleTally {
   std::uint64_t counted{};  ///< samples with a value; saturated ones are among them
   std::uint64_t skipped{};  ///< not a number or infinite: the series goes on without them
@@ -30,7 +30,7 @@ struct SampleTally {
   /// Standard deviations given with the samples, and their sum in 1/1024 of a class width: whole numbers, so that
   /// pieces add exactly.
   std::uint64_t deviations{}, deviation_sum{};
-  /// Ranges of turns and their standard deviations, weighed by the range: sums of R^2, R own and R common in
+  /// Ranges of turns and their standard deviations, weighted by the range: sums of R^2, R own and R common in
   /// 1/kRangeUnits of a class width squared, whole numbers as above.
   std::uint64_t range_square{}, range_own{}, range_common{};
 
@@ -91,7 +91,7 @@ struct CycleCount {
 void joinResidues(std::vector<std::uint32_t>& residue, const std::vector<std::uint32_t>& later,
                   std::vector<ClosedCycles>& closed);
 
-/// Sorts and adds up what has the same range and mean.
+/// Sorts the cycles and merges those of equal range and mean.
 void sortClosed(std::vector<ClosedCycles>& closed);
 
 /// Returns true if a series can have this count: classes on the grid, closed cycles sorted, no cycle left in the
@@ -103,11 +103,11 @@ double meanDeviation(const CycleCount& count);
 
 /// Standard deviations of ranges.
 struct RangeDeviation {
-  double absolute{};  ///< alike for all ranges, in the channel's unit: where turns give no information
+  double absolute{};  ///< equal for all ranges, in the channel's unit; used where turns give no information
   double own{};       ///< part of single revolutions, over the range [-]
   double common{};    ///< part of constants, equal in all revolutions, over the range [-]; NaN: not known separately
 };
-/// By the ranges of turns; where there are none by the samples, whose errors at a range's two ends are independent.
+/// Errors by the ranges of turns; without turns by the samples, whose errors at a range's two ends are independent.
 RangeDeviation rangeDeviation(const CycleCount& count);
 
 /// Range and mean in the channel's unit; `count` is a multiple of 1/2.

@@ -20,8 +20,8 @@ CycleCounter::CycleCounter(const LoadGrid& grid)
 
 void CycleCounter::Unmap::operator()(Cell* cells) const { munmap(cells, bytes); }
 
-/// Pages of the system's own, each zero until a cycle touches it: one without costs no memory. Memory of the heap would
-/// have to be cleared, and thereby touched.
+/// Anonymous pages, which occupy memory only once a cycle is counted in them. Heap memory would have to be cleared and
+/// would thereby occupy all of it.
 CycleCounter::Cells CycleCounter::newCells() const {
   const std::size_t bytes = (row(classes_) + 1) * sizeof(Cell);
   void* pages = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -1,4 +1,4 @@
-/// Counter of the load cycles of one channel, sample by sample: some ns each, all memory taken at the start.
+/// Counter of the load cycles of one channel, sample by sample, in some ns each and without allocation.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace hammer_loads::life {
 
-/// A value that is not finite, or larger than kLargestLoad, is no load: it is skipped and counted, as if the sample
-/// were not there. A value beyond the full scale counts in the outer class, and as saturated.
+/// A value that is not finite or is larger than kLargestLoad is no load: the sample is ignored and counted as skipped.
+/// A value beyond the full scale is counted in the outer class, and as saturated.
 ///
 /// Closed cycles lie in a dense range-mean matrix of classes (classes - 1)/2 cells of 2 byte, by range, then by mean:
-/// 17 MB of address space at 4096 classes, of which memory is taken only where cycles fall. Cycles of like range lie
-/// side by side, so that a load that repeats stays in the cache. Noise over the whole scale falls on another page each
-/// time: cells are small, a cell that runs over is noted, and a cycle waits until its cell has come from memory.
+/// 17 MB of address space at 4096 classes, of which only pages with cycles occupy memory. Cycles of similar range are
+/// neighbours, so that a repeating load stays in the cache. Noise over the whole scale uses another page each time.
+/// Therefore cells are small, overflows of cells are listed, and cycles are buffered while their cells are fetched.
 class CycleCounter {
  public:
   /// Throws std::bad_alloc when there is not enough address space.
@@ -44,7 +44,7 @@ class CycleCounter {
     ++tally_.deviations;
     tally_.deviation_sum += static_cast<std::uint64_t>(units + 0.5);
   }
-  /// Range of a turn and its standard deviations [channel's unit]; what is not finite is none.
+  /// Range of a turn and its standard deviations [channel's unit]; values that are not finite are ignored.
   void addRange(double range, double own, double common) noexcept {
     if (!(range > 0.0 && own >= 0.0 && common >= 0.0)) return;
     const auto classes = [&](double value) { return std::fmin(value / grid_.width(), static_cast<double>(classes_)); };
@@ -53,7 +53,8 @@ class CycleCounter {
     tally_.range_own += static_cast<std::uint64_t>(weight * classes(own) + 0.5);
     tally_.range_common += static_cast<std::uint64_t>(weight * classes(common) + 0.5);
   }
-  /// Samples are missing here. The series goes on: the cycle across the gap is the least that the loads have done.
+  /// Notes that samples are missing here. The series continues; the cycle across the gap is a lower bound of what has
+  /// occurred.
   void gap() noexcept { ++tally_.gaps; }
 
   const LoadGrid& grid() const { return grid_; }
@@ -74,7 +75,7 @@ class CycleCounter {
   static constexpr std::size_t kBlock = 4096 / sizeof(Cell);  ///< cells of a page
   /// Cells run over before memory is taken: 4e9 cycles, 100 days at 1 kHz without a take().
   static constexpr std::size_t kOverruns = 65536;
-  static constexpr std::size_t kWaiting = 16;  ///< closed cycles that wait: memory takes some hundred ns
+  static constexpr std::size_t kWaiting = 16;  ///< number of buffered cycles; a fetch from memory takes some hundred ns
 
   struct Unmap {
     std::size_t bytes{};

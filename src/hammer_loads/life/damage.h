@@ -9,14 +9,15 @@
 
 namespace hammer_loads::life {
 
-/// Figure and its standard deviation, in the same unit, with the part by constants, which more revolutions do not
-/// reduce; NaN where the loads have none.
+/// Figure and its standard deviation in the same unit, with the part by constants, which more revolutions do not
+/// reduce; NaN if the loads have no standard deviations.
 struct Figure {
   double value{}, deviation{}, common{};
 };
 
 /// Range that, in `equivalent_cycles` cycles, does the damage of all cycles on a material of this slope:
-/// L = (sum n r^m / N)^(1/m), r the range; 0 without cycles. All ranges err alike: dL = L sum n r^(m-1) dr / sum n r^m.
+/// L = (sum n r^m / N)^(1/m), r the range; 0 without cycles. The errors of all ranges are fully correlated: dL = L sum
+/// n r^(m-1) dr / sum n r^m.
 Figure equivalentLoad(const std::vector<RangeMean>& cycles, double slope, double equivalent_cycles,
                       const RangeDeviation& range);
 
@@ -55,8 +56,8 @@ struct FkmMeanStress {
   Equivalent atAlternating(double amplitude, double mean) const;
 };
 
-/// Sum of n/N over the cycles; with a mean-stress correction the curve must be one for R = -1. Linear propagation of
-/// the ranges' deviations, all erring alike.
+/// Sum of n/N over the cycles. With a mean-stress correction the curve must be one for R = -1. The ranges' deviations
+/// are propagated linearly and are fully correlated.
 Figure damage(const std::vector<RangeMean>& cycles, const SnCurve& curve, const std::optional<FkmMeanStress>& mean,
               const RangeDeviation& range);
 

@@ -12,7 +12,7 @@ struct sqlite3_stmt;
 
 namespace hammer_loads::life {
 
-/// After an error every further call does nothing, so that a caller asks once, at the end.
+/// After an error every further call has no effect, so that a caller checks once, at the end.
 class Database {
  public:
   enum class Use { kRead, kWrite };  ///< kWrite makes the file where there is none
@@ -71,10 +71,10 @@ class Database {
     std::unique_ptr<sqlite3_stmt, Finalize> statement_;
   };
 
-  /// One line, without the file's name; empty while all is well.
+  /// First error in one line, without the file's name; empty without an error.
   const std::string& problem() const { return problem_; }
   bool good() const { return problem_.empty(); }
-  /// For what the caller finds wrong, in one line; the first one stays.
+  /// Reports an error found by the caller, in one line; the first error is kept.
   void fail(const std::string& problem);
 
  private:

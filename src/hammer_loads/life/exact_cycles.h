@@ -1,5 +1,5 @@
-/// Counts the load cycles of a series without a grid: every value as it is. For records, not for a live node:
-/// near-equal peaks never close, so that nothing bounds the residue.
+/// Counts the load cycles of a series without a grid. It is meant for recordings and not for a live node, since nearly
+/// equal peaks do not close a cycle and the residue is not bounded.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-/// Runs that are added to a ledger when all of them are known.
+/// Runs that are added to a ledger in one transaction.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,12 @@
 
 namespace hammer_loads::life {
 
-/// For recordings: all runs are one transaction, which the caller commits when its other results are safe: a recording
-/// that is broken off leaves nothing. Pieces of one day are added up: memory does not grow with the recording.
+/// For recordings. All runs are one transaction, which the caller commits once its other results are written, so that
+/// an interrupted command changes nothing. Pieces of one day are merged, so that memory does not grow with the
+/// recording.
 class LedgerBatch final : public PieceSink {
  public:
-  /// replace: runs take the place of what the ledger has of their samples.
+  /// replace: runs replace those of the ledger with the same samples.
   explicit LedgerBatch(std::string path, bool replace = false) : path_(std::move(path)), replace_(replace) {}
 
   void begin(const LedgerMachine& machine, const RunId& run) override { runs_.emplace_back(path_, machine, run); }
@@ -25,10 +26,10 @@ class LedgerBatch final : public PieceSink {
 
   /// Reason why the file cannot be written as a ledger, one line; empty when it can. Changes nothing in it.
   std::string check() const;
-  /// Puts every run into the ledger; it shows with commit(). One line if it could not or a run is refused; runs that
-  /// were in the ledger before are named in `known`.
+  /// Writes every run, visible to others after commit(). Returns one line if this fails or a run is refused; `known`
+  /// receives the runs that were in the ledger before.
   std::string write(std::vector<std::string>& known);
-  /// Ends what write() began. One line if it could not: then nothing is in the ledger.
+  /// Commits the transaction of write(). Returns one line if this fails; the ledger is then unchanged.
   std::string commit();
 
  private:

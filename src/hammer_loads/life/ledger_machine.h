@@ -1,4 +1,4 @@
-/// A machine of counts, what judges them, and the figures that follow from a count.
+/// Machine of a ledger, its S-N curves, and the figures of a count.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// A ledger as it is, for tables and reports; a run may write it meanwhile.
+/// Reader of a ledger for tables and reports; a run may write to the ledger meanwhile.
 #pragma once
 
 #include <cstdint>

@@ -74,7 +74,7 @@ std::optional<std::string> LedgerRun::judge(Database& database, std::vector<RunR
   return std::nullopt;
 }
 
-/// Reason to refuse a running run: another one has come to have its samples.
+/// Reason to refuse a running run, as another one now has its samples.
 std::optional<std::string> LedgerRun::newlyShared(Database& database, const RunRow& own) const {
   const std::vector<std::int64_t> fresh(marks_.begin() + static_cast<std::ptrdiff_t>(marks_written_), marks_.end());
   for (const RunRow& other : runsLike(database, machine_, id_.name, fresh)) {
@@ -98,7 +98,7 @@ bool LedgerRun::isOurs(const std::optional<RunRow>& row) {
   if (row && commits_ > 0 && row->pieces == commits_ && row->messages == messages_written_ &&
       row->parameters == id_.parameters)
     return true;
-  // A first piece, or what was written is there no more: the run has what follows alone.
+  // The first piece, or the written pieces were removed: the run has only the pieces from here on.
   messages_ -= std::exchange(messages_written_, 0);
   marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(std::exchange(marks_written_, 0)));
   commits_ = 0;
@@ -130,7 +130,8 @@ bool LedgerRun::put(Database& database, bool end, bool replace) {
 std::optional<std::string> LedgerRun::write(bool end) {
   const auto problem = [&](const std::string& what) { return std::make_optional(path_ + ": " + what); };
   if (ended_) return refused() ? problem(refusal_) : std::nullopt;
-  if (!end && refused()) return problem(refusal_);  // the pieces stay: at its end the run may have more than the ledger
+  if (!end && refused())
+    return problem(refusal_);  // the pieces are kept: at its end the run may have more than the ledger
   if (waiting_.empty() && !end && id_.refusal.empty()) return std::nullopt;
   if (const std::string trouble = pathProblem(path_); !trouble.empty()) return problem(trouble);
 

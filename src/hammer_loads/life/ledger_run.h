@@ -1,4 +1,4 @@
-/// A run's part in the ledger of its machine: what its loads add to the counts of months.
+/// Writer of one run's cycles to the ledger of its machine.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ namespace hammer_loads::life {
 class Database;
 struct RunRow;
 
-/// Adds a run's pieces to the ledger, each in one transaction: what kill -9 or a power cut leaves is the ledger after
-/// some piece. The ledger's trouble is never the caller's: nothing throws, a piece that cannot be written waits for the
-/// next one, and memory stays bounded. From a thread of its own: a disk takes its time, and another user of the file up
-/// to kPatience.
+/// Adds a run's pieces to the ledger, each in one transaction, so that kill -9 or a power cut leaves a complete piece
+/// as the last one. No function throws; a piece that cannot be written is kept for the next call, and memory is
+/// bounded. Call it from a thread of its own, since a disk is slow and another user of the file may lock it for up to
+/// kPatience.
 ///
-/// Several runs may write one ledger, a transaction at a time. Order in the ledger is that of beginning, whatever the
-/// clocks say.
+/// Several runs may write to one ledger, one transaction at a time. Runs are ordered by their beginning, independent of
+/// clocks.
 ///
-/// A run that is in the ledger is not counted again. Where the ledger has less of it (kill -9, a locked file), the run
-/// takes that one's place when it ends. One with other sensor parameters does so only when it is to replace. A run that
-/// shares samples with a longer one is a part of it and refused. A run that was taken out of the ledger while it wrote
-/// restarts there, with what follows.
+/// A run that is in the ledger is not counted again. If the ledger has only a part of it (kill -9, a locked file), the
+/// run replaces that part when it ends. A run with other sensor parameters replaces the earlier one only if asked to. A
+/// run that is a part of a longer run in the ledger is refused. A run that was removed from the ledger while it was
+/// written continues there with the pieces that follow.
 class LedgerRun {
  public:
   LedgerRun(std::string path, LedgerMachine machine, RunId run);
@@ -34,9 +34,9 @@ class LedgerRun {
 
   /// Keeps a piece for the next add() or end(); does not touch the file.
   void keep(LifePiece piece);
-  /// The run is not to be counted: with the next add() or end() what the ledger has of it goes.
+  /// Marks the run as not to be counted: the next add() or end() removes it from the ledger.
   void refuse(const std::string& reason) { id_.refusal = reason; }
-  /// Adds a piece, and what waits. Nothing when all is written, else one line.
+  /// Adds a piece and the waiting ones. Empty if all are written, otherwise one line.
   std::optional<std::string> add(LifePiece piece);
   /// Adds what waits.
   std::optional<std::string> add() { return write(false); }
@@ -88,7 +88,7 @@ class LedgerRun {
 /// `patience` [ms] for others to release it.
 std::string ledgerProblem(const std::string& path, int patience = LedgerRun::kPatience);
 
-/// Takes a run out of the ledger. Nothing when it is done, else one line.
+/// Removes a run from the ledger. Empty if it was removed, otherwise one line.
 std::optional<std::string> removeFromLedger(const std::string& path, const std::string& name);
 
 }  // namespace hammer_loads::life

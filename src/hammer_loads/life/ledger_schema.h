@@ -1,4 +1,4 @@
-/// Tables of a ledger, and what makes a file one.
+/// Tables of a ledger, and checks whether a file is one.
 #pragma once
 
 #include <cstdint>

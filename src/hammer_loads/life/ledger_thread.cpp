@@ -29,7 +29,7 @@ void LedgerThread::put(Job job, std::shared_ptr<LifePiece> piece) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (closing_) return;
-    // Pieces of one day that wait for the thread are added up, so that a disk that stands costs no memory.
+    // Waiting pieces of one day are merged, so that a blocked disk does not increase memory.
     const bool goes_on =
         piece && !jobs_.empty() && jobs_.back().piece && dayOf(jobs_.back().piece->stamp) == dayOf(piece->stamp);
     if (goes_on)

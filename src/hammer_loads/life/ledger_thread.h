@@ -1,4 +1,4 @@
-/// A ledger that is written beside the work.
+/// A ledger written by a thread of its own.
 #pragma once
 
 #include <condition_variable>
@@ -17,7 +17,7 @@
 
 namespace hammer_loads::life {
 
-/// Has a thread of its own, which alone touches the file; begin(), add() and end() only put down what is to be done.
+/// Owns a thread that alone accesses the file; begin(), add() and end() only queue jobs.
 /// A piece that cannot be written is kept and tried again each second; runs are written in their order.
 class LedgerThread final : public LiveLedger {
  public:

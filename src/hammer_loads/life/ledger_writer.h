@@ -27,13 +27,13 @@ std::vector<RunRow> runsLike(Database& database, const LedgerMachine& machine, c
 /// Returns true if all marks of the run are among these.
 bool holdsMarksOf(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks);
 
-/// Takes the `replaced` runs out and begins the run: at the place of the first of them where its epoch is of the same
-/// machine and grids, else at the end, in a new epoch where the machine is another one than that of the latest.
+/// Removes the `replaced` runs and begins the run: at the place of the first of them if its epoch has the same machine
+/// and grids, otherwise at the end, in a new epoch if the machine differs from the latest.
 RunRow beginRun(Database& database, const LedgerMachine& machine, const RunId& id, const std::vector<RunRow>& replaced);
-/// Takes a run out; an epoch without runs goes, too.
+/// Removes a run, and its epoch if that has no other runs.
 void removeRun(Database& database, const RunRow& run);
 
-/// Counts of one day; the residue takes the place of the run's earlier one.
+/// Adds counts of one day; the residue replaces the run's earlier one.
 void addPiece(Database& database, const RunRow& run, const LifePiece& piece);
 /// The run's row after a commit, and what is new of its marks.
 void setRun(Database& database, const RunRow& run, std::int64_t pieces, std::uint64_t messages,

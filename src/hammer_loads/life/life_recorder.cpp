@@ -69,7 +69,7 @@ double LifeRecorder::valueOf(std::size_t counter, const double* values) const no
   return value;
 }
 
-/// Loads of one instant err independently by samples; what constants do to them adds up at most.
+/// Errors of samples are independent between the loads of one instant; the sizes of errors by constants add at most.
 LoadError LifeRecorder::errorOf(std::size_t counter, const double* deviations, const double* common) const noexcept {
   double variance = 0.0, alike = 0.0;
   for (std::size_t t = sums_[counter].begin; t < sums_[counter].end; ++t) {

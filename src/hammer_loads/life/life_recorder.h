@@ -1,4 +1,4 @@
-/// Loads in, counts out: every counted channel and hot spot of a machine, sample by sample.
+/// Counter of the load cycles of all channels and hot spots of a machine, sample by sample.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace hammer_loads::life {
 
-/// The piece of a period: of each channel what closed since the last piece, and the residue since the count began.
+/// Piece of a period: for each channel the cycles closed since the last piece, and the residue since the count began.
 struct LifePiece {
   std::int64_t stamp{};             ///< stamp of the last sample [ns]; 0 for a first piece without one
   std::uint64_t duration{};         ///< time between its samples, gaps left out [ns]

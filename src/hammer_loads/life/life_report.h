@@ -1,4 +1,4 @@
-/// Figures of a ledger: what the loads took of a machine's life so far.
+/// Figures of a ledger: damage and remaining life of a machine.
 #pragma once
 
 #include <cstdint>

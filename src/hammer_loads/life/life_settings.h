@@ -11,7 +11,7 @@
 
 namespace hammer_loads::life {
 
-/// A load as it comes, by its name in the package's contract.
+/// A load channel, named as the topic and field that publish it.
 struct CountedChannel {
   std::string name;  ///< such as section_loads/NAME/torque_y
   LoadGrid grid;

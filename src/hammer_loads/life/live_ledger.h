@@ -1,4 +1,4 @@
-/// The ledger of a live node, which is loaded when it is asked for: a node without one needs no SQLite.
+/// The ledger of a live node, loaded on demand, so that a node without a ledger needs no SQLite.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@ namespace hammer_loads::life {
 class LiveLedger : public PieceSink {
  public:
   struct State {
-    /// Problem of the last attempt, else the reason why the last refused run is not in the ledger; one line, empty: all
-    /// is well.
+    /// Problem of the last attempt, or the reason why the last refused run is not in the ledger; one line, empty
+    /// without a problem.
     std::string problem;
     std::size_t waiting{};  ///< pieces given but not written, those of one day added up
   };
   virtual State state() const = 0;
   virtual const std::string& path() const = 0;
-  /// A last attempt; then nothing more is taken. Nothing when all is written, else one line.
+  /// Makes a last attempt and accepts no more pieces. Empty if all are written, otherwise one line.
   virtual std::optional<std::string> close() = 0;
 };
 

@@ -23,8 +23,8 @@ struct LoadError {
   double deviation() const noexcept { return std::hypot(own, common); }
 };
 
-/// Least and largest value of a turn with their errors, and how far a sample may be beyond them: where a load is hardly
-/// known a turn's extreme may lie that the values do not show.
+/// Least and largest value of a turn with their errors, and the bounds by the deviations of all samples: where a load
+/// is uncertain, its true extreme may exceed those of the values.
 struct TurnExtremes {
   double least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
   double lowest{least}, highest{greatest};  ///< by one own deviation of any sample
@@ -37,7 +37,8 @@ struct TurnExtremes {
     highest = std::max(highest, value + error.own);
   }
   double range() const noexcept { return greatest - least; }
-  /// Samples err independently. Errors of constants at the two ends may have any signs: at most both add up.
+  /// Errors of samples are independent. Errors of constants at the two ends may have any signs; at most their sizes
+  /// add.
   LoadError ofRange() const noexcept {
     return {std::hypot(std::max(of_least.own, least - lowest), std::max(of_greatest.own, highest - greatest)),
             of_least.common + of_greatest.common};

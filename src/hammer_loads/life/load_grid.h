@@ -1,4 +1,4 @@
-/// Classes of equal width over a channel's declared full scale: what bounds the memory of a count.
+/// Classes of equal width over a channel's declared full scale, which bound the memory of a count.
 #pragma once
 
 #include <cmath>

@@ -15,8 +15,8 @@ class PieceSink {
   /// machine, run: as LedgerRun takes them.
   virtual void begin(const LedgerMachine& machine, const RunId& run) = 0;
   virtual void add(const LifePiece& piece) = 0;
-  /// The run begun last is not to be counted, for this reason of one line; what is in the ledger of it goes. Before
-  /// end().
+  /// Marks the run begun last as not to be counted, with a reason of one line; it is removed from the ledger. Call
+  /// before end().
   virtual void refuse(const std::string& reason) = 0;
   /// Ends the run begun last, with its last piece.
   virtual void end(const LifePiece& last) = 0;

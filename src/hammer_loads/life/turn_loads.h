@@ -20,7 +20,7 @@ struct TurnLoads {
   std::vector<std::uint64_t> skipped;                          ///< values of the turn that were no number
 };
 
-/// Feed every sample and every extreme between samples, in time order. All memory is taken at the start.
+/// Takes every sample and every extreme between samples, in time order. All memory is allocated at the start.
 ///
 /// The mean is the integral by the trapezoidal rule over the time between the first and the last instant with a value;
 /// from there to the blows the first and the last value hold, as a blow may change a load at once.
@@ -28,8 +28,8 @@ class TurnLoadsRecorder {
  public:
   explicit TurnLoadsRecorder(std::size_t channels);
 
-  /// One value per channel at an instant [ns]; NaN or infinity: none. An instant that is not after the one before adds
-  /// to the extremes and nothing to the mean.
+  /// Takes one value per channel at an instant [ns]; NaN or infinity: none. An instant that is not after the one before
+  /// counts for the extremes, but not for the mean.
   /// Deviations as LifeRecorder::sample().
   void add(std::int64_t instant, const double* values, const double* deviations = nullptr,
            const double* common = nullptr) noexcept {
