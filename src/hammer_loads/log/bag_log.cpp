@@ -66,7 +66,7 @@ LogOrder BagLog::orderNow(LogOrder::Kind kind) const {
   return order;
 }
 
-/// Settings are right, but disk or memory does not allow it now.
+/// Reasons why a log with valid settings cannot begin now: disk or memory.
 std::vector<std::string> BagLog::refuse(LogState state, std::string problem) {
   writer_.refuse(++last_session_, state, problem);
   return {std::move(problem)};
@@ -172,7 +172,7 @@ void BagLog::lose(LogTopic& topic, const ros::Time& time) {
   gap_time_ = time;
 }
 
-/// Serialised message of what was lost since the last one.
+/// Serialised message of the losses since the last one.
 std::vector<std::uint8_t> BagLog::describeGap() {
   using Gap = diagnostic_msgs::DiagnosticStatus;
   if (gap_topic_ == nullptr) {
@@ -195,7 +195,7 @@ std::vector<std::uint8_t> BagLog::describeGap() {
   return bytes;
 }
 
-/// Ahead of the next message of the log, as soon as the queue has room again.
+/// Writes the gap ahead of the next message of the log, as soon as the queue has room again.
 void BagLog::noteGap(const ros::Time& time) {
   constexpr double kMuchRoom = 0.5;  // else the next message would be lost as well
   if (queue_.fill() > kMuchRoom) return;
@@ -212,7 +212,7 @@ void BagLog::gapNoted() {
   for (LogTopic& topic : topics_) topic.noted = topic.refused.load(std::memory_order_relaxed);
 }
 
-/// At the end of a bag, if the queue had no room until then.
+/// Gap at the end of a bag, if the queue had no room until then.
 void BagLog::noteGapIn(LogOrder& order) {
   if (!has_gap_) return;
   order.bytes = describeGap();

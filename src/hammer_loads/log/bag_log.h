@@ -1,5 +1,4 @@
-/// Bag writer of a node: takes messages as the node has them, never waits for the disk, recovers after the disk's
-/// faults.
+/// Bag writer of a node: takes messages without waiting for the disk, and recovers from faults of the disk.
 #pragma once
 
 #include <ros/message_traits.h>
@@ -31,14 +30,14 @@ class BagLog {
   /// Writes the queued messages and closes the bag; waits for the disk.
   ~BagLog() { stop(); }
 
-  /// Reasons why these settings can never work, one line each (key, value, rule): the node must not start with them.
-  /// Makes the directory where findLogDirectory may.
+  /// Reasons why these settings can never work, one line each (key, value, rule); the node must not start with them.
+  /// Creates the directory where findLogDirectory may.
   std::vector<std::string> settingProblems() const;
   /// Begins a bag. Returns nothing, or one line per reason against it: a problem of the settings, or the state of disk
   /// and memory, which health() then reports as well. The node may start all the same.
   std::vector<std::string> start();
-  /// Closes the bag behind the last message. Never fails; health() reports when the bag is closed, and whether that
-  /// succeeded.
+  /// Closes the bag after the last message. It returns at once; health() reports when the bag is closed and whether
+  /// that succeeded.
   void stop();
   /// Continues in a new bag; returns false if there is none to split.
   bool split();
@@ -60,9 +59,9 @@ class BagLog {
   /// beyond log_min_free_mb. False after stop().
   bool hasRoomAgain() const;
 
-  /// Unclosed bags of earlier runs with this prefix: `rosbag reindex` recovers them (recoveryHint).
+  /// Unclosed bags of earlier runs with this prefix, which `rosbag reindex` recovers (recoveryHint).
   std::vector<std::string> unfinishedBags() const;
-  /// Text how to recover such a bag, one line.
+  /// Instruction to recover such a bag, one line.
   static std::string recoveryHint(const std::string& path);
 
   /// Returns true if the settings log the outputs of that class, or the inputs. The caller obeys.

@@ -1,5 +1,5 @@
-/// Writing a bag of format 2.0: rosbag::Bag asks the system for the file's end with each message, which takes most of
-/// its time, and its destructor ends the process where the disk is full.
+/// Writer of bags of format 2.0. rosbag::Bag asks the system for the end of the file with each message, which takes
+/// most of its time, and its destructor terminates the process if the disk is full.
 #pragma once
 
 #include <ros/message_traits.h>

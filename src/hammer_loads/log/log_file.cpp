@@ -62,7 +62,7 @@ bool LogFile::hasRoomFor(const LogName& name, std::uint64_t free) noexcept {
   return errno != ENOSPC && errno != EDQUOT && free >= kAllocationStep;
 }
 
-/// Takes disk space ahead of the data: close() can always write its index, even if others fill the disk meanwhile.
+/// Allocates disk space ahead of the data, so that close() can write the index even if others fill the disk.
 std::optional<LogFault> LogFile::reserve(std::uint64_t more) noexcept {
   const std::uint64_t needed = bag_->sizeBound() + more;
   if (needed <= allocated_) return {};

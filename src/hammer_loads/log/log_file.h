@@ -1,4 +1,5 @@
-/// One bag on disk: whole after every chunk, closed properly on a full disk, never the end of the process.
+/// One bag on disk: readable after every chunk, closed properly on a full disk, and without errors that end the
+/// process.
 #pragma once
 
 #include <chrono>
@@ -23,17 +24,17 @@ struct LogFault {
   std::string reason;                 ///< one line
 };
 
-/// The disk as the log sees it; a test puts a slow or a full one in its place.
+/// Interface to the disk; a test replaces it by a slow or a full one.
 struct LogDisk {
   std::function<void()> before_write;  ///< called by the writing thread ahead of every message, if set
   std::function<std::uint64_t(const std::string& directory)> free_space{freeSpace};  ///< [byte]
 };
 
-/// Belongs to one thread. After a fault the file is either still open, then it can be closed in order, or given up.
+/// For use by one thread. After a fault the file is either open and can be closed properly, or given up.
 class LogFile {
  public:
   using Clock = std::chrono::steady_clock;
-  /// A chunk is closed when its first message is this old: a kill loses no more, plus what waits in the queue [s].
+  /// Age of a chunk's first message at which the chunk is closed; a kill loses this and the queue [s].
   static constexpr std::chrono::milliseconds kChunkPeriod{500};
 
   /// Disk space is taken in steps of this size ahead of the data [byte].

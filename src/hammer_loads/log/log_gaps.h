@@ -9,9 +9,9 @@
 
 namespace hammer_loads {
 
-/// A bag with a message on such a topic does not hold every input: what is computed from it may differ from what was
-/// published live. Type: diagnostic_msgs/DiagnosticStatus, one value for each topic with the number of its messages
-/// lost since the last such message.
+/// A bag with a message on this topic lacks some inputs; results computed from it may differ from those published live.
+/// Type: diagnostic_msgs/DiagnosticStatus, one value for each topic with the number of its messages lost since the last
+/// such message.
 inline constexpr char kGapTopic[] = "/log/gaps";  // below the node's name
 
 inline bool isGapTopic(const std::string& topic) {

@@ -7,9 +7,9 @@
 
 namespace hammer_loads {
 
-/// Name of one bag, PREFIX_YYYY-MM-DD-HH-MM-SS_N.bag (local time), held by an empty file PREFIX_..._N.bag.active that
-/// did not exist before. Neither that file nor one under the final name is ever overwritten. The file is locked
-/// (flock) as long as this lives: so others see that it is still written.
+/// Name of one bag, PREFIX_YYYY-MM-DD-HH-MM-SS_N.bag (local time), reserved by a new empty file
+/// PREFIX_..._N.bag.active. No existing file is overwritten. The file is locked (flock) during the life of this object,
+/// so that others see that it is being written.
 class LogName {
  public:
   /// number: N of the first try; afterwards behind the one taken.

@@ -33,7 +33,7 @@ class LogQueue {
   /// `bytes` is rounded down to whole units. Has no memory until take().
   explicit LogQueue(std::size_t bytes) : unit_count_(std::max<std::size_t>(bytes / sizeof(Unit), 8)) {}
 
-  /// All memory is taken and touched here, once; throws std::bad_alloc. By the producing thread, before it reserves.
+  /// Allocates and touches all memory; throws std::bad_alloc. Call in the producing thread before it reserves.
   void take() {
     if (!units_) units_ = std::make_unique<Unit[]>(unit_count_);
   }

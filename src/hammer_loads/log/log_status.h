@@ -11,11 +11,11 @@ namespace hammer_loads {
 enum class LogState {
   kOff,        ///< not started, or stopped on request
   kRecording,  ///< messages are written
-  kDiskFull,   ///< stopped by itself, or not started: too little space left
+  kDiskFull,   ///< stopped by itself, or not started, for lack of space
   kFailed,     ///< stopped by itself: the disk or rosbag reported an error
 };
 
-/// The part that has reached the disk. Brought up to date once a second and at every change of state or file.
+/// State of the files on the disk, updated once a second and at every change of state or file.
 struct LogStatus {
   LogState state{LogState::kOff};
   std::string reason;             ///< cause if the log stopped by itself or could not start; empty otherwise
@@ -34,7 +34,7 @@ struct LogTopicCounts {
   std::uint64_t too_large{};  ///< part of the dropped ones that never fit into the queue: log_queue_mb is too small
 };
 
-/// All of it at once.
+/// State of the log with its counters.
 struct LogHealth : LogStatus {
   double queue_fill{};                 ///< share of the queue in use [0..1]
   std::vector<LogTopicCounts> topics;  ///< in order of first appearance

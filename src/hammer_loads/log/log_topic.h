@@ -1,4 +1,4 @@
-/// One topic of the log: its message type and what became of its messages.
+/// One topic of the log: its message type and the counters of its messages.
 #pragma once
 
 #include <atomic>

@@ -145,7 +145,7 @@ void LogWriter::write(LogQueue::Record& record) {
   keepHouse(now);
 }
 
-/// Chunk, disk and size, each in its time.
+/// Checks age of the chunk, space on the disk and size of the file, each at its interval.
 void LogWriter::keepHouse(Clock::time_point now) {
   if (repeat_ && now - opened_ > LogFile::kChunkPeriod) repeatLatched(nullptr);
   if (!file_) return;
@@ -183,7 +183,7 @@ void LogWriter::begin(LogName name) {
   report(LogState::kRecording, "");
 }
 
-/// On request. A latched message stands in the file in any case.
+/// Stops on request. A latched message is written to the file in any case.
 void LogWriter::end() {
   if (repeat_) repeatLatched(nullptr);
   if (!file_) return;
@@ -213,7 +213,7 @@ void LogWriter::writeLast(LogOrder& order) {
   if (fault) stopFor(std::move(*fault));
 }
 
-/// By itself: the file is closed in good order if that is possible; the node goes on without a log.
+/// Stops after a fault: the file is closed properly if possible, and the node continues without a log.
 void LogWriter::stopFor(LogFault fault) {
   repeat_ = false;
   if (file_->isOpen()) {
@@ -234,8 +234,7 @@ void LogWriter::settle() {
   ++totals_.files_closed;
 }
 
-/// Deletes the oldest files of this process until one more has its place within log_total_mb. Files of earlier runs may
-/// still be wanted.
+/// Deletes the oldest files of this process until another one fits within log_total_mb. Files of earlier runs are kept.
 void LogWriter::makeRoom() {
   if (settings_.total_size == 0) return;
   while (!closed_.empty() && closed_size_ + settings_.split_size > settings_.total_size) {

@@ -1,4 +1,4 @@
-/// The thread that takes messages from the queue to the disk.
+/// The thread that writes messages from the queue to the disk.
 #pragma once
 
 #include <atomic>
@@ -44,7 +44,7 @@ class LogWriter {
   /// Carries out all orders, writes all messages, closes the file.
   ~LogWriter();
 
-  /// False if far too many orders wait already. To stop and to forget always succeeds.
+  /// Queues an order. Returns false if too many orders wait; orders to stop and to forget always succeed.
   bool post(LogOrder order);
   /// A recording that cannot begin. session: a number of its own.
   void refuse(std::uint64_t session, LogState state, const std::string& reason);

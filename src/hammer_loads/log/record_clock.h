@@ -7,9 +7,9 @@
 
 namespace hammer_loads {
 
-/// Arrival times, made strictly increasing so that a log read back in time order is in the order of arrival. Simulated
-/// time that runs back (a bag that loops, a simulation that starts again) restarts; a wall clock that is set back
-/// changes nothing, for header stamps are the only time that is computed with.
+/// Arrival times, made strictly increasing so that a log in time order is in the order of arrival. If simulated time
+/// runs back (a looped bag, a restarted simulation), the clock restarts. A wall clock that is set back has no effect,
+/// as only header stamps are used in computations.
 class RecordClock {
  public:
   struct Tick {

@@ -13,10 +13,12 @@
 
 namespace hammer_loads {
 
-constexpr std::uint32_t kTopicQueue = 10000;  ///< ten seconds at 1 kHz, in and out: a stalled machine loses nothing
+constexpr std::uint32_t kTopicQueue =
+    10000;  ///< ten seconds at 1 kHz, for inputs and outputs: a stalled machine loses no message
 
-/// Private topics, each published while it has a subscriber and logged while a log records that wants it; else it is
-/// not computed. A latched output is only logged: the node itself publishes it. The log must outlive the outputs.
+/// Private topics. Each is published while it has a subscriber and logged while a log that wants it records; otherwise
+/// it is not computed. A latched output is only logged, since the node itself publishes it. The log must outlive the
+/// outputs.
 template <typename Outputs>
 void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) {
   outputs.forEach([&](auto& output) {

@@ -138,7 +138,7 @@ void BagFile::unpack(rosbag::CompressionType packing, ReadChunk& read) const {
   try {
     streams_.getStream(packing)->decompress(read.bytes.data(), size(read.bytes), read.packed.data(), size(read.packed));
   } catch (const rosbag::BagException& error) {
-    throw std::runtime_error(error.what());  // that class is for errors of outputs, this one is of an input
+    throw std::runtime_error(error.what());  // callers take that class for an error of an output
   }
 }
 

@@ -1,5 +1,5 @@
-/// A recorded bag, read chunk by chunk: unlike rosbag::Bag it keeps no index of every message, so that its memory does
-/// not grow with the recording. Format: wiki.ros.org/Bags/Format/2.0.
+/// Reader of a recorded bag, chunk by chunk. Unlike rosbag::Bag it keeps no index of every message, so that its memory
+/// does not grow with the recording. Format: wiki.ros.org/Bags/Format/2.0.
 #pragma once
 
 #include <ros/message_traits.h>
@@ -23,7 +23,7 @@ struct BagConnection {
   std::string publisher;  ///< name of the node; empty where the bag does not state it
 };
 
-/// A message where it lies in a chunk that was read.
+/// A message within a chunk in memory.
 struct BagMessage {
   ros::Time time;  ///< time of its record
   const BagConnection* connection;
@@ -35,7 +35,7 @@ struct BagMessage {
     const std::string& md5sum = connection->md5sum;
     return md5sum == "*" || md5sum == ros::message_traits::md5sum<Message>();
   }
-  /// Into a message that may be used again and again. Throws std::runtime_error where it is damaged or of another
+  /// Deserialises into a message, which may be reused. Throws std::runtime_error for a damaged message or another
   /// definition.
   template <typename Message>
   void to(Message& message) const {
@@ -46,7 +46,7 @@ struct BagMessage {
   }
 };
 
-/// Place, times and content of a chunk, as the bag's end lists them.
+/// Position, times and content of a chunk, from the index at the bag's end.
 struct BagChunk {
   std::uint64_t position{};                       ///< in the file
   ros::Time first, last;                          ///< record times of its messages
@@ -61,7 +61,8 @@ struct ReadChunk {
 
 class BagFile {
  public:
-  /// Throws rosbag::BagUnindexedException for a recording that was not closed, std::runtime_error for what is no bag.
+  /// Throws rosbag::BagUnindexedException for a recording that was not closed, std::runtime_error for a file that is no
+  /// bag.
   explicit BagFile(const std::string& file);
   BagFile(const BagFile&) = delete;
   BagFile& operator=(const BagFile&) = delete;

@@ -28,7 +28,7 @@ std::string typeOf() {
 
 class BagInputs {
  public:
-  /// Opens every bag; why that could not be, one line each.
+  /// Opens every bag. Returns one line for each that cannot be opened.
   static Checked<BagInputs> open(const std::vector<std::string>& files);
 
   const std::map<std::string, BagTopic>& topics() const { return topics_; }
@@ -37,8 +37,8 @@ class BagInputs {
   std::string topicList() const;
   /// Names of the topics of this type, in one line; "none" if there are none.
   std::string topicsOfType(const std::string& type) const;
-  /// Record times of the first and last message of the chunks in which the topic is, or any if it is empty; zero where
-  /// there is none.
+  /// Record times of the first and last message of the chunks with the topic, or of all chunks for an empty name; zero
+  /// if there is none.
   std::pair<ros::Time, ros::Time> span(const std::string& topic = {}) const;
   /// The files' names, in one line.
   const std::string& names() const { return names_; }

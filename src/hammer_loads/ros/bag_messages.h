@@ -14,8 +14,8 @@ using BagQuery = std::function<bool(const BagConnection&)>;
 /// Filter of the chunks that may contain wanted messages, by their times. Empty: all.
 using ChunkQuery = std::function<bool(const BagChunk&)>;
 
-/// Holds the chunks whose times overlap at the present place, no more. Messages of one time come in the order of the
-/// bags, then of the file.
+/// Holds in memory only the chunks whose times overlap at the present place. Messages of equal times are in the order
+/// of the bags, then of the file.
 class BagMessages {
  public:
   /// The bags must outlive it and are not read by others meanwhile.

@@ -1,4 +1,4 @@
-/// Bags of this package's outputs: which of them may be replaced.
+/// Check whether an existing bag may be replaced.
 #pragma once
 
 #include <string>

@@ -145,7 +145,7 @@ void process(const Work& work, const Sinks& sinks, const std::function<void(doub
   warnOfInputs(work, topics, heard, report.warnings);
 }
 
-/// Into the tables alone, or beside a bag; what went wrong in one line, empty if nothing did.
+/// Writes the tables, and a bag if one is given. Returns a problem in one line; empty if there is none.
 std::string writeTables(const Work& work, BagWriter* bag, const std::function<void(double)>& progress,
                         BagReport& report) {
   std::optional<BagTables> tables;
@@ -156,7 +156,7 @@ std::string writeTables(const Work& work, BagWriter* bag, const std::function<vo
   return tables->problem().empty() ? "" : work.job.tables + ": cannot be written: " + tables->problem();
 }
 
-/// Into the output files; what went wrong in one line, empty if nothing did.
+/// Writes the output files. Returns a problem in one line; empty if there is none.
 std::string write(const Work& work, const std::function<void(double)>& progress, BagReport& report) {
   if (work.job.output.empty()) return writeTables(work, nullptr, progress, report);
   try {
@@ -164,7 +164,7 @@ std::string write(const Work& work, const std::function<void(double)>& progress,
     const std::string problem = writeTables(work, &bag, progress, report);
     bag.close();
     return problem;
-  } catch (const std::system_error& error) {  // an error of an input is none of the output
+  } catch (const std::system_error& error) {  // errors of inputs have another class
     return work.job.output + ": cannot be written: " + error.code().message();
   }
 }

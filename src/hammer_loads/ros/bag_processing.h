@@ -1,4 +1,4 @@
-/// A recording through the same flow as live messages.
+/// Processing of a recording by the same functions as live messages.
 #pragma once
 
 #include <functional>
@@ -15,14 +15,14 @@ namespace hammer_loads {
 
 struct BagJob {
   std::vector<std::string> inputs;  ///< bags of one recording
-  std::string output;               ///< bag to write; what it holds is lost; empty: none
+  std::string output;               ///< bag to write, which is overwritten; empty: none
   std::string tables;               ///< empty file, to get the results as tables (doc/tables.md); "": none
   life::PieceSink* pieces{};        ///< receiver of the counts of its runs; null: none
-  /// Parameters over the shipped ones; nothing: those of the recording's run_info, if it has one.
+  /// Parameters over the shipped ones; empty: those of the recording's run_info, if it has one.
   std::optional<ParameterMap> parameters;
-  /// Text of a URDF; nothing: that of the recording's run_info, if it has one.
+  /// Text of a URDF; empty: that of the recording's run_info, if it has one.
   std::optional<std::string> robot_description;
-  /// Names of the topics; what is empty comes from the parameters (`input_topic_crank` ...), else it is the default.
+  /// Names of the topics; an empty one is replaced by that of the parameters (`input_topic_crank` ...) or the default.
   InputTopics topics;
   std::string output_prefix{"/hammer_loads"};
   bool pins{};                          ///< pin forces as well
@@ -31,8 +31,8 @@ struct BagJob {
 
 /// Reads the inputs' messages in record order and writes every output at the record time of the input that caused it.
 /// A problem with a file begins with its name in the job.
-/// progress: part done in [0, 1]. Returns what went wrong, one line each; nothing if all is well. Then the report is
-/// whole, otherwise the output is of no use.
+/// progress: part done in [0, 1]. Returns one line for each problem. Without a problem the report is complete;
+/// otherwise the output must not be used.
 std::vector<std::string> processBag(const BagJob& job, const std::function<void(double)>& progress, BagReport& report);
 
 }  // namespace hammer_loads

@@ -34,7 +34,7 @@ void add(const SampleCounts& counts, SampleCounts& sum) {
 }
 
 std::string textOf(const BagReport& report) {
-  constexpr double kMuch = 0.02;  // share of the samples; of a good recording half a per cent lie beside a blow
+  constexpr double kMuch = 0.02;  // share of the samples; in a good recording half a per cent are close to a blow
   std::string text;
   for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
     if (report.crank.refused[i] == 0) continue;

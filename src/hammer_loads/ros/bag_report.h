@@ -35,7 +35,7 @@ std::vector<std::string> textsOf(const std::vector<BagWarning>& warnings);
 
 void add(const SampleCounts& counts, SampleCounts& sum);
 
-/// Reasons of the samples that gave nothing, one line each.
+/// Reasons of the samples without a result, one line each.
 std::string textOf(const BagReport& report);
 
 /// One line: samples, turns, what was written.

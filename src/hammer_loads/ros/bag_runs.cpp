@@ -31,7 +31,7 @@ bool isOfHammer(const RunInfo& info) {
   return parameters && hasHammerKey(*parameters);
 }
 
-/// Each bag of a recording repeats the one in force.
+/// Removes repetitions: each bag of a recording repeats the run_info in force.
 bool isRepeated(const std::vector<RecordedRun>& runs, const RunInfo& info) {
   return !runs.empty() && runs.back().info.header.stamp == info.header.stamp &&
          runs.back().info.parameters_yaml == info.parameters_yaml &&
@@ -59,7 +59,7 @@ RunInfos readRunInfos(const BagInputs& inputs, std::vector<BagWarning>& warnings
   return found;
 }
 
-/// The job's names go over those of the parameters, these over the recorded ones.
+/// Topics of the job, of the parameters or of the recording, in this order of priority.
 Settings withTopics(Settings settings, const InputTopics& given, const InputTopics& recorded = {}) {
   const InputTopics topics = inputTopics([&](const InputName& input) -> std::string {
     for (const InputTopics& known : {given, settings.input_topics, recorded})
@@ -125,7 +125,7 @@ Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob&
     result.problems.push_back(topic + ": its parameters cannot be used, --params FILE.yaml must give others");
     return result;
   }
-  // A node that ran already when the recording began: its run goes on. Otherwise what came before it is a run as well.
+  // If the node ran before the recording began, its run continues. Otherwise earlier messages are a run of their own.
   const std::optional<ros::Time> first = firstInput(inputs, runs.front().settings);
   if (first && infos.runs.front().info.header.stamp > *first) runs.insert(runs.begin(), runs.front());
   runs.front().from = ros::Time();
@@ -169,7 +169,7 @@ std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string
   std::stable_sort(splits.begin(), splits.end(),
                    [](const SplitRuns& a, const SplitRuns& b) { return a.begin < b.begin; });
   std::vector<std::vector<std::size_t>> recordings;
-  // By the run that they end with. Two records of one run at the same time are no splits.
+  // Orders bags by the run with which they end. Two recordings of one run at the same time are no splits.
   std::map<std::string, std::pair<std::size_t, ros::Time>> ended;
   const ros::Duration overlap(1.0);  // latched messages may be repeated with an earlier time
   for (const SplitRuns& split : splits) {

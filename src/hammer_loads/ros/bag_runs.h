@@ -1,4 +1,4 @@
-/// The runs of a recording: from when on which parameters apply.
+/// The runs of a recording: times from which parameters apply.
 #pragma once
 
 #include <ros/time.h>
@@ -18,13 +18,14 @@ struct BagRun {
   Settings settings;  ///< with the names of the topics read
 };
 
-/// One run with the job's parameters, or one for each run_info of a hammer_loads node: from its record time on, the
-/// first one also for what comes before it. Notes state what is used; what makes it uncertain is added to `warnings`.
+/// One run with the job's parameters, or one for each run_info of a hammer_loads node, from its record time on; the
+/// first one also includes earlier messages. Notes state the parameters in use; `warnings` receives reasons to doubt
+/// them.
 Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings);
 
-/// Bags by the recordings that they are splits of: one goes on where the run that it ends with is the one that another
-/// begins with, later. Runs are known by their run_info; a bag without one, or one that cannot be read, is alone. The
-/// splits in the order of their times, the recordings in that of their first bags given.
+/// Bags grouped by recording. A bag continues another one if it begins later with the run with which the other ends.
+/// Runs are identified by their run_info; a bag without one, or one that cannot be read, is a recording of its own.
+/// Splits are in the order of their times, recordings in the order of their first bags.
 std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string>& files);
 
 }  // namespace hammer_loads

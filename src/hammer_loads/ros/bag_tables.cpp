@@ -17,7 +17,7 @@
 namespace hammer_loads {
 namespace {
 
-/// A database holds no path: where a node logs and counts is no property of the machine. yaml: one key a line.
+/// Removes paths, since the places of a node's log and ledger are no property of the machine. yaml: one key per line.
 std::string withoutPaths(const std::string& yaml) {
   std::istringstream lines(yaml);
   std::string kept;
@@ -28,7 +28,7 @@ std::string withoutPaths(const std::string& yaml) {
   return kept;
 }
 
-/// A test report states the uncertainty of every input: also those that no file gives.
+/// Adds the deviations that no file gives, since a test report states the uncertainty of every input.
 void addUsualDeviations(const HammerParameters& hammer, RunRecord& record) {
   for (const auto& [key, deviation] : deviationsInForce(hammer)) {
     const auto has_key = [&key = key](const RunRecord::Parameter& p) { return p.key == key; };

@@ -1,4 +1,4 @@
-/// Results of a recording as tables: takes what the hammer's outputs give.
+/// Writer of a recording's results as tables, from the messages of the hammer's outputs.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class BagTables {
   /// After the last run; warnings: of all runs and of the recording.
   void finish(const std::vector<BagWarning>& warnings);
 
-  /// Reason why the file cannot be written, one line without its name; empty while all is well.
+  /// Reason why the file cannot be written, one line without its name; empty without a problem.
   const std::string& problem() const { return writer_.problem(); }
 
  private:

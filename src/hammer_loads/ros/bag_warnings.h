@@ -13,24 +13,24 @@ namespace hammer_loads {
 
 class HammerBridge;
 
-/// Warnings by the pipeline's state at the end of a run: wrong units, joints that never came.
-/// joints_came: there were messages on their topic. run: its number.
+/// Warnings by the pipeline's state at the end of a run: wrong units, joints without a message.
+/// joints_came: there were messages on their topic. run: number of the run.
 void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, std::vector<BagWarning>& warnings);
 
-/// Several nodes on one of these topics. Transforms come from several as a rule.
+/// Warns of several publishers on one of these topics. Transforms are excepted, since they usually have several.
 void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings);
 
-/// Messages that the log of these bags could not keep.
+/// Warns of messages that the log of these bags has lost.
 void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings);
 
-/// Messages of another version of this package: their definition differs.
+/// Warns of messages of another version of this package, whose definition differs.
 void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warnings);
 
-/// Topics that the runs want and that are not among those heard.
+/// Warns of topics that the runs need and that have no message.
 void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
                    std::vector<BagWarning>& warnings);
 
-/// No wrench came out; or no whole turn did, and most samples contradict the parameters.
+/// Warns if there is no wrench, or if there is no whole turn and most samples contradict the parameters.
 bool isUseless(const BagReport& report);
 
 /// Warnings that the crank's readings are not those of such a machine, in one line.

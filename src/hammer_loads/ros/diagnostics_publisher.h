@@ -1,4 +1,4 @@
-/// The tasks of diagnostic_updater on /diagnostics and in the log, without its arithmetic on ROS time.
+/// Publisher of diagnostic_updater's tasks on /diagnostics and in the log, without its arithmetic on ROS time.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>

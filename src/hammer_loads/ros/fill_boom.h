@@ -1,4 +1,5 @@
-/// Messages of the boom from what a sample gave. Names and room are filled once: nothing is allocated per sample.
+/// Messages of the boom from the result of a sample. Names and array sizes are set once; nothing is allocated per
+/// sample.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -24,7 +25,7 @@ class CylinderJoints {
  public:
   /// Adds their names and room to the message.
   CylinderJoints(const Boom& boom, sensor_msgs::JointState& message);
-  /// Positions and velocities as the boom stands [rad], [m] and by the second.
+  /// Positions and velocities of the boom's present pose [rad], [m] and per second.
   void fill(const Boom& boom, sensor_msgs::JointState& message) const;
 
  private:

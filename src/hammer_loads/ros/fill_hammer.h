@@ -1,4 +1,4 @@
-/// Messages of the hammer's own loads from what a sample gave. Headers' frames and names are filled by prepare...().
+/// Messages of the hammer's own loads from the result of a sample. Headers' frames and names are set by prepare...().
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>

@@ -18,7 +18,7 @@ void prepareTurnLoads(const std::vector<std::string>& channels, TurnLoads& messa
 /// No allocation.
 void fillTurnLoads(const TurnEnd& end, const life::TurnLoads& turn, TurnLoads& message);
 
-/// total: since the count began, at `since`. machine: what its channels are judged by. Not for the hot path.
+/// total: since the count began, at `since`. machine: source of the channels' S-N curves. Not for the hot path.
 void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::LedgerMachine& machine,
                     LoadCycles& message);
 

@@ -26,7 +26,7 @@ Pose pose(const geometry_msgs::Transform& transform) {
   return Eigen::Translation3d(vector(transform.translation)) * rotation;
 }
 
-/// tf2 adds its ten seconds to stamps, multiplies what it chains, and throws where that overflows.
+/// Bounds of transforms: tf2 adds its ten seconds to stamps, multiplies chained transforms, and throws on overflow.
 bool isSound(const geometry_msgs::TransformStamped& transform) {
   constexpr std::uint32_t kLatest = std::numeric_limits<std::uint32_t>::max() - 3600;  // [s]
   constexpr double kFurthest = 1e6;                                                    // [m]
@@ -73,7 +73,7 @@ void FrameWrenches::transforms(const tf2_msgs::TFMessage& message, bool is_stati
   for (std::size_t i = 0; i < frames_.size(); ++i) guarded([&] { release(i, record_time); });
 }
 
-/// tf2 subtracts stamps and throws where they lie more than 2^31 s apart: then nothing it holds belongs together.
+/// Clears the buffer after such a jump of time: tf2 subtracts stamps and throws if they differ by more than 2^31 s.
 template <typename Action>
 void FrameWrenches::guarded(const Action& action) {
   try {
@@ -100,7 +100,7 @@ bool FrameWrenches::known(std::size_t frame, const ros::Time& stamp) const {
   return transforms_.canTransform(frames_[frame], hull_, stamp);
 }
 
-/// TF is connected and has gone beyond that time: no later transform will be of use for it.
+/// True if TF is connected and later than that time, so that no further transform can serve it.
 bool FrameWrenches::past(std::size_t frame, const ros::Time& stamp) const {
   return known(frame, ros::Time()) &&
          transforms_.lookupTransform(frames_[frame], hull_, ros::Time()).header.stamp >= stamp;

@@ -1,4 +1,4 @@
-/// The hull's load at TF frames that are no link of the boom's chain, a strain gauge's for instance.
+/// The hull's load at TF frames that are no link of the boom's chain, such as that of a strain gauge.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -12,7 +12,7 @@
 
 namespace hammer_loads {
 
-/// The fate of the wrenches for a frame.
+/// Counters of the wrenches for a frame.
 struct FrameWrenchCounts {
   std::uint64_t published{};
   std::uint64_t dropped{};  ///< no transform at their stamp: none within the wait, or TF began later
@@ -20,9 +20,9 @@ struct FrameWrenchCounts {
   std::size_t waiting{};
 };
 
-/// Transforms and wrenches in, wrenches at the frames out. A wrench that has no transform at its stamp waits for it in
-/// a queue, of bounded time and length; what does not get it is never published. Single-threaded, nothing blocks:
-/// whatever arrives may release waiting wrenches, which then have the record time of what released them.
+/// Transforms wrenches to other frames. A wrench without a transform at its stamp waits for it in a queue of bounded
+/// time and length, and is dropped if none arrives. Single-threaded and non-blocking: each input may release waiting
+/// wrenches, which then have the record time of that input.
 class FrameWrenches {
  public:
   using Publish =
@@ -36,13 +36,13 @@ class FrameWrenches {
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
   /// A load on the hull about its origin, axes of the hull; stamps grow.
   void wrench(const geometry_msgs::WrenchStamped& load, const ros::Time& record_time);
-  /// Time jumped: what waits is forgotten, and every transform but the static ones.
+  /// Resets after a jump of time: discards waiting wrenches and all transforms but the static ones.
   void reset();
 
   const std::vector<std::string>& frames() const { return frames_; }
   FrameWrenchCounts counts(std::size_t frame) const;
   std::uint64_t refusedTransforms() const { return refused_transforms_; }
-  /// Reason why the last unpublished wrench of a frame could not be published, in one line; empty if one was since.
+  /// Reason why the last dropped wrench of a frame was not published, in one line; empty if one was published since.
   std::string complaint(std::size_t frame) const;
 
  private:

@@ -37,7 +37,7 @@ HammerBridge::HammerBridge(const Settings& settings) : settings_(settings) {
   reset();
 }
 
-/// The parts that stay the same in every message.
+/// Fills the constant parts of every message.
 void HammerBridge::prepareOutputs() {
   const std::string frame = hullFrame(settings_);
   for (std_msgs::Header* header :
@@ -102,7 +102,7 @@ void HammerBridge::keepPieces(life::PieceSink& pieces) {
   beginCount();
 }
 
-/// Stamped with the first input: a second run over the same input says the same.
+/// Sends run_info with the stamp of the first input, so that processing the same input again gives the same message.
 void HammerBridge::beginRun(const ros::Time& record_time) {
   if (run_begun_) return;
   run_begun_ = true;

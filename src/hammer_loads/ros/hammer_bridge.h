@@ -1,4 +1,4 @@
-/// From input messages to output messages: the same for the live node, the nodelet and process_bag.
+/// Conversion of input messages to output messages, common to the live node, the nodelet and process_bag.
 #pragma once
 
 #include <sensor_msgs/FluidPressure.h>
@@ -35,21 +35,21 @@ class HammerBridge {
   /// Gauge pressure in a chamber of one of cylinders().
   void cylinderPressure(std::size_t cylinder, Chamber chamber, const sensor_msgs::FluidPressure& message,
                         const ros::Time& record_time);
-  /// A measured load on the hull, which outputs are compared with; it changes none of them.
+  /// Takes a measured load on the hull for comparison; it does not change any output.
   void reference(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time);
   void measured(StampNs stamp, const ReferenceComparison::Values& load) { reference_.measured(stamp, load); }
-  /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
+  /// Takes a message of /tf or of /tf_static. The latter do not begin a run, since they apply to every run.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
-  /// No more inputs come: sends the blow that is still being measured, at the record time of the last crank message.
+  /// Ends the inputs: sends the blow that is still being measured, at the record time of the last crank message.
   void end();
-  /// A new run begins with the next input, in the state of a bridge just made; counts go on. For a time that jumped and
-  /// for a log that is to be reproduced from its own inputs. Static transforms stay.
+  /// Begins a new run with the next input, in the initial state; counters continue. It serves jumps of time and logs,
+  /// which must be reproducible from their own inputs. Static transforms are kept.
   void reset() { begin(Settings(settings_)); }
   /// Begins a run with other settings.
   void begin(const Settings& settings);
 
-  /// Passes the counts of each run to `pieces` as well, piece by piece; to be called before the first input. It must
-  /// outlive this.
+  /// Passes the cycle counts of each run to `pieces` as well. Call before the first input; `pieces` must outlive this
+  /// object.
   void keepPieces(life::PieceSink& pieces);
   /// Called after each crank message and at the end of a run, before its turns are sent; replaced with each call.
   void watch(std::function<void()> sample) { watch_ = std::move(sample); }
@@ -91,7 +91,7 @@ class HammerBridge {
   life::PieceSink* pieces_{};                      ///< null: none
   std::optional<LimitWatch> limits_;               ///< limits of the run
   ReferenceComparison reference_;                  ///< comparison of the run
-  bool goes_on_{};                                 ///< the last crank sample was published
+  bool goes_on_{};                                 ///< true if the last crank sample was published
   std::vector<ChainLink> chain_links_;
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
   std::optional<FrameWrenches> frame_wrenches_;

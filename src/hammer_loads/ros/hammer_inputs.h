@@ -1,4 +1,4 @@
-/// Every topic that the hammer's loads are computed from: the twin of HammerOutputs.
+/// All input topics of the hammer's loads; counterpart of HammerOutputs.
 #pragma once
 
 #include <ros/subscriber.h>
@@ -48,8 +48,9 @@ struct HammerInputs {
   Input<tf2_msgs::TFMessage> tf_static, tf;
   Input<sensor_msgs::JointState> crank;
 
-  /// Visits the inputs of sensors. Joint states come first: where both are on one topic, a sample's own pitch counts
-  /// for it. The crank comes last: a player of bags that waits for its subscriber then finds all others.
+  /// Visits the inputs of sensors. Joint states are first, so that on a common topic the pitch of a message applies to
+  /// its own crank sample. The crank is last, so that a player of bags that waits for its subscriber finds all others
+  /// subscribed.
   template <typename Visit>
   void forEachSensor(const Visit& visit) {
     visitSensors(*this, visit);
@@ -73,7 +74,8 @@ struct HammerInputs {
   }
 };
 
-/// Topics of the pressures below the settings' prefix, and whose they are; none without a boom on cylinders.
+/// Topics of the pressures below the settings' prefix, with their cylinders and chambers; none for a boom without
+/// cylinders.
 struct PressureTopic {
   std::string name;
   std::size_t cylinder{};

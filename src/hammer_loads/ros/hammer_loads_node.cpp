@@ -45,7 +45,7 @@ HammerLoadsNode::~HammerLoadsNode() {
 template <typename Message>
 void HammerLoadsNode::subscribe(ros::NodeHandle& node, Input<Message>& input) {
   using Given = const Event<Message>&;
-  // A log stands alone: who replays it needs the latched messages, even if this node does not.
+  // A log must be complete: its replay needs the latched messages even if this node does not.
   if (!input.wanted && !input.latched) return;
   const boost::function<void(Given)> arrived = [this, &input](Given event) { take(input, event); };
   input.subscriber = node.subscribe<Message, Given>(input.topic, kTopicQueue, arrived, {},
@@ -108,7 +108,7 @@ HammerLoadsConfig HammerLoadsNode::configInForce(bool log_enabled) const {
   return config;
 }
 
-/// The answer says what is in force.
+/// The answer contains the configuration in force.
 void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
   const bool switched = config.log_enabled != config_.log_enabled;
   if (switched) switchLog(config.log_enabled);

@@ -30,7 +30,7 @@ class HammerLoadsNode final : public LiveNode {
   /// log: started already where settings.log.enabled. ledger: null where none is kept.
   HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
                   std::unique_ptr<BagLog> log, std::unique_ptr<life::LiveLedger> ledger);
-  /// Ends the run, and writes to log and ledger what is not there yet.
+  /// Ends the run and writes the rest to log and ledger.
   ~HammerLoadsNode() override;
 
  private:

@@ -1,4 +1,4 @@
-/// Every topic that the hammer's loads are published on.
+/// All output topics of the hammer's loads.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kNamingMessages = 64;             ///< whose readings distinguish runs with one first stamp
 constexpr StampNs kMarkEvery = 4LL * 1000 * 1000 * 1000;  ///< [ns]: a split is longer; a working day gives 7200 marks
 
-/// The sensor's reading, whatever the parameters make of it.
+/// The sensor's reading before any parameter is applied.
 std::uint64_t readingDigest(const sensor_msgs::JointState& message, Digest digest = Digest()) {
   digest.add(stampOf(message.header.stamp));
   for (const double position : message.position) digest.add(position);
@@ -22,7 +22,8 @@ std::uint64_t readingDigest(const sensor_msgs::JointState& message, Digest diges
   return digest.value();
 }
 
-/// A digest of what turns readings into loads beside the machine itself: not what is logged, counted or listened to.
+/// Digest of the parameters that turn readings into loads, without those of the machine, of the log, of counting and of
+/// topics.
 std::string sensorParameters(const std::string& yaml) {
   std::istringstream lines(yaml);
   std::string kept;
@@ -77,8 +78,8 @@ void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& r
   follower_.follow();
 }
 
-/// One message of each stretch of time, the first after the one before: wherever a part of the recording begins, it has
-/// the same ones. The run begins as soon as it has its name: trouble with its ledger shows before the first piece.
+/// Marks the first message of each stretch of time, so that any part of a recording has the same marks. The run begins
+/// as soon as it is identified, so that a problem with its ledger is reported before the first piece.
 void LifeFlow::mark(const sensor_msgs::JointState& message) {
   if (messages_ < kNamingMessages) digest_ = readingDigest(message, Digest(digest_));
   if (++messages_ == kNamingMessages) name();

@@ -1,4 +1,4 @@
-/// A run's turn loads and load cycles on their way to messages and ledger.
+/// Messages and ledger entries of a run's turn loads and load cycles.
 #pragma once
 
 #include <ros/time.h>
@@ -21,13 +21,13 @@ class LifeFlow {
   /// it, too.
   LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOutputs& outputs, life::PieceSink* pieces);
 
-  /// Takes what the pipeline made of a crank message; the first ones name the run.
+  /// Takes the pipeline's result for a crank message; the first messages identify the run.
   void follow(const sensor_msgs::JointState& message, const ros::Time& record_time);
   /// Takes the ends of Pipeline::end().
   void end() { follower_.end(); }
   /// Sends the loads of a revolution, one of the ends of the result just followed.
   void sendTurn(const TurnEnd& end, const ros::Time& record_time);
-  /// Sends what has been counted, at the record time of the last message; nothing may follow.
+  /// Sends the counts at the record time of the last message. No further call may follow.
   void finish();
 
   bool begun() const { return begun_; }

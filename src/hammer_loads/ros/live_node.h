@@ -1,4 +1,4 @@
-/// The live nodes as programs and nodelets see them: without the headers that a node is made of, seconds for each.
+/// Interface of the live nodes for programs and nodelets, which saves them the headers of the node.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -9,7 +9,7 @@
 
 namespace hammer_loads {
 
-/// Works from when it is made until it is destroyed.
+/// A node that works from its construction to its destruction.
 class LiveNode {
  public:
   virtual ~LiveNode() = default;

@@ -1,4 +1,4 @@
-/// The boom's loads as rviz draws them: arrows at their frames, and the hammer's work as a line of text.
+/// Display of the boom's loads in rviz: arrows at their frames, and a line of text on the hammer's work.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -51,7 +51,7 @@ class LoadDisplay {
   tf2_ros::StaticTransformBroadcaster frames_;
   ros::Publisher text_;
   ros::Subscriber run_info_, sections_, reactions_, pulses_, blows_;
-  ros::WallTimer timer_;  ///< pictures are for eyes; a timer of ROS time ends the node at the end of that
+  ros::WallTimer timer_;  ///< wall time, since a timer of ROS time ends the node at the end of that time
 };
 
 }  // namespace hammer_loads

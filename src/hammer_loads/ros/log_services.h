@@ -11,14 +11,14 @@
 
 namespace hammer_loads {
 
-/// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request carries nothing: where to and under which
-/// names the log is written comes from the parameters alone. The answer states what was done or why not. A log that a
-/// full disk has stopped restarts by itself when there is room again.
+/// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request is empty: directory and names of the log come
+/// from the parameters. The answer states the action or the reason against it. A log that a full disk has stopped
+/// restarts by itself once there is room.
 class LogServices {
  public:
-  /// finish: called before a log begins, goes on in a new file or ends: what ends a run belongs into the file that
-  /// holds it. begin: called when a log begins or goes on in a new file, so that the file holds a run from its
-  /// beginning. switched: called when the log has been started or stopped. The log must outlive this.
+  /// finish: called before a log begins, is split or ends, so that the last messages of a run are in its file. begin:
+  /// called after a log has begun or was split, so that the file contains a run from its beginning. switched: called
+  /// after the log was started or stopped. The log must outlive this object.
   LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> finish, std::function<void()> begin,
               std::function<void()> switched);
 

@@ -28,7 +28,7 @@ constexpr auto kPoll = std::chrono::milliseconds(10);
 constexpr double kJointPatience = 1.0;  // who listens to the crank connects to the boom at about the same time [s]
 constexpr double kNotable = 1.0;        // [s]
 constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // for subscribers that do not report
-constexpr std::uint32_t kQueueSize = 100000;                    // 20 s at 5 kHz: a subscriber that stalls loses nothing
+constexpr std::uint32_t kQueueSize = 100000;                    // 20 s at 5 kHz: a stalled subscriber loses no message
 constexpr std::uint32_t kOwnClockStart = 1700000000;            // [s]; fixed, so that the same seed gives the same bag
 
 ros::Time stampOf(std::int64_t nanoseconds) {
@@ -110,7 +110,7 @@ void MachinePlayer::run() {
   waitForTheLast();
 }
 
-/// Whoever ends with the machine drops what is in its queues: until the node has taken the last sample.
+/// Waits until the node has processed the last sample; a receiver that ends with the machine would drop its queues.
 void MachinePlayer::waitForTheLast() {
   if (followed_ == 0 && ros::ok()) std::this_thread::sleep_for(kLastDelivery);
   while (ros::ok() && followed_ != 0 && followed_ < newest_ && crank_publisher_.getNumSubscribers() > 0) {
@@ -131,7 +131,7 @@ void MachinePlayer::waitForSubscribers() {
   if (crank_publisher_.getNumSubscribers() > 0) wait(joint_publisher_, kJointPatience);
 }
 
-/// With /clock from elsewhere: until it says something.
+/// Waits for the first message of an external /clock.
 void MachinePlayer::waitForTime() {
   while (ros::ok() && source_ == TimeSource::kClockTopic && !ros::Time::isValid()) std::this_thread::sleep_for(kPoll);
 }
@@ -164,7 +164,7 @@ double MachinePlayer::timeAfter(double last) {
   return last + speed() * batch;
 }
 
-/// Unless nobody listens, or nobody who reports.
+/// Not without a subscriber, nor without one that reports.
 bool MachinePlayer::isFollowed(double last) {
   if (followed_ == 0 || crank_publisher_.getNumSubscribers() == 0) return true;
   const double behind = last - 1e-9 * static_cast<double>(followed_ - settings_.machine.start_stamp);

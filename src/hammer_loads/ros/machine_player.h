@@ -27,9 +27,9 @@ namespace hammer_loads {
 /// - the steady clock from the wall time of the start on, without /use_sim_time;
 /// - /clock, with /use_sim_time; when it jumps back the machine restarts;
 /// - its own steps, with /use_sim_time and publish_clock: then it publishes /clock, before the samples up to it.
-/// Unless it follows /clock, it never outruns the computer: a batch is 5 ms long at most, and the machine stands while
-/// the diagnostics of the node that takes its samples are 2 s behind. Its time then runs slower than the wall clock. It
-/// ends when that node has taken the last sample.
+/// Unless it follows /clock, it adapts to the computer: a batch is at most 5 ms long, and the machine pauses while the
+/// diagnostics of the receiving node are 2 s behind. Its time is then slower than the wall clock. It ends when that
+/// node has processed the last sample.
 class MachinePlayer {
  public:
   MachinePlayer(ros::NodeHandle node, const simulation::SimulatorSettings& settings);

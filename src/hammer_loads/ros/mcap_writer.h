@@ -1,5 +1,5 @@
 /// Writing an MCAP file (mcap.dev/spec, version 0) of profile ros1: chunks without compression, with CRCs, indexes and
-/// summary. Knows neither ROS nor hammer.
+/// summary. Independent of ROS and of the hammer.
 #pragma once
 
 #include <boost/crc.hpp>
@@ -12,8 +12,8 @@
 
 namespace hammer_loads {
 
-/// A file that is being written; what was not closed is no MCAP. Throws std::ios_base::failure where the file cannot
-/// be written.
+/// A file that is being written; it is valid only once it is closed. Throws std::ios_base::failure where the file
+/// cannot be written.
 class McapWriter {
  public:
   using Metadata = std::map<std::string, std::string>;

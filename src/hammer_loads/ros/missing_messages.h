@@ -1,4 +1,4 @@
-/// Messages of an input that never came.
+/// Number of lost messages of an input.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// The node's own health on /diagnostics; what is new of it on the console, once.
+/// The node's health on /diagnostics, and new warnings on the console, once each.
 #pragma once
 
 #include <ros/node_handle.h>

@@ -39,7 +39,7 @@ struct Comment {
   std::string unit{"-"}, description;
 };
 
-/// A field's comment is "# [unit] description"; further lines of the description begin with spaces.
+/// Reads a field's comment, "# [unit] description"; further lines of the description begin with spaces.
 Comment commentOf(const std::string& line) {
   std::smatch found;
   if (!std::regex_match(line, found, std::regex(R"([^#]*#\s*(?:\[([^\]]*)\]\s*)?(.*))"))) return {};

@@ -1,4 +1,4 @@
-/// The numbers of a message by their names, as its definition has them: a field added to the message is a column more.
+/// The numbers of a message by the names in its definition, so that a new field of the message becomes a new column.
 #pragma once
 
 #include <ros/message_traits.h>

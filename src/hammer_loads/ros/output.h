@@ -1,4 +1,4 @@
-/// One output topic: declared once, its message filled in place, sent to whatever is attached.
+/// One output topic: its message is filled in place and sent to all attached receivers.
 #pragma once
 
 #include <ros/time.h>
@@ -40,14 +40,14 @@ class Output {
   const std::string& name() const { return name_; }
   Delivery delivery() const { return delivery_; }
   LoggedOutputs loggedFrom() const { return logged_from_; }
-  /// Attaches a receiver of every message from now on, or of those for which `wants` holds. Receivers are called in the
-  /// order of attaching.
+  /// Attaches a receiver of all further messages, or of those for which `wants` is true. Receivers are called in the
+  /// order of their attachment.
   void attach(Deliver deliver, Wants wants = {}) { attached_.push_back({std::move(deliver), std::move(wants)}); }
   void detachAll() { attached_.clear(); }
   bool isWanted() const {
     return std::any_of(attached_.begin(), attached_.end(), [](const Attached& to) { return !to.wants || to.wants(); });
   }
-  /// Sends the message as fill(message) leaves it; nothing is computed where nobody wants it.
+  /// Fills the message by fill(message) and sends it; without a receiver nothing is computed.
   template <typename Fill>
   void send(const ros::Time& record_time, const Fill& fill) {
     ++sent_;

@@ -1,4 +1,4 @@
-/// Parameters of a node as the same reader takes them that reads files.
+/// Parameters of a node in the form of parameter files, for the same reader.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -11,7 +11,7 @@
 
 namespace hammer_loads {
 
-/// Types stay what they are on the parameter server: a text that looks like a number is still a text.
+/// Keeps the types of the parameter server: a text that looks like a number remains a text.
 YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value);
 
 /// Every parameter in the node's private name space; none if there are none.

@@ -1,4 +1,4 @@
-/// The life of a node that has a process of its own.
+/// Main loop of a node with a process of its own.
 #pragma once
 
 #include <ros/init.h>

@@ -1,4 +1,4 @@
-/// Header stamps as ROS and as the pipeline has them.
+/// Conversion of header stamps between ROS and the pipeline.
 #pragma once
 
 #include <ros/time.h>

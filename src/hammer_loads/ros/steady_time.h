@@ -1,4 +1,4 @@
-/// Ages and rates for reports: by a clock that is never set.
+/// Monotonic clock for ages and rates in reports.
 #pragma once
 
 #include <chrono>

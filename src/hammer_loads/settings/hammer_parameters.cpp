@@ -12,13 +12,13 @@
 namespace hammer_loads {
 namespace {
 
-// From a model on a desk to hammers larger than any machine carries. Signs are the mechanism's to judge.
+// From a model on a desk to hammers larger than any machine carries. The mechanism checks the signs.
 constexpr NumberRule kLength = NumberRule::within(1e-3, 10.0), kOffset = NumberRule::within(-10.0, 10.0);
 constexpr NumberRule kMass = NumberRule::within(1e-3, 1e5), kMassOrNone = NumberRule::zeroOrWithin(1e-6, 1e5);
 constexpr NumberRule kInertia = NumberRule::within(1e-9, 1e6), kInertiaOrNone = NumberRule::zeroOrWithin(1e-12, 1e6);
 constexpr NumberRule kStiffness = NumberRule::zeroOrWithin(1e6, 1e12), kDampingRatio = NumberRule::within(0.0, 100.0);
 constexpr NumberRule kPlay = NumberRule::within(0.0, 0.01), kFriction = NumberRule::within(0.0, 2.0);
-// Matter lies some radii of gyration from the pivot; a lever of less would make any blow's impulse endless.
+// The lever is some radii of gyration; a much shorter one would make the impulse of any blow infinite.
 constexpr double kLeastLever = 0.1, kMostLever = 10.0;
 
 /// In the order of kHammerConstants.
@@ -54,7 +54,7 @@ void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::
   }
 }
 
-/// The values themselves must be those of a hammer.
+/// Checks that the values are those of a hammer.
 void checkDeviations(ParameterReader& reader, const HammerParameters& parameters) {
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
     const HammerConstant& constant = kHammerConstants[i];
@@ -109,7 +109,7 @@ void readHullMass(ParameterReader& reader, HammerParameters& parameters) {
 std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes) {
   const std::size_t problems_before = reader.problems().size();
   HammerParameters parameters;
-  // Signs and what keys demand of each other are the mechanism's to judge.
+  // The mechanism checks the signs and the relations between keys.
   for (const HammerConstant& constant : kHammerConstants) {
     if (constant.optional && !reader.given(constant.key)) continue;
     constant.field(parameters) = reader.number(constant.key, constant.unit, NumberRule::any()) / inFile(constant, 1.0);
@@ -156,8 +156,8 @@ std::vector<std::pair<std::string, double>> deviationsInForce(const HammerParame
   return deviations;
 }
 
-/// The drive's inertia is a first guess, which a calibration replaces in any hammer; how it turns is no part of the
-/// mechanism.
+/// Removes the drive's inertia, a first guess that a calibration replaces, and the direction of rotation, which is not
+/// a property of the mechanism.
 bool hasHammerKey(const ParameterMap& parameters) {
   return std::any_of(kHammerConstants.begin(), kHammerConstants.end(), [&](const HammerConstant& constant) {
     const bool of_drive = constant.enters == HammerConstant::Enters::kLearned || std::string(constant.key) == kRatio;

@@ -13,7 +13,7 @@ namespace hammer_loads {
 
 class ParameterReader;
 
-/// Nothing when the reader got a problem with it; notes get the mechanism's accepted peculiarities.
+/// The mechanism; empty if the reader has a problem with it. notes receives the mechanism's accepted peculiarities.
 std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes);
 
 /// Keys that the hammer file must have, in its order.

@@ -15,7 +15,7 @@ enum class LimitedQuantity { kPeakForce, kBlowEnergy, kHoldDownForce, kBlankFiri
 struct Limit {
   std::string name, unit;
   LimitedQuantity quantity{};
-  bool is_least{};                 ///< else values above the limits exceed them
+  bool is_least{};                 ///< a least value; otherwise values above the limits exceed them
   double warn{kNaN}, error{kNaN};  ///< in the unit; NaN: none
   std::string channel{};           ///< channel of kDamage: stress/NAME
 

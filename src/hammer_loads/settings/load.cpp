@@ -183,7 +183,7 @@ Checked<Settings> loadFiles(const std::string& config_directory, const std::vect
   ParameterMap given;
   const bool all_read = addFiles(files, given, problems);
   Checked<Settings> result;
-  // Else keys would seem missing that the unread file may have.
+  // Without this, keys of the file that could not be read would be reported as missing.
   if (all_read) result = load(config_directory, given, robot_description);
   result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
   if (!result.problems.empty()) result.value.reset();

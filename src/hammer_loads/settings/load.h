@@ -25,7 +25,7 @@ struct Settings {
   life::LifeSettings life;  ///< every channel that it names is one of this machine
   std::vector<Limit> limits;
   std::optional<Boom> boom;        ///< nothing: `boom: none`, no robot description, or a foreign one
-  bool hammer_given{};             ///< else the shipped MO-100 is used
+  bool hammer_given{};             ///< true if hammer parameters are given; otherwise the shipped MO-100 is used
   std::string robot_description;   ///< the URDF's text, as given
   std::string yaml;                ///< every parameter in force; loading it alone with the same robot description
                                    ///< gives the same settings
@@ -44,7 +44,8 @@ Checked<Settings> load(const std::string& config_directory, ParameterMap given,
 Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
                             const std::string& robot_description = {});
 
-/// Settings in force with some numbers changed, or the reason against it. The keys must be among those in force.
+/// Settings in force with some numbers changed, or the reason why they are invalid. The keys must be among those in
+/// force.
 Checked<Settings> withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
 
 /// Settings with the names of the topics from which the input comes.

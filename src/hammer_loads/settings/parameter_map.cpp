@@ -108,7 +108,7 @@ std::optional<ParameterMap> readParameterFile(const std::string& file, std::vect
   return std::nullopt;
 }
 
-/// Put in anew: what is assigned to a node changes every copy of it, and both keep each other's documents for ever.
+/// Inserted anew: an assignment to a node changes every copy of it, and the documents of both are never released.
 void merge(const ParameterMap& over, ParameterMap& base) {
   ParameterMap all = over;
   all.insert(base.begin(), base.end());

@@ -1,4 +1,4 @@
-/// Parameters as they were given, not yet judged: key, value and where each came from.
+/// Parameters as given, before they are checked: key, value and origin of each.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -26,8 +26,8 @@ using ParameterMap = std::map<std::string, Parameter>;
 std::optional<ParameterMap> parameterMap(const YAML::Node& node, const std::string& origin,
                                          std::vector<std::string>& problems);
 
-/// From a YAML file. Nothing when it cannot be read, is not YAML, holds no map or several documents: one line states
-/// it.
+/// Reads a YAML file. Empty, with one line on the reason, if it cannot be read, is not YAML, or holds no map or several
+/// documents.
 std::optional<ParameterMap> readParameterFile(const std::string& file, std::vector<std::string>& problems);
 
 /// Adds `over` to `base`; a key of both takes the value of `over`.

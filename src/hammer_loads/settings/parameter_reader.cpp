@@ -219,7 +219,7 @@ void ParameterReader::reportUnknownKeys() {
 
 std::string ParameterReader::nearestKnownKey(const std::string& key) const {
   std::string nearest;
-  std::size_t least = 1 + std::max<std::size_t>(2, key.size() / 4);  // farther is no slip of the pen
+  std::size_t least = 1 + std::max<std::size_t>(2, key.size() / 4);  // a larger distance is no misspelling
   for (const std::string& known : known_) {
     const auto [shorter, longer] = std::minmax({key.size(), known.size()});
     if (longer - shorter >= least) continue;  // no nearer than that; saves most of the time of a file of foreign keys

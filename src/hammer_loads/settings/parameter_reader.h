@@ -1,4 +1,4 @@
-/// Reads typed parameters and collects everything that is wrong with them.
+/// Reader of typed parameters that collects all their problems.
 #pragma once
 
 #include <array>
@@ -59,11 +59,9 @@ class ParameterReader {
     return choices[choiceIndex(key, words)].second;
   }
 
-  /// Once more a number that was read, where another judge had the first word: a problem unless the key has one
-  /// already.
+  /// Checks a number again that was read under another rule; adds a problem unless the key has one already.
   void demand(const std::string& key, const std::string& unit, double value, NumberRule rule);
-  /// A line `KEY: ...` found by a reader that knows more than one key's rule. Left out when the parameter KEY has a
-  /// problem already; where KEY came from is added.
+  /// Adds a problem `KEY: ...` that concerns several keys, with the origin of KEY, unless KEY has a problem already.
   void addProblem(const std::string& line);
   /// Call after every read: each key that was not read, with the nearest known one.
   void reportUnknownKeys();

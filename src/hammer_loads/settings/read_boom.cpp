@@ -128,7 +128,7 @@ bool anyGiven(ParameterReader& reader, const std::array<const char*, N>& keys) {
   return any;
 }
 
-/// Without a cylinder there is no oil: then its keys may be left out together, and nothing stands for them.
+/// Reads the keys of the oil, which may be omitted together for a boom without cylinders.
 void readOil(ParameterReader& reader, bool cylinders, BoomParameters& p) {
   if (!anyGiven(reader, kOilKeys) && !cylinders) return;
   p.bulk_modulus = reader.number("bulk_modulus_Pa", "Pa", NumberRule::any());

@@ -15,8 +15,8 @@ namespace hammer_loads {
 class ParameterReader;
 
 /// `cylinders` and `sections` name them; the keys of each begin with its name. The keys of a section's part beyond
-/// (NAME_section_mass_beyond_kg and its like) are given together or not at all. Usable only if the reader got no
-/// problem; what values demand of each other and of the chain is Boom::make()'s to judge.
+/// (NAME_section_mass_beyond_kg and its like) are given together or not at all. Usable only if the reader has no
+/// problem; Boom::make() checks the values against each other and the chain.
 BoomParameters readBoomParameters(ParameterReader& reader);
 
 /// Returns true if any key of a boom file is there that is not a cylinder's own.

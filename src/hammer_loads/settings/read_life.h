@@ -13,8 +13,8 @@ life::LifeSettings readLifeSettings(ParameterReader& reader);
 void checkChannels(const life::LifeSettings& settings, const std::vector<std::string>& of_machine,
                    ParameterReader& reader);
 
-/// Removes from the shipped parameters the keys of channels that the given life_channels leave out: else they would be
-/// unknown keys.
+/// Removes from the shipped parameters the keys of channels that are not in the given life_channels, since they would
+/// be unknown keys.
 void leaveOutUnwantedChannels(const ParameterMap& given, ParameterMap& shipped);
 
 }  // namespace hammer_loads

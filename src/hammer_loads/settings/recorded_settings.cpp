@@ -7,7 +7,7 @@ namespace {
 
 constexpr char kUnknownKey[] = ": unknown key";
 
-/// Removes the keys that the problems call unknown; whether there were any.
+/// Removes the keys that the problems report as unknown. Returns true if there were any.
 bool dropUnknown(const std::vector<std::string>& problems, ParameterMap& parameters, std::vector<std::string>& notes) {
   bool dropped = false;
   for (const std::string& problem : problems) {

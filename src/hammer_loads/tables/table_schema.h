@@ -1,4 +1,4 @@
-/// Tables of process_bag's results (doc/tables.md), and what makes a file one of them.
+/// Tables of process_bag's results (doc/tables.md), and the check whether a file is one.
 #pragma once
 
 #include <string>

@@ -52,7 +52,7 @@ struct ReferenceRow {
   double rms{}, rms_error{}, bias{}, scale{}, correlation{}, within_two_std{};
 };
 
-/// Nothing throws: problem() reports what went wrong first, and all after it does nothing.
+/// No function throws: problem() returns the first error, after which all calls have no effect.
 class TableWriter {
  public:
   /// The file must be empty.
@@ -74,7 +74,7 @@ class TableWriter {
   /// Ends the transaction: all of the file is written.
   void finish();
 
-  /// One line without the file's name; empty while all is well.
+  /// First error in one line, without the file's name; empty without an error.
   const std::string& problem() const { return database_.problem(); }
 
  private:
