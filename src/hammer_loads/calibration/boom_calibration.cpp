@@ -61,7 +61,7 @@ class Finder {
 
   bool readable(const BoomModel& model) {
     if (model.given().cylinders().empty()) return refuse("cylinders: [], must be some for calibrate --boom");
-    BoomPoints free;  // one recording alone may have poses that weigh nothing
+    BoomPoints free;  // a single recording may have poses without information on the weight
     for (std::size_t r = 0; r < points_.size(); ++r) {
       if (points_[r].points.empty())
         return refuse("no instant at which every joint and pressure is known and the hammer rests");
@@ -244,7 +244,7 @@ class Finder {
     }
   }
 
-  /// A boom weighed without the weight, asked what hangs on it.
+  /// Estimates the weight on a boom that was weighed without it.
   void checkWeight(const Progress& progress) {
     const auto hung = std::find_if(weights_.begin(), weights_.end(), [](const TipWeight& w) { return w.mass > 0.0; });
     const bool any_free =

@@ -1,4 +1,4 @@
-/// A boom that is weighed by its own cylinders: masses, friction and zeros from two minutes of free movement.
+/// Weighing of a boom by its own cylinders: masses, friction and zeros from two minutes of free movement.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace hammer_loads::calibration {
 
-/// A recording with what hangs on the tip in it.
+/// A recording and the weight on the tip during it.
 struct WeighedRecording {
   BoomRecording recording;
   TipWeight weight;
@@ -23,7 +23,7 @@ struct JointWeight {
   std::string joint;
   double torque{};     ///< static, rms over the poses [N m]
   double deviation{};  ///< standard, rms as above [N m]
-  double before{};     ///< by how much the given boom is off from the one found, rms [N m]
+  double before{};     ///< difference of the given boom from the identified one, rms [N m]
   double part() const { return torque > 0.0 ? deviation / torque : kInfinity; }
 };
 
@@ -38,7 +38,7 @@ struct CylinderFit {
   double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
   double friction{};            ///< at that force [N]
   double friction_std{};        ///< standard [N]
-  /// Held-out rows fit far worse than fitted ones: the model does not hold, whatever its deviations are.
+  /// True if held-out rows fit far worse than fitted ones, so that the model is wrong and its deviations do not apply.
   bool holds() const { return !(held_out > std::max(kHeldOutOverLeft * left, kHeldOutOverForce * force)); }
 
   static constexpr double kHeldOutOverLeft = 2.0, kHeldOutOverForce = 0.04;
@@ -53,8 +53,8 @@ struct BoomResidual {
 };
 
 struct BoomCalibration {
-  /// A larger part of a joint's static torque leaves it undetermined, and then nothing is written: values belong
-  /// together.
+  /// Limit of the relative deviation of a joint's static torque. Above it the joint is undetermined and nothing is
+  /// written, since the values belong together.
   static constexpr double kLimit = 0.03;
 
   std::vector<std::string> names;  ///< names of the recordings

@@ -21,7 +21,7 @@ bool isFriction(BoomUnknown kind) {
   return kind == BoomUnknown::kFrictionForce || kind == BoomUnknown::kFriction || kind == BoomUnknown::kViscous;
 }
 
-/// One way all through the readings of the point.
+/// True if the rod moves in one direction throughout the readings of the point.
 bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point) {
   const int joint = boom.cylinders()[cylinder].joint();
   const double arm = std::abs(boom.cylinderPosition(cylinder).arm);

@@ -1,4 +1,4 @@
-/// The most probable values of a boom's unknowns, from what its cylinders showed in free movement.
+/// Maximum a posteriori estimate of a boom's unknowns from its cylinders' forces in free movement.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace hammer_loads::calibration {
 
-/// One cylinder at one point, where its rod surely moves one way.
+/// Reading of one cylinder at one point with a rod speed of certain sign.
 struct BoomRow {
   std::size_t recording{}, cylinder{};
   const BoomPoint* point{};
@@ -23,14 +23,14 @@ std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints
 struct BoomFit {
   Eigen::VectorXd x;             ///< values in the order of BoomModel, in standard deviations before the recording
   Eigen::MatrixXd covariance;    ///< covariance of x
-  std::vector<double> noise;     ///< per cylinder: standard deviation of what is left of a row [N]
-  std::vector<double> together;  ///< per cylinder: this many rows in a row say as much as one, >= 1 [-]
+  std::vector<double> noise;     ///< per cylinder: standard deviation of a row's residual [N]
+  std::vector<double> together;  ///< per cylinder: number of successive rows that give the information of one, >= 1 [-]
   bool converged{};
 };
 
-/// Gauss-Newton on squares of what is left and of the unknowns, each over its variance; what is left is large where it
-/// is beyond three deviations, and counts less (Huber). Noise is that of what is left, per cylinder, and what is left
-/// of neighbours may be alike: then this many of them count as one. Friction is not below zero.
+/// Gauss-Newton on the squares of residuals and unknowns over their variances, with Huber weights beyond three
+/// deviations. The noise is that of the residuals, per cylinder. Residuals of neighbours may be correlated; their
+/// number is then reduced accordingly. Friction is not negative.
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
 
 /// Residuals: forces of the rows less those of the model with values x [N].

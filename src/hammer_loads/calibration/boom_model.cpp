@@ -23,7 +23,7 @@ int heaviestBeyond(const Chain& chain, int joint) {
   return heaviest;
 }
 
-/// With a point of mass in it.
+/// Body with a point mass added.
 WeighedLink together(WeighedLink link, double mass, double x, double z) {
   const double all = link.mass + mass, dx = x - link.com_x, dz = z - link.com_z;
   link.com_x += mass / all * dx, link.com_z += mass / all * dz;

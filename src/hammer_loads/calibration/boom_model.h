@@ -1,4 +1,4 @@
-/// Pressures that a boom's cylinders show in free movement, by everything about it that is not known.
+/// Model of the pressures in a boom's cylinders in free movement, as a function of all unknowns.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@ struct TipWeight {
   double x{}, z{};             ///< centre of mass in the tip's frame [m]
 };
 
-/// Given parameters, and how far they may be off.
+/// Given parameters and their standard deviations.
 struct BoomBasis {
   RobotDescription urdf;
   BoomParameters parameters;
@@ -76,9 +76,9 @@ class BoomModel {
   int linkOf(std::size_t cylinder) const { return links_[cylinder]; }
   std::string nameOf(std::size_t unknown) const;
 
-  /// Without weights on the tip; nothing where such values make no boom, as a mass below zero.
+  /// Boom without weights on the tip; empty for impossible values such as a negative mass.
   std::optional<Boom> boomAt(const Eigen::VectorXd& x) const;
-  /// Boom with the weight of a recording on its tip; none where such values make no boom.
+  /// Boom with the weight of a recording on its tip; empty for impossible values.
   std::optional<Boom> boomAt(const Eigen::VectorXd& x, std::size_t recording) const;
   /// Boom file with these values, weights left out; deviations as in the basis. Parts beyond sections are as much
   /// heavier as their links.

@@ -1,4 +1,4 @@
-/// A weighed boom in words, as a boom file and as a picture.
+/// Report of a weighed boom: text, boom file and picture.
 #pragma once
 
 #include <string>

@@ -23,11 +23,11 @@ struct CalibrationBasis {
 struct Estimate {
   std::string key, unit;
   double value{}, deviation{};
-  double limit{};  ///< a larger deviation costs more than some 0.8 % of the wrench's peak, or of what the key is for
+  double limit{};  ///< deviation that costs some 0.8 % of the wrench's peak, or of the key's own quantity
   std::string meaning;
   double by_blows{};  ///< part of the deviation that more blows would reduce; the rest comes from the given parameters
-  std::string
-      hidden_by{};  ///< constant of the hammer file, or level, that makes most of the deviation; empty: blows do
+  std::string hidden_by{};  ///< constant of the hammer file, or level, that causes most of the deviation; empty: the
+                            ///< number of blows does
   bool determined() const { return deviation <= limit; }
 };
 
@@ -58,10 +58,10 @@ struct Calibration {
   ResidualCurve before, after;  ///< with the parameters in force, with those found
   double more_blows{};          ///< needed for every key that is not determined; infinity: more do not help
 
-  /// Ratio of by_blows to limit of the key that is known least; infinity with a problem.
+  /// Largest ratio of by_blows to limit of a key; infinity with a problem.
   double worstByBlows() const;
-  /// More of the recording would not serve: every key is known to half of its limit or better, as far as blows can show
-  /// it. Then it adds 12 % to an error that is at the limit for another reason.
+  /// True if more of the recording would not help: the deviation by the number of blows is at most half of each key's
+  /// limit. It then adds 12 % to an error that is at the limit for another reason.
   bool isSettled() const { return worstByBlows() <= 0.5; }
 };
 

@@ -1,4 +1,4 @@
-/// A recording of the crank's sensor, and how it is cut into pieces around the blows.
+/// A recording of the crank's sensor, and its division into segments around the blows.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// The keys that a fit gives, and what a user should know of them.
+/// Keys and notes for the user from a fit.
 #pragma once
 
 #include "hammer_loads/calibration/calibration.h"

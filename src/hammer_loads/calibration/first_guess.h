@@ -13,8 +13,8 @@ struct FirstGuess {
   double drive_inertia{};  ///< [kg m2]
 };
 
-/// Tries zeros around the turn and inertias around the given one: with the right ones the energy (Jc + J) w^2/2 grows
-/// steadily from blow to blow. Nothing where the crank hardly turns.
+/// Searches the zero over the turn and the inertia about the given one: with the right values the energy (Jc + J) w^2/2
+/// grows linearly from blow to blow. Empty if the crank hardly turns.
 std::optional<FirstGuess> firstGuess(const CrankTrack& track, const SegmentModel& model, double drive_inertia);
 
 }  // namespace hammer_loads::calibration

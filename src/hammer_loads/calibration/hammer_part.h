@@ -8,8 +8,8 @@
 
 namespace hammer_loads::calibration {
 
-/// The shared parameters and the hammer's constants, found together: each constant has a prior of its standard
-/// deviation about the file's value, so that what it explains as well is not the sensor's.
+/// Joint estimate of the shared parameters and the hammer's constants. Each constant has a prior about the file's
+/// value, so that an effect that it can explain is not attributed to the sensor.
 struct HammerPart {
   Globals globals;
   std::vector<std::string> names;  ///< keys of the constants; a level for what that leaves out
@@ -35,9 +35,9 @@ struct HammerPart {
 /// each.
 HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free& free);
 
-/// With noise, what each blow has of its own is bent the same way at every blow, and what they share with it: no number
-/// of blows averages that out. Recordings are therefore simulated from the fit, with its noise and the counts, and
-/// fitted again; their mean error is subtracted from both. count: of the encoder, in `seen` [rad]; 0: none.
+/// Noise biases the parameters of each blow, and thereby the shared ones, in the same direction at every blow, so that
+/// more blows do not average it out. Recordings are therefore simulated from the fit, with its noise and the counts,
+/// and fitted again; their mean error is subtracted from both. count: of the encoder, in `seen` [rad]; 0: none.
 void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, const Free& free, double count,
                 const Progress& progress = {});
 

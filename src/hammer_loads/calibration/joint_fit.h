@@ -42,7 +42,7 @@ struct JointFit {
 /// ...
 Globals priorDeviations();
 
-/// From where it is, which is near, and is the prior's centre: some steps of the same.
+/// Continues from a nearby solution, which is the prior's centre, by some steps.
 void settleNear(JointFit& joint, const SegmentModel& model, const Free& free, const Progress& progress);
 
 /// Gauss-Newton over the shared parameters, those of each blow eliminated (Schur); timing and speed noise from the

@@ -50,7 +50,7 @@ struct LinkageFit {
   std::vector<std::string> remarks;
 
   BucketLinkage linkage(double sense) const;
-  /// The lever is known to 1 % of its rms.
+  /// True if the lever is known to 1 % of its rms.
   bool determined() const { return problem.empty() && arm_std <= 0.01 * arm; }
 };
 

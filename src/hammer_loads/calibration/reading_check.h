@@ -8,8 +8,9 @@
 
 namespace hammer_loads::calibration {
 
-/// One line per cylinder whose pressures fit the given boom only as something else, or not at all; and per joint beyond
-/// its limits. A given boom is within half of the forces: a drawing's masses are. Empty: nothing found.
+/// One line per cylinder whose pressures agree with the given boom only under another interpretation, or not at all,
+/// and per joint beyond its limits. The forces of the given boom must be right within a half, as those of a drawing
+/// are. Empty without a finding.
 std::vector<std::string> misreadings(const BoomModel& model, const BoomPoints& recording);
 
 /// One line per joint's sensor whose noise in one recording is far above that in the others; names: of the recordings.

@@ -1,4 +1,4 @@
-/// A calibration in words, as a parameter file and as a picture.
+/// Report of a calibration: text, parameter file and picture.
 #pragma once
 
 #include <string>

@@ -11,14 +11,14 @@ namespace hammer_loads::calibration {
 /// Evidence of the crank's filter, run with the sensor and the drive of a fit.
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
 
-/// By how much, just after the blow and later.
+/// Ratio of the residuals to their expectation, just after the blow and later.
 std::string whereReadingsDiffer(const RodEvidence& rod);
 
-/// Text that the rod is elastic, and the action. settled: a fit by the hammer file's links converged; else they may be
-/// other ones.
+/// Message that the rod is elastic, with the action. settled: the fit with the links of the hammer file converged;
+/// otherwise the links may be wrong.
 std::string whatARodDoes(const RodEvidence& rod, bool settled);
 
-/// Keys that a rigid rod's fit would get wrong are not determined: how far they may be off, and what to do instead.
+/// Marks the keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
 /// ratio: encoder turns per crank turn.
 void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result);
 

@@ -1,4 +1,4 @@
-/// Torques by the weight of a fitted boom, and how well that is known.
+/// Torques by the weight of a fitted boom, with their deviations.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// Shared by the commands that read a recording: names of topics, and parameter files in place of a run_info.
+/// Options common to the commands that read a recording: names of topics, and parameter files in place of a run_info.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ inline Option addTopicOption(CommandLine& line, InputTopics& topics, std::string
       .showDefault(std::string("as in run_info, else ") + input->recorded);
 }
 
-/// Parameters and robot description of the job; what is wrong with their files, one line each.
+/// Parameters and robot description of the job, or the problems of their files, one line each.
 inline std::vector<std::string> readParameterFiles(const std::vector<std::string>& params, const std::string& urdf,
                                                    BagJob& job) {
   std::vector<std::string> problems;

@@ -16,7 +16,7 @@ struct BoomBag {
   std::string problem;  ///< one line why it could not be read
   calibration::BoomRecording recording;
   ros::Time begin;     ///< traces count from this stamp
-  std::string silent;  ///< joints without a cylinder that were never heard, in one line: taken at zero
+  std::string silent;  ///< joints without a cylinder and without a message, in one line; they are at zero
 };
 
 /// Topics, joints and cylinders as in the settings, which have a boom. Readings that are no numbers, or not newer than

@@ -1,4 +1,4 @@
-/// Shared by the commands: options in, one line per error on stderr, exit codes.
+/// Functions common to the commands: options, one line per error on stderr, exit codes.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ int finishOutput();
 /// Adds `--urdf FILE`, the robot description that the boom is made from.
 void addUrdfOption(CommandLine& line, std::string& file);
 
-/// All of a file that holds something; why not, in one line.
+/// Content of a file that is not empty, or the reason against it in one line.
 Checked<std::string> fileText(const std::string& file);
 
 /// Settings from files over the shipped ones; every problem and note on stderr, one line each.

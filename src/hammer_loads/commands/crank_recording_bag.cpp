@@ -54,7 +54,7 @@ class Pieces {
         part_((span.second - span.first).toSec() / static_cast<double>(pieces.count)),
         pieces_(pieces) {}
 
-  /// With gaps of less than half a piece between them nothing is saved.
+  /// Reads all of a recording if the gaps between its pieces would be shorter than half a piece.
   bool areWhole() const { return part_ < 1.5 * pieces_.length; }
   /// Returns true if a piece, begun this much earlier [s], has a part of the time from `from` to `to`.
   bool touch(const ros::Time& from, const ros::Time& to, double earlier) const {

@@ -1,4 +1,4 @@
-/// life: what a machine's loads took of its life so far, from its ledger.
+/// life: damage and remaining life of a machine by its ledger.
 #include <iostream>
 
 #include "hammer_loads/commands/command_line.h"

@@ -15,7 +15,7 @@ class Option;
 
 namespace hammer_loads {
 
-/// One option: each rule and each word of the help returns it again. Lives as long as its CommandLine.
+/// One option. Each function returns the option, so that calls can be chained. It lives as long as its CommandLine.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
@@ -49,13 +49,13 @@ class CommandLine {
   /// std::int64_t, std::vector<std::string>, std::vector<double>.
   template <typename T>
   Option option(const std::string& name, T& value, const std::string& help = {});
-  /// Hands what is given to `take`.
+  /// Passes the given value to `take`.
   Option call(const std::string& name, const std::function<void(const std::string&)>& take, const std::string& help);
   Option flag(const std::string& name, bool& value, const std::string& help);
   /// One that was added before.
   Option operator[](const std::string& name);
 
-  /// Nothing when the command may go on, else the exit code (0 after --help).
+  /// Empty if the command may continue, otherwise the exit code (0 after --help).
   std::optional<int> parse(int argc, const char* const* argv);
 
  private:

@@ -1,4 +1,4 @@
-/// A file that a command writes: complete under its name, or not there at all.
+/// Output file of a command: it appears under its name only once it is complete.
 #pragma once
 
 #include <functional>
@@ -21,8 +21,8 @@ struct OutputRequest {
 /// Written as NAME.part.PID beside NAME, which is removed unless publish() succeeds.
 class OutputFile {
  public:
-  /// The name must be free; with `force` it may be a regular file that `keep` gives away. Directories, devices, FIFOs,
-  /// sockets and symbolic links are never replaced.
+  /// The name must be free; with `force` it may be a regular file that `keep` does not protect. Directories, devices,
+  /// FIFOs, sockets and symbolic links are never replaced.
   static Checked<OutputFile> make(const OutputRequest& request);
   OutputFile(OutputFile&&) noexcept = default;
   OutputFile& operator=(OutputFile&&) = delete;

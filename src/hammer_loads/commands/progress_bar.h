@@ -1,4 +1,4 @@
-/// Progress of a command that takes longer than a blink.
+/// Progress bar of a slow command.
 #pragma once
 
 #include <unistd.h>
@@ -20,7 +20,7 @@ inline std::string timeText(double seconds) {
   return text;
 }
 
-/// One line of it. By the time that the part done took; nothing is said of the first 2 %, which give little
+/// Line of the bar with the remaining time, extrapolated from the elapsed one; not for the first 2 %, which are little
 /// information.
 inline std::string progressLine(double part, double seconds_so_far) {
   const int percent = static_cast<int>(100.0 * part);

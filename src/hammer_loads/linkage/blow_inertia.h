@@ -32,7 +32,7 @@ struct BlowInertia {
   double factor(double restitution) const noexcept { return withoutRebound() + restitution * perRestitution(); }
   /// Restitution by a factor; at level rocker R = (k (Jc + I u+^2) - Jc)/(I u+ |u-|).
   double restitution(double factor) const noexcept { return (factor - withoutRebound()) / perRestitution(); }
-  /// Factor of the rebound that lets the rocker go straight onto its new branch: 1 without a rod's mass.
+  /// Factor of the rebound without an impulse within the linkage: 1 for a massless rod.
   double smoothFactor() const noexcept { return (crank + coupling * u_before) / (crank + coupling * u_after); }
   /// Derivative of restitution() by the factor.
   double restitutionPerFactor() const noexcept { return 1.0 / perRestitution(); }

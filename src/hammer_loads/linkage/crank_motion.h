@@ -1,4 +1,4 @@
-/// The crank's motion, as far as a load needs it.
+/// Speed and acceleration of the crank.
 #pragma once
 
 #include "hammer_loads/linkage/crank_angle.h"

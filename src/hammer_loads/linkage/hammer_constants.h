@@ -1,4 +1,4 @@
-/// Constants of a hammer's drawing: one row each, and a row is all that file, deviation and columns need.
+/// Table of the constants of a hammer's drawing, one row each, for hammer file, deviations and columns.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ struct HammerConstant {
   const char* unit;                          ///< unit at the end of the key
   double& (*field)(HammerParameters&);       ///< in SI, an angle in rad
   double (*usual)(const HammerParameters&);  ///< standard deviation where the file gives none, in the field's unit
-  double away;                               ///< 1 or -1: where a deviation leads to a hammer that can exist
+  double away;                               ///< 1 or -1: direction in which a deviation leads to a possible hammer
   enum class Enters {
     kMotion,   ///< motion of the links, and with it the loads
     kLoads,    ///< the loads of a given motion
     kBlow,     ///< the blow alone
-    kLearned,  ///< nothing: the crank's filter knows it better
-    kFollows,  ///< nothing of its own: it follows from others
+    kLearned,  ///< no column: the crank's filter estimates it better
+    kFollows,  ///< no column: it follows from other constants
   } enters;
   bool optional{};  ///< a hammer file may leave it out; then the default of HammerParameters counts
 };

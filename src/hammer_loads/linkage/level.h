@@ -9,7 +9,7 @@ enum class Level {
   kPulse,    ///< P0 (15): half-sine in crank angle (hammer/hull_model.h); elsewhere treated as kRocker
   kRocker,   ///< P0: crank and rod massless; rocker mass, inertia and weight
   kLinkage,  ///< crank and rod with mass, centre of mass and inertia as well
-  kElastic,  ///< an elastic rod as well (linkage/two_bodies.h); where nothing says how far it does, kLinkage
+  kElastic,  ///< an elastic rod as well (linkage/two_bodies.h); kLinkage where its stiffness is not known
 };
 
 /// A level's name where nothing but the crank's motion is given.

@@ -1,4 +1,4 @@
-/// Motion of crank, rod and rocker together, for the loads that need more than the rocker.
+/// Motion of crank, rod and rocker, for loads beyond those of the rocker.
 #pragma once
 
 #include "hammer_loads/linkage/crank_motion.h"

@@ -1,4 +1,4 @@
-/// Errors of a hammer's constants, as hammers: the same with one constant a standard deviation off.
+/// Errors of a hammer's constants, represented by hammers with one constant changed by a standard deviation.
 #pragma once
 
 #include <Eigen/Core>
@@ -75,7 +75,7 @@ class MachineColumns {
 /// Returns true if a hammer can exist whose constant (index in kHammerConstants) is off by one standard deviation.
 bool isPossible(const HammerParameters& parameters, std::size_t constant);
 
-/// Null: the hammer is exact, and its level has all of it.
+/// Null if the hammer is exact and its level neglects nothing.
 std::shared_ptr<const MachineColumns> machineColumns(const Mechanism& mechanism, Level level);
 
 }  // namespace hammer_loads

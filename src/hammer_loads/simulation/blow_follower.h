@@ -1,4 +1,4 @@
-/// Gathers the touches of tool and retainer into blows.
+/// Groups the contacts of tool and retainer into blows.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace hammer_loads::simulation {
 
-/// A blow begins with a touch at more than 1 m/s and takes in all touches of the next 20 ms. A rocker that falls onto
-/// the tool while the supply is shut is slower and strikes nothing.
+/// A blow begins with a contact at more than 1 m/s and includes all contacts of the next 20 ms. A rocker that falls
+/// onto the tool with the supply shut is slower and makes no blow.
 class BlowFollower {
  public:
   struct Instant {
@@ -22,7 +22,7 @@ class BlowFollower {
   };
   /// After each step. Revolution before the blow that begins now, for the caller to fill in.
   BlowTruth* follow(const Instant& now);
-  /// Hands over the blows that ended since the last call.
+  /// Removes and returns the blows that ended since the last call.
   std::vector<BlowTruth> take() { return std::exchange(blows_, {}); }
 
  private:

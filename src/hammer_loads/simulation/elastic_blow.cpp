@@ -16,7 +16,7 @@ void ElasticMachine::followBlow() {
   current_ = {time_, now_[kImpulseX], now_[kImpulseZ], now_[kImpulseZ], slope_[kImpulseZ], true};
 }
 
-/// The hull follows, or the tool slides back: what it still had of energy is the rock's.
+/// Resets the tool, as the hull follows or the tool slides back; its remaining energy is counted as the rock's.
 void ElasticMachine::putToolBack() {
   const auto energy = [this] { return struck_.energy(striker(now_), tool(now_)); };
   const double before = energy();

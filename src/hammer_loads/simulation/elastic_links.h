@@ -16,16 +16,16 @@ namespace hammer_loads::simulation {
 /// Angles, speeds or accelerations of crank and rocker, or forces on them.
 using TwoBodies = std::array<double, 2>;
 
-/// The rod between its pins: how much longer than as drawn, and what each angle does to that.
+/// Stretch of the rod between its pins against its nominal length, with its derivatives by both angles.
 struct RodStretch {
   double stretch{};   ///< [m]
   TwoBodies slope{};  ///< [m/rad]
   double rate(const TwoBodies& speed) const noexcept { return slope[0] * speed[0] + slope[1] * speed[1]; }
 };
 
-/// Spring with a damper beside it, and joint clearance. Without joint clearance it holds both ways at once; with joint
-/// clearance each side can only push, and its damper grows with the first 5 um of pressing, as an oil film does: a step
-/// of the force would have no source.
+/// Spring with a parallel damper and joint clearance. Without clearance it transmits tension and compression. With
+/// clearance each side only pushes, and its damper grows with the first 5 um of compression, as that of an oil film, so
+/// that the force has no step.
 class RodSpring {
  public:
   explicit RodSpring(const RodSettings& rod) noexcept;

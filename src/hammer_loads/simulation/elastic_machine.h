@@ -1,4 +1,4 @@
-/// A hydraulically driven hammer with an elastic rod and a lasting blow: the truth for the time after a blow.
+/// Hydraulically driven hammer with an elastic rod and a blow of finite duration: the truth for the time after a blow.
 #pragma once
 
 #include <array>
@@ -18,21 +18,20 @@ struct ElasticEnergy {
   double friction{};  ///< lost in it
   double weight{};    ///< work of the weight of links and tool
   double kinetic{};   ///< present energy of links and drive
-  double elastic{};   ///< in the rod now
-  double tool{};      ///< kinetic of the tool, elastic in contacts and rock now
-  double rod{};       ///< lost in its damper
-  double blow{};      ///< lost in contacts, rock and retainer, and with a tool that is put in its place again
+  double elastic{};   ///< present energy of the rod
+  double tool{};      ///< present kinetic energy of the tool and elastic energy of contacts and rock
+  double rod{};       ///< dissipated in the rod's damper
+  double blow{};      ///< dissipated in contacts, rock and retainer, and removed when the tool is reset
 };
 
-/// Crank with drive and rocker as two bodies, the rod a spring between their pins, the tool a third body. At the dead
-/// centre nothing is special: without a blow the rocker goes through by its inertia. No rule for a blow: what it does
-/// follows from the contact's force.
-/// Neglects: motion of the hull but its pitch, a flexible coupling, bending of the links.
-/// Dormand-Prince of order 5 with steps by its error; no step runs over a change of contact by more than 10 ns. A
-/// machine with second touches is chaotic: the steps do not depend on the times that are asked for, so that the same
-/// settings give the same motion.
-/// settings.rod.stiffness > 0. BlowTruth has the following meaning: `time` is the first touch, speeds after are those
-/// at the last parting, energy and impulse those through the tool, a turn lasts from one first touch to the next.
+/// Crank with drive and rocker as two bodies, the rod a spring between their pins, the tool a third body. The dead
+/// centre is no special case: without a blow the rocker passes it by its inertia. A blow is not a rule; its effect
+/// follows from the contact force. Neglects: motion of the hull but its pitch, a flexible coupling, bending of the
+/// links. Integration by Dormand-Prince of order 5 with error control; no step exceeds a change of contact by more than
+/// 10 ns. A machine with repeated contacts is chaotic. The steps are therefore independent of the requested times, so
+/// that equal settings give equal motions. settings.rod.stiffness > 0. BlowTruth has the following meaning: `time` is
+/// the first touch, speeds after are those at the last parting, energy and impulse those through the tool, a turn lasts
+/// from one first touch to the next.
 class ElasticMachine {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
@@ -41,7 +40,7 @@ class ElasticMachine {
   /// time >= now [s].
   void advanceTo(double time);
   double time() const noexcept { return asked_; }
-  /// load: as the momentum theorem has it, with what the tool gives and without the drive; the retainer is part of the
+  /// load: by the momentum theorem, including the tool's force and without the drive; the retainer is a part of the
   /// hull.
   CrankTruth truth() const noexcept;
   ElasticEnergy energy() const noexcept;

@@ -1,4 +1,4 @@
-/// The hammer on a boom that stands on the oil of its cylinders: crank, flywheel, hull and boom as one coupled system.
+/// The hammer on a boom supported by the oil of its cylinders: crank, flywheel, hull and boom as one coupled system.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,24 +30,24 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
   Eigen::Vector3d displacement{
       Eigen::Vector3d::Zero()};  ///< displacement of the joints from where the operator holds them [rad]
   Eigen::Vector3d hold{Eigen::Vector3d::Zero()};  ///< BY the cylinders ON the joints [N m]
-  Load rock;                ///< BY the rock ON the hull's foot, blows aside, about D, axes of the hull
+  Load rock;                ///< BY the rock ON the hull's foot, without blows, about D, axes of the hull
   std::array<Load, 3> cut;  ///< BY the steel beyond each cut ON that before it, about it, axes of the link
 };
 
 /// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, their
 /// accelerations for the loads by differences in time. Runge-Kutta of order 4.
-/// The operator's valves move the point at which the oil holds each joint along settings.boom; the oil about it is a
-/// linear spring, as stiff as at that place; with air in it, a leak past the pistons or loose pins it is two chambers a
-/// cylinder, whose pressures follow from the rod's way and what has leaked. Links that bend do so in their middle: what
-/// is beyond turns on a spring; their own mass stays where it is. settings.on_boom.seals rub against the
-/// rods: pressures are those of the oil, what holds the joints is oil and seals.
+/// The operator's valves move the equilibrium of each joint along settings.boom. The oil is a linear spring about it,
+/// with the stiffness at that place. With air, leakage past the pistons or loose pins, each cylinder has two chambers,
+/// whose pressures follow from the rod's displacement and the leaked volume. Links bend by a spring hinge in their
+/// middle, which turns all beyond it; their own mass does not move. The seals of settings.on_boom.seals act on the
+/// rods: pressures are those of the oil, and the joints are held by oil and seals.
 ///
-/// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
-/// impulse within the linkage, or with a restitution that is drawn. settings.on_boom.rock holds the hull up where it is
-/// pressed on the tool; without it the hull hangs free and the rock holds the tool alone. The boom's swing about the
-/// vertical is left out. With settings.rod elastic the rocker is a coordinate of its own and the blow follows from the
-/// contact, as in ElasticMachine: its force bears on rocker, hull and boom; the tool's own motion is as in a hull that
-/// stands still. Force and impulses of the revolution in BlowTruth are not followed: NaN.
+/// A blow changes the velocities of the hull and all links; the rocker leaves the tool without an impulse within the
+/// linkage, or with a drawn restitution. settings.on_boom.rock supports a hull that is pressed on the tool; without it
+/// the hull hangs free and the rock supports the tool alone. The boom's swing about the vertical is neglected. With an
+/// elastic settings.rod the rocker is a coordinate of its own and the blow follows from the contact, as in
+/// ElasticMachine: its force acts on rocker, hull and boom; the tool moves as in a hull at rest. Force and impulses of
+/// the revolution in BlowTruth are NaN.
 class HammerOnBoom {
  public:
   /// Level rocker, rigid coupling; throws std::invalid_argument when the hammer's linkage is impossible.
@@ -60,7 +60,7 @@ class HammerOnBoom {
   OnBoomSensors sensors() const;  ///< the part of truth() that takes no loads
   /// Hands over the blows since the last call.
   std::vector<BlowTruth> takeBlows();
-  /// Natural frequencies where the operator holds the boom at a time, by the oil alone; lowest first [Hz].
+  /// Natural frequencies at the operator's pose at a time, by the oil alone; lowest first [Hz].
   Eigen::Vector3d frequencies(double time) const;
   const MachineSettings& settings() const noexcept { return machine_; }
 
@@ -72,7 +72,7 @@ class HammerOnBoom {
   struct State {
     double time{};
     bool before_blow{};
-    bool resting{};     ///< the crank turned back onto the tool: held at the dead centre, as by a brake
+    bool resting{};     ///< the crank turned back onto the tool and is held at the dead centre, as by a brake
     Coordinates x, v;   ///< angles of the joints, crank's offset from its nearest dead centre, rocker
     double pressure{};  ///< at the motor [Pa]
     Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};  ///< oil leaked in each cylinder, from bore to rod side [m3]
@@ -140,7 +140,7 @@ class HammerOnBoom {
   Eigen::Vector3d seals(const State& s, const Eigen::Vector3d& oil) const;
   Eigen::Vector3d holding(const State& s, const Hold& hold) const;
   PlanePoint footPlace(const State& s) const;
-  /// The hull's foot along the tool, from where it stands as the operator holds it.
+  /// Position of the hull's foot along the tool, relative to that at the operator's pose.
   struct Foot {
     double height{}, speed{};  ///< [m], [m/s]
     Coordinates lift;          ///< by the coordinates [m]
@@ -186,7 +186,7 @@ class HammerOnBoom {
   PlanePoint jointPlace(const State& s, std::size_t joint) const;
   PlanePoint imuPlace(const State& s) const;
   State along(const State& s, const Coordinates& a, double dt) const;
-  /// Now, a moment later and a moment sooner: what accelerations are found from.
+  /// States at, after and before an instant, for accelerations by differences.
   struct Moments {
     State state[3];
     Rocker rocker[3];

@@ -9,7 +9,7 @@
 
 namespace hammer_loads::simulation {
 
-/// Settings by which the machine's time follows other clocks.
+/// Settings of the machine's time relative to other clocks.
 struct PlaySettings {
   bool publish_clock{};
   double clock_factor{};         ///< simulated seconds per second, with publish_clock [-], > 0
@@ -22,7 +22,7 @@ struct SimulatorSettings {
   PlaySettings play;
 };
 
-/// From what was given over config_directory's simulated_machine.yaml and, if no hammer key is given, its
+/// Settings by the given parameters over config_directory's simulated_machine.yaml and, if no hammer key is given, its
 /// hammer_mo100.yaml; or every problem, one line each.
 Checked<SimulatorSettings> loadSimulator(const std::string& config_directory, const ParameterMap& given);
 

@@ -1,4 +1,4 @@
-/// Everything that defines a simulated machine and what its sensors see of it.
+/// Parameters of a simulated machine and its sensors.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ struct BlowSettings {
   double restitution_low{};      ///< drawn for each blow, uniform between these [-]
   double restitution_high{};     ///< [-]
   double crank_loss{};           ///< part of the crank's speed lost beside that at each blow [-], in [0, 1)
-  double tool_early{};           ///< the tool is met this much before the dead centre [rad], in [0, 1]
+  double tool_early{};           ///< angle before the dead centre at which the rocker meets the tool [rad], in [0, 1]
   double early_tool_mass{50.0};  ///< mass that the rocker then takes along, at the striking point [kg], > 0
   double blank_share{};          ///< part of the blows that find no tool [-], in [0, 1]
 };
@@ -70,8 +70,9 @@ struct StrikeSettings {
   double rock_stiffness{5e8};  ///< [N/m], > 0
   double rock_damping{0.05};   ///< loss, likewise [s/m]
   double rock_strength{2e5};   ///< the rock yields above this force [N], > 0
-  double tool_late{};          ///< the tool stands so far below the dead centre's place; < 0: early [m]
-  double tool_spread{};        ///< drawn for each turn, uniform within plus and minus this [m]
+  double tool_late{};  ///< distance of the tool below its place at the dead centre; < 0: above, so that it is met early
+                       ///< [m]
+  double tool_spread{};                 ///< drawn for each turn, uniform within plus and minus this [m]
   double retainer_stiffness{};          ///< stiffness of the hull's retainer [N/m]; 0: none
   double retainer_gap{0.005};           ///< below the dead centre's place [m]
   double retainer_damping{0.05};        ///< loss, likewise [s/m]
@@ -95,9 +96,9 @@ struct CrankSensorSettings {
   double stamp_step{};       ///< stamps are whole multiples of it, rounded down [s]; 0: nanoseconds
   double latency{};          ///< constant part of stamp less instant [s]
   int burst{1};              ///< number of samples that carry the stamp of their last one, >= 1
-  bool stamps_ordered{};     ///< none is before the one before: a late one holds up those behind it
+  bool stamps_ordered{};     ///< true if stamps never decrease: a late one delays those after it
   double duplicate_share{};  ///< part of the messages that come twice [-], in [0, 1]
-  double loss_share{};       ///< part of the samples that never come [-], in [0, 1)
+  double loss_share{};       ///< part of the samples that are lost [-], in [0, 1)
   int counts{};              ///< per turn; angle = whole counts passed; 0: continuous
   bool unwound{};            ///< angle grows over the turns instead of staying in [0, 2 pi)
   bool speed{true};          ///< speed is measured too
@@ -109,14 +110,14 @@ struct CrankSensorSettings {
   int direction{1};    ///< 1 or -1
   double ratio{1.0};   ///< encoder turns per crank turn [-], > 0
   Eccentricity eccentricity[2];  ///< once and twice a turn
-  double hysteresis{};           ///< the shown angle lies still over that much after the shaft turns back [rad]
-  double task_period{};          ///< period of a controller that reads the encoder and shows its last mean [s]; 0: none
+  double hysteresis{};           ///< play of the shown angle when the direction of rotation reverses [rad]
+  double task_period{};          ///< period of a controller that reads the encoder and sends its last mean [s]; 0: none
   int task_mean{1};              ///< readings of that controller in one mean, >= 1
   struct Interval {
     double from{}, to{};  ///< [s]
   };
   std::vector<Interval> drop_outs;  ///< instants in [from, to) give no sample
-  /// The encoder has slipped on its shaft, or its counter has lost its reference, until it is found again.
+  /// Slip of the encoder on its shaft, or loss of its counter's reference, during an interval.
   struct Slip {
     double amount{};               ///< offset of the encoder's angle [rad]
     Interval during{0.0, kNever};  ///< [s]
@@ -151,8 +152,8 @@ struct PressureSensors {
   double count{};     ///< resolution of the sensor's number [Pa]; 0: any
 };
 
-/// The ground under the tool. It holds the hull up at its foot and lets go of it: a spring with a loss, along the tool.
-/// It gives way as fast as the operator moves the hull on.
+/// The ground under the tool: a unilateral spring with damping along the tool at the hull's foot. It recedes as fast as
+/// the operator advances the hull.
 struct RockSettings {
   double stiffness{};        ///< stiffness of rock and tool [N/m]; 0: no rock, the hull hangs free
   double damping{};          ///< the spring's force counts 1 + this times the speed of going down [s/m]
@@ -197,7 +198,7 @@ struct OnBoomSettings {
 /// Order of the boom's joints in this folder; hull pitch = boom + arm + hammer (contract).
 constexpr std::array<const char*, 4> kBoomJoints{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
 
-/// Draws of the blows leave the sensors' noise as it is.
+/// Random numbers of the blows, independent of the sensors' noise.
 constexpr std::uint64_t kBlowSeed = 0x9e3779b97f4a7c15;
 
 struct MachineSettings {

@@ -12,7 +12,7 @@ namespace hammer_loads::simulation {
 struct TurnAngle {
   double offset{};
   bool before_blow{};
-  bool mirrored{};  ///< rocker on the other side of the line A-D: it passed the dead centre without meeting a tool
+  bool mirrored{};  ///< rocker on the other side of the line A-D, after it passed the dead centre without a tool
 };
 
 /// Load of the links on the crank's shaft at one angle.
@@ -69,7 +69,7 @@ class MovingLinks {
   Strike strike(double crank_speed) const noexcept;
   /// The rocker leaves the tool with a given restitution; drive_inertia [kg m2] is what turns with the crank.
   Strike strike(double crank_speed, double restitution, double drive_inertia) const noexcept;
-  /// Away from the dead centre, without restitution: the rocker takes along a tool of a mass [kg] that was at rest.
+  /// Strike away from the dead centre, without restitution: the rocker accelerates a tool of a mass [kg] from rest.
   Strike strikeTool(TurnAngle angle, double crank_speed, double tool_mass, double drive_inertia) const noexcept;
   /// psi [rad] with its derivatives by the crank angle.
   Jet rockerAngle(TurnAngle angle) const noexcept;

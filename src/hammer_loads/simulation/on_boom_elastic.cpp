@@ -70,7 +70,7 @@ int HammerOnBoom::contacts(const State& s) const {
          (play && pressed < 0.0 ? 16 : 0);
 }
 
-/// The operator is slow: on the line between two of his instants.
+/// Interpolates the operator's slow motion linearly between two instants.
 HammerOnBoom::Hold HammerOnBoom::holdBetween(double time) const {
   const double length = hold_later_.state.time - hold_.state.time, part = (time - hold_.state.time) / length;
   Hold hold = hold_;

@@ -11,7 +11,7 @@ double HammerOnBoom::oilOf(std::size_t cylinder) const {
   return boom_.bulk_modulus * machine_.on_boom.cylinder_oil[cylinder];
 }
 
-/// One chamber carries what is steady, the other is preloaded.
+/// Steady pressures: one chamber carries the steady load, the other has the preload.
 HammerOnBoom::Chambers HammerOnBoom::heldChambers(std::size_t k, const State& held, double weight) const {
   const OilCylinder& c = boom_.cylinders[k];
   const double steady = -weight / c.arm(held.x[static_cast<int>(k)]), preload = machine_.on_boom.pressures.preload;
@@ -67,7 +67,7 @@ HammerOnBoom::Chambers HammerOnBoom::chambers(std::size_t k, const State& s, con
   return chambersAt(k, way - taken_up * play, leaked, hold);
 }
 
-/// From bore to rod side beyond what the operator makes up for [m3/s].
+/// Leakage from bore to rod side in excess of the steady one, which the operator compensates [m3/s].
 Eigen::Vector3d HammerOnBoom::leak(const State& s, const Hold& hold) const {
   Eigen::Vector3d flow = Eigen::Vector3d::Zero();
   if (machine_.on_boom.leak == 0.0) return flow;

@@ -16,7 +16,7 @@ PlanePoint HammerOnBoom::footPlace(const State& s) const {
   return jointPlace(s, 3) + turnedBy(hullAngle(s)) * boom_.foot;
 }
 
-/// The rock's face stands across the tool of a hull that is held, and goes with it.
+/// The rock's face is normal to the tool at the operator's pose and moves with it.
 HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
   const PlanePoint up = kI * turnedBy(hullAngle(held));
   const auto along = [&](PlanePoint p) { return (p * std::conj(up)).real(); };
@@ -32,7 +32,7 @@ HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
   return foot;
 }
 
-/// The oil of all cylinders gives way to the hold-down force, and so does the rock.
+/// Deflection of the oil of all cylinders and of the rock by the hold-down force.
 double HammerOnBoom::rockHeight(const Hold& hold) const {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return 0.0;
@@ -51,7 +51,7 @@ void HammerOnBoom::standOnRock() {
   step_ = std::min(step_, kTwoPi * std::sqrt(mass / rock.stiffness) / kStepsPerSwing);
 }
 
-/// Grows from nothing where they meet; never pulls.
+/// Force of the rock, continuous at the contact and never pulling.
 double HammerOnBoom::rockForce(const Foot& foot) const {
   const RockSettings& rock = machine_.on_boom.rock;
   const double depth = rock_height_ - foot.height;

@@ -121,8 +121,8 @@ class SessionStream {
 /// The machine's state at any instants [s since start, >= 0], in their order.
 std::vector<CrankTruth> truthAt(const MachineSettings& settings, const std::vector<double>& times);
 
-/// The whole session of settings.duration. The truth is that of the header stamps less the sensor's latency: the
-/// instants that a user of the stamps believes in.
+/// The whole session of settings.duration. The truth is that at the header stamps less the sensor's latency, which a
+/// user takes for the instants of the samples.
 Session recordSession(const MachineSettings& settings);
 
 }  // namespace hammer_loads::simulation

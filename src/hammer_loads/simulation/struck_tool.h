@@ -1,4 +1,4 @@
-/// The target of an elastic machine's rocker: tool on yielding rock, the hull's retainer, or nothing.
+/// Target of an elastic machine's rocker: a tool on yielding rock, the hull's retainer, or none.
 #pragma once
 
 #include "hammer_loads/simulation/machine_settings.h"
@@ -15,8 +15,8 @@ struct ToolState {
 
 /// Contact forces grow from zero with the depth of pressing, and with its speed (Hunt and Crossley 1975): a spring and
 /// a loss that never pulls. The rock yields above its strength, within some 10 us.
-/// Neglects: waves within tool and rocker, friction of the tool's bush, motion of the hull during the blow. Each turn
-/// the tool is found in its place again.
+/// Neglects: waves within tool and rocker, friction of the tool's bush, motion of the hull during the blow. The tool is
+/// reset to its place in each turn.
 class StruckTool {
  public:
   /// Depth of the striking point below its place at the dead centre [m], and its speed [m/s].
@@ -36,7 +36,7 @@ class StruckTool {
   /// Code of the contacts, for a step that must not run over a change: equal means the same contacts.
   int contacts(Striker striker, const ToolState& tool) const noexcept;
   static bool touches(int contacts) noexcept { return (contacts & 3) != 0; }
-  /// For the turn that begins at a time [s]. Draws the same numbers whatever is asked for.
+  /// Resets the tool for the turn that begins at a time [s]. It consumes the same random numbers for any settings.
   void newTurn(double time) noexcept;
   bool isThere() const noexcept { return there_; }
 

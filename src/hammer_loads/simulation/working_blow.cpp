@@ -8,7 +8,7 @@ void WorkingMachine::drawBlow() noexcept {
   next_blow_ = {b.restitution_low + part * (b.restitution_high - b.restitution_low), contact < b.blank_share};
 }
 
-/// The rocker takes the tool along; what is left of its speed it gives at the dead centre.
+/// Early contact: the rocker accelerates the tool and transfers its remaining speed at the dead centre.
 void WorkingMachine::meetEarlyTool() {
   early_crank_speed_ = now_.y[kSpeed];
   early_ = links_.strikeTool(now_.angle(), early_crank_speed_, settings_.blow.early_tool_mass, crank_side_inertia_);

@@ -1,4 +1,4 @@
-/// A hydraulically driven crank-rocker hammer at work, integrated finely: the truth that estimates are measured by.
+/// Hydraulically driven crank-rocker hammer at work, integrated with small steps: the truth for estimates.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct CrankTruth {
   double speed{};             ///< [rad/s]
   double twist{};             ///< angle of the motor, where the encoder sits, less the crank's [rad]
   double motor_speed{};       ///< [rad/s]
-  bool mirrored{};            ///< the rocker passed the dead centre without a blow and has not come back
+  bool mirrored{};            ///< the rocker passed the dead centre without a blow and has not returned
   double acceleration{};      ///< [rad/s2]
   double net_torque{};        ///< motor less friction, on the shaft [N m]
   double pressure{};          ///< at the motor [Pa]
@@ -46,7 +46,7 @@ struct BlowTruth {
   double turn_impulse_x{};       ///< integral of Fx over the turn [N s]
   double turn_impulse_z{};       ///< [N s]
   double last_lobe_impulse_z{};  ///< integral of Fz from its last rise through zero to the blow [N s]
-  bool whole_turn{};             ///< began with a blow and went forward all the way
+  bool whole_turn{};             ///< true if it began with a blow and the crank never turned back
   double contact{};              ///< time that all its touches lasted [s]; of an elastic machine alone, as what follows
   double retainer_impulse{};     ///< along +z BY the hull's retainer ON the rocker [N s]
   int touches{};                 ///< number of touches of tool and retainer
@@ -56,11 +56,11 @@ struct BlowTruth {
 /// kinetic + blows + losses + stops = motor - friction + weight;  stored = supply - motor - valves.
 struct EnergyAccount {
   double motor{};     ///< work of the pressure on the shaft
-  double friction{};  ///< lost in it, >= 0
+  double friction{};  ///< dissipated by friction, >= 0
   double weight{};    ///< work of the links' weight
   double supply{};    ///< hydraulic work of the pump flow
   double valves{};    ///< lost in leakage, relief and bypass
-  double blows{};     ///< given to the tool
+  double blows{};     ///< transferred to the tool
   double losses{};    ///< in linkage and crank at the blows
   double stops{};     ///< lost when the crank, turning back, comes to rest on the tool
   double kinetic{};   ///< present energy of links and drive, with the twist of the coupling
@@ -69,8 +69,8 @@ struct EnergyAccount {
 
 /// State crank angle, speed, pressure: w' = (tau + weight - J'/2 w^2)/(Jc + J), p' = (flow - D w - losses)/C.
 /// The blow is located within a step to rounding; crank speed is continuous there unless settings.blow states
-/// otherwise. Turning back onto the tool would need a restitution above 1 to go on: the crank stops there until the
-/// torque is positive again. Without a tool the rocker goes through onto the mirrored branch and comes back a turn
+/// otherwise. A crank that turns back onto the tool stops there until the torque is positive again, since a rebound
+/// would need a restitution above 1. Without a tool the rocker passes onto the mirrored branch and returns a turn
 /// later. Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links. Runge-Kutta of
 /// order 4, steps of at most settings.step, shorter where a coupling swings.
 class WorkingMachine {
