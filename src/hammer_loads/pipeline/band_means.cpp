@@ -24,8 +24,8 @@ void BandMeans::restart() noexcept {
   begun_ = false;
 }
 
-/// Returns false where the means wait for the next sample: beside a blow the boom's loads are not known, and the line
-/// goes over them.
+/// Returns false where the means wait for the next sample: close to a blow the boom's loads are not known, and are
+/// interpolated.
 bool BandMeans::follow(const double* values) noexcept {
   const SampleResult& result = pipeline_->result();
   pipeline_->sample(sampler_, means_);
@@ -60,7 +60,7 @@ void BandMeans::addUpTo(StampNs stamp) noexcept {
   added_up_to_ = stamp;
 }
 
-/// A standard deviation is that at the sample: errors do not average out within half a period.
+/// The standard deviation is that at the sample, since errors do not average out within half a period.
 void BandMeans::form(const WrenchOutput& mean, const double* deviations, const double* common) noexcept {
   addUpTo(mean.stamp);
   for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i] = integral_[i] / mean.interval;

@@ -9,14 +9,14 @@
 
 namespace hammer_loads {
 
-/// The hull's means are exact integrals of the wrench over the crank's path. The boom's are integrals of lines between
-/// its samples, over the same intervals. No allocation after construction.
+/// The hull's means are exact integrals of the wrench over the crank's path. The boom's are trapezoidal integrals over
+/// the same intervals. No allocation after construction.
 class BandMeans {
  public:
   /// bandwidth [Hz], > 0. channels: number of all. Refers to the pipeline, which must outlive it.
   BandMeans(const Pipeline& pipeline, double bandwidth, std::size_t channels);
 
-  /// The next sample does not continue the one before.
+  /// Notes that the next sample does not continue the one before.
   void restart() noexcept;
   /// Takes the pipeline's last sample, which was accepted, with its values by channelValues(). Calls take(stamp,
   /// values, deviations, common) for each interval that ends by then; NaN: not known.

@@ -15,7 +15,7 @@ using BlowColumns = ByConstants<3, ConstantErrors::kSize>;
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
                       const BlowColumns& columns, RockerBlow& blow) noexcept;
 
-/// The part of these that readings make.
+/// Part of these deviations by readings.
 BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow) noexcept;
 
 /// Adds to the impulses the difference to another blow that cannot be ruled out; it is independent of all else.

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastContact = 0.05;  // part of the boom's weight, which is no better known
+constexpr double kLeastContact = 0.05;  // part of the boom's weight, which is not known better
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -78,7 +78,7 @@ bool BoomFollower::takesCompliant() const noexcept {
   return model_ == BoomModel::kCompliant || !choice.judged || choice.rigid_error > choice.rigid_tolerance;
 }
 
-/// A state that came after the sample is known now, and was not then.
+/// Corrects the pose for a joint state that arrived after the sample.
 std::vector<std::string> BoomFollower::complaints() const {
   if (!state_.fault || state_.fault->kind == JointFault::Kind::kRunAway) return {};
   std::vector<std::string> lines = joints_.complaints(state_.stamp);
@@ -127,7 +127,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   return state_;
 }
 
-/// Joint sensors see the vibration too; what is left without it is the operator's.
+/// Separates the operator's motion from the vibration, which joint sensors measure as well.
 void BoomFollower::pose(double since) noexcept {
   const JointVector displacement = boom_.vibration().displacementAfter(since);
   JointMotion operated = motion_;
@@ -154,7 +154,7 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
 }
 
-/// displaced_links: at the step's end; on a line from the last ones.
+/// displaced_links: at the step's end; linear over the step.
 void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displaced_links,
                            const WrenchSpread& spread) noexcept {
   const LoadSpread errors = spread_.waits() ? LoadSpread() : boom_.spreadTorque(spread);
@@ -182,8 +182,8 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
   displaced_links_ = displaced_links;
 }
 
-/// Returns true if the vibration is not plausible at this sample. An implausible one is reset with what the sensors had
-/// identified, from the next sample on.
+/// Returns true if the vibration is not plausible at this sample. An implausible vibration is reset from the next
+/// sample on, together with the identified values.
 bool BoomFollower::runsAway(double step) noexcept {
   if (!bound_.holds(boom_.vibration())) {
     withheld_for_ = VibrationBound::decayTime(boom_.vibration());
@@ -197,8 +197,7 @@ bool BoomFollower::runsAway(double step) noexcept {
   return withheld_for_ > 0.0;
 }
 
-/// The boom may have been shaken all the while: as far as it was when it was last followed, else as far as the hammer's
-/// peak alone would move it.
+/// Possible vibration after a gap: the amplitude before it, or otherwise that by the hammer's peak alone.
 void BoomFollower::beginUnseen(double peak) noexcept {
   const Vibration& vibration = boom_.vibration();
   JointVector swing = vibration.usualSwing();
@@ -233,7 +232,7 @@ void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
   freely.count = 1;
   state_.at_blow.reset();
   freely.pieces[0].duration = seconds(stamp - last_stamp_);
-  beside_modes_.setZero();  // no loads are found that would show it
+  beside_modes_.setZero();  // no loads are computed for this sample
   vibrate(step.count > 0 ? step : freely, displaced_links_, {});
   last_stamp_ = stamp;
   state_.stamp = stamp;

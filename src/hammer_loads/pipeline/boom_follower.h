@@ -1,4 +1,4 @@
-/// The boom under the hammer, sample by sample: where it is, what its joints and cylinders carry, how it vibrates.
+/// The boom under the hammer, sample by sample: its pose, the loads of its joints and cylinders, and its vibration.
 #pragma once
 
 #include <array>
@@ -31,19 +31,19 @@ struct BoomSample {
   HullWrench motion_wrench;  ///< wrench at the end of the step's last piece, from the links' motion relative to the
                              ///< hull: no weight, no hull motion
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
-  /// Errors of constants, the same in all samples, as constantErrors() and hammerErrors(); zero: exact.
+  /// Errors of constants, equal in all samples, as by constantErrors() and hammerErrors(); zero: exact.
   Eigen::Matrix3d constants = Eigen::Matrix3d::Zero(), of_hammer = Eigen::Matrix3d::Zero();
   std::optional<StampedImuReading> imu{};  ///< a new reading, in the hull's axes
   bool imu_lost{};                         ///< earlier readings cannot be used
   HullWrench displaced_links{};            ///< DisplacedLinks, at the sample; counts for a boom that vibrates
   double stamp_noise{};                    ///< standard deviation of the stamp, from sample to sample [s]
-  double unseen_peak{};  ///< peak of Fz of a working hammer that may not have been followed before [N]
+  double unseen_peak{};                    ///< peak of Fz of a hammer that may have worked unobserved before [N]
 };
 
 /// Reasons for which the boom is taken as rigid or compliant.
 struct BoomChoice {
   bool compliant{};           ///< published loads include vibration
-  bool judged{};              ///< some turn has ended; the figures below are of the last one that did
+  bool judged{};              ///< true once a turn has ended; the figures below are those of the last turn
   double pulse_length{};      ///< pi/mu of its pulse [s]
   double lowest_frequency{};  ///< lowest natural frequency of the boom at its end [Hz], 0 without modes
   double rigid_error{};       ///< error of a rigid boom's joint torques for such a pulse, over the largest [-]; see
@@ -51,14 +51,14 @@ struct BoomChoice {
   double rigid_tolerance{};   ///< [-]
 };
 
-/// Results of one crank sample. Void but for stamp and fault when there is a fault.
+/// Results of one crank sample. With a fault only stamp and fault are valid.
 struct BoomState {
   StampNs stamp{};
   std::optional<JointFault> fault;
   BoomLoads loads;
   SteelLoads steel;           ///< sections and joints as Boom orders them
   BoomDeviations deviations;  ///< standard deviations of loads and steel; NaN where the crank has no covariance
-  BoomDeviations common;      ///< the part of them that constants of crank sensor, hammer and boom make
+  BoomDeviations common;      ///< the part of them by constants of crank sensor, hammer and boom
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
   bool zero_moment_arm{};       ///< a cylinder does not hold its joint: no modes, taken as rigid
   JointVector frequency;        ///< natural frequencies, per mode [Hz]; none when vibration is not followed
@@ -68,7 +68,7 @@ struct BoomState {
   JointVector contact_torque;   ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
   Wrench contact;               ///< contact load BY the rock ON the tip, axes of the tip; zero where it is not measured
   bool measured{};              ///< the cylinders' forces are those of measured pressures
-  bool contact_unknown{};       ///< the IMU shows that the rock bears on the hull, pressures do not show its force
+  bool contact_unknown{};       ///< the IMU shows contact with the rock, but no pressures measure its force
   bool hold_down_force_lost{};  ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;          ///< along hull z; infinite without modes
   Boom::TipVibration tip;       ///< zero for a rigid boom
@@ -78,9 +78,9 @@ struct BoomState {
   std::optional<HoldDown> hold_down;  ///< against the mean hold-down force of the last turn that had one
 };
 
-/// Owns the boom and its joints' states. Vibration is followed from the first sample on, wherever a verdict could want
-/// it, so that nothing jumps when it does; with `boom: auto` a boom with cylinders counts as compliant until the first
-/// turn has ended. After construction no allocation.
+/// Owns the boom and its joints' states. The vibration is computed from the first sample on if it may be needed later,
+/// so that loads do not jump. With `boom: auto` a boom with cylinders is compliant until the first turn has ended. No
+/// allocation after construction.
 class BoomFollower {
  public:
   /// settings.boom must not be kNone. striking_distance: from D to the tool's axis, at -x of the hull [m].
@@ -98,24 +98,24 @@ class BoomFollower {
   /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
   /// until the next call.
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
-  /// Through a crank sample that gives no loads: the boom swings on, without pieces as if free.
+  /// Advances over a crank sample without loads: the boom continues to vibrate, freely if the step has no pieces.
   void swing(StampNs stamp, const WrenchHistory& step) noexcept;
-  /// Covariance of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as the sensors leave
-  /// it or, where they identify nothing, the boom file; zero for a boom taken as rigid.
+  /// Covariance of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], by the sensors or,
+  /// without identification, by the boom file; zero for a rigid boom.
   Eigen::Matrix3d tipCovariance() const noexcept;
   /// Velocity of the tip by the operator at the last blow, without vibration.
   TipVelocity drivenTip() const noexcept;
-  /// Along z, that would explain what the IMU reads beside hammer and oil, root mean square of a second [N].
+  /// Force along z that would explain the IMU's residuals, root mean square over a second [N].
   double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
-  /// Once per turn, with what is known of the crank.
+  /// Call once per turn, with the crank's deviations.
   void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }
-  /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
-  /// 0.1 ms.
+  /// Call once per turn, with its pulse and its mean hold-down force [N]. It takes some 0.1 ms.
   void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_hold_down_force) noexcept;
 
   /// Index in the chain, for wrenchAtLink(); nothing for what is another TF frame.
   std::optional<int> linkIndex(const std::string& link) const noexcept { return boom_.chain().linkIndex(link); }
-  /// A load on the hull about D at the origin of a link, its axes, at the last sample's pose by the joints' sensors.
+  /// Transforms a load on the hull about D to the origin and axes of a link, at the last sample's pose by the joints'
+  /// sensors.
   Wrench wrenchAtLink(int link, const HullWrench& load) const noexcept;
 
   const BoomState& state() const noexcept { return state_; }
@@ -195,8 +195,8 @@ class BoomFollower {
   BoomState state_;
   JointMotion motion_;
   TorqueStep torque_;
-  HullWrench displaced_links_;     ///< at the last sample
-  JointVector beside_modes_;       ///< torque of inertia that modes of one pose leave out: its change by the vibration
+  HullWrench displaced_links_;  ///< at the last sample
+  JointVector beside_modes_;    ///< torque of inertia that modes at a fixed pose neglect: its change by the vibration
   std::optional<InPlaneTip> tip_;  ///< at the sample; none: the rock's force is not measured
   double unexplained_{};           ///< mean square of the force along z that would explain the IMU's readings [N2]
   double least_contact_{};         ///< along z: less is none [N]

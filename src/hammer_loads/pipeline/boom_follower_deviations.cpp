@@ -1,4 +1,4 @@
-// Deviations of what the boom carries, and what they take for an error.
+// Standard deviations of the boom's loads, and their error sources.
 #include <algorithm>
 #include <cmath>
 
@@ -36,7 +36,7 @@ Eigen::Matrix3d BoomFollower::tipCovariance() const noexcept {
   return consistency * (by_mode * identifier->accelerationCovariance() * by_mode.transpose());
 }
 
-/// By the same hammer on oil that is stiffer or softer, more damped, and by its load's errors.
+/// Deviations by stiffness and damping of the oil and by errors of the hammer's load.
 Eigen::Matrix3d BoomFollower::tipCovarianceAsGiven() const noexcept {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   const JointVector vibration = boom_.vibration().acceleration();
@@ -53,7 +53,7 @@ Eigen::Matrix3d BoomFollower::tipCovarianceAsGiven() const noexcept {
   return covariance;
 }
 
-/// The part of the hull's acceleration that hammer and oil as given do not explain is a force on its mass.
+/// The part of the hull's acceleration that hammer and oil do not explain is attributed to a force on its mass.
 void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noexcept {
   const ModeIdentifier& identifier = *boom_.vibration().identifier();
   state_.contact_unknown = !identifier.explains() && identifier.learns() && !identifier.followsContact();
@@ -64,7 +64,7 @@ void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noex
   unexplained_ += std::clamp(step / Vibration::kSwingTime, 0.0, 1.0) * (force * force - unexplained_);
 }
 
-/// A rock that is not measured is an error of the load, as large as what shows of it.
+/// An unmeasured force of the rock is an error of the load, as large as the residuals show.
 WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const noexcept {
   WrenchSpread spread = of_crank;
   if (!state_.contact_unknown || of_crank.count == 0) return spread;
@@ -73,8 +73,8 @@ WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const no
   return spread;
 }
 
-/// Deviations of measured loads are those of the measurement: an error of the vibration is made up for by the contact
-/// load.
+/// Deviations of measured loads are those of the measurement, since the contact load compensates an error of the
+/// vibration.
 void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
   BoomDeviations& deviations = state_.deviations;
   const Wrench lasting = pressuresCount() ? trust_.notOfRock(striking_distance_, least_contact_) : Wrench{};
@@ -98,8 +98,8 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
   }
 }
 
-/// Adds errors of constants as loads that do not change: a boom's modes amplify a load, and attenuate one at a higher
-/// frequency. They do not enter measured loads.
+/// Adds errors of constants as static loads, without the amplification or attenuation by the boom's modes. They do not
+/// enter measured loads.
 void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   const bool known = sample.spread.count > 0;
   const auto of = [&](const Eigen::Matrix3d& errors) {

@@ -1,4 +1,4 @@
-// The boom's motion and loads by sensors: readings, their trust, the rock's force.
+// The boom's motion and loads by sensors: readings, their plausibility, the rock's force.
 #include <algorithm>
 
 #include "hammer_loads/pipeline/boom_follower.h"
@@ -11,7 +11,7 @@ constexpr double kStillBeats = kLongestTurn;  // after a blow
 
 }  // namespace
 
-/// Discards frequencies, damping and motion that wrong readings have spoilt.
+/// Discards frequencies, damping and motion that were estimated from wrong readings.
 void BoomFollower::forgetWrongReadings(bool imu_lost) noexcept {
   const int lost = static_cast<int>(trust_.isLost()) + static_cast<int>(imu_lost);
   if (lost > lost_sensors_ && boom_.vibration().identifier()) {
@@ -21,7 +21,7 @@ void BoomFollower::forgetWrongReadings(bool imu_lost) noexcept {
   lost_sensors_ = lost;
 }
 
-/// Follows the contact load where all pressures are known; without them the force would stay as it was.
+/// Estimates the contact load where all pressures are known; without them its estimate would not change.
 void BoomFollower::followContact(StampNs stamp) noexcept {
   bool measured = pressuresCount();
   for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.known(i, stamp);
@@ -48,7 +48,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   trust_.followDelay(found.delay(Clock::kPressures), found.oilSurprise(), step);
 }
 
-/// A measured force holds what acts on its joint, whatever the model says; the difference is the rock's.
+/// A measured force balances all loads on its joint; the difference from the model is attributed to the rock.
 void BoomFollower::takeMeasured(const BoomSample& sample, double step) noexcept {
   state_.contact_torque.setZero();
   state_.contact = {};
@@ -85,8 +85,8 @@ void BoomFollower::useMeasured() noexcept {
   }
 }
 
-/// Three cylinders in a plane give a load on the tip; of others the torques alone are known. No force is one that is
-/// not seen beside its error.
+/// Three cylinders in a plane determine a load on the tip; otherwise only the torques are known. A force below its
+/// error is set to zero.
 void BoomFollower::findContact(double step) noexcept {
   const auto& c = boom_.cylinders();
   if (!state_.measured || c.size() != 3) return;

@@ -33,7 +33,7 @@ std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept {
     BoomHealth::OfCylinder& c = health.cylinder[at];
     c.joint_angle = follower.jointAngle(at);
     c.stiffness = std::exp(found->stiffer);
-    // A stiffness is a frequency squared: what an identified one still lacks counts twice.
+    // A stiffness is proportional to the square of a frequency, so that a relative error of the frequency counts twice.
     c.deviation = c.stiffness * std::hypot(found->deviation, 2.0 * ModeIdentifier::kLeftFrequency);
     BoomHealth::OfMode& m = health.mode[at];
     m.frequency = state.frequency[i], m.deviation = state.frequency_std[i];

@@ -11,8 +11,8 @@ namespace hammer_loads {
 /// Figures that change when air enters a cylinder, pins wear or a link cracks. Every blow is a known impulse, so that a
 /// working hammer tests its boom five times a second.
 struct BoomHealth {
-  /// Index as in Boom::cylinders(). The ratio does not depend on the pose but for what the boom file has wrong of
-  /// masses and places, which is the same from day to day.
+  /// Index as in Boom::cylinders(). The ratio depends on the pose only by errors of the boom file's masses and places,
+  /// which do not change from day to day.
   struct OfCylinder {
     double joint_angle{};             ///< angle of the cylinder's joint [rad]
     double stiffness{}, deviation{};  ///< oil stiffness over that of the boom file, and its standard deviation [-]
@@ -24,15 +24,14 @@ struct BoomHealth {
   std::array<OfCylinder, kMaxJoints> cylinder;
   std::array<OfMode, kMaxJoints> mode;
   int count{};          ///< number of cylinders and of modes
-  bool oil_explains{};  ///< false: a damping is none of oil, and what is stiff or soft beside it is uncertain
+  bool oil_explains{};  ///< false if a damping is not that of oil, so that the stiffnesses are uncertain
 };
 
-/// The mode whose damping is farthest from the boom file's, where that is more than the identifier expects: no oil
-/// makes it. -1: none.
+/// The mode whose damping differs most from the boom file's, if by more than oil can explain; -1: none.
 int modeOfOddDamping(const Boom& boom) noexcept;
 
-/// Nothing where sensors do not show it: before its frequencies are known with their delay, while the hull bounces on
-/// rock as no oil makes it, at a zero moment arm, with joints that are not known.
+/// Empty where sensors do not determine it: before the frequencies are known with their delay, while the hull bounces
+/// on rock, at a zero moment arm, or with unknown joints.
 std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept;
 
 }  // namespace hammer_loads

@@ -13,11 +13,11 @@
 namespace hammer_loads {
 namespace {
 
-/// A stamp that is later [s] is named, and may be taken for oil that is softer.
+/// Delay of stamps from which on a warning is given; it may be mistaken for softer oil [s].
 constexpr double kLateStamp = 8e-4;
 
-/// By which pressures seem late where what damps the boom is not in its oil [s]: what is more than the boom file has,
-/// or where that is odd all that is found, and as much as the delay itself is not known.
+/// Apparent delay of pressures by damping that is not the oil's [s]: that of the damping in excess of the boom file's,
+/// or of all damping if it is implausible, and the deviation of the delay.
 double lagOfDamping(const Boom& boom, int odd) {
   const double oil = odd < 0 ? boom.parameters().vibration.damping_ratio : 0.0;
   double lag = 0.0;
@@ -29,7 +29,7 @@ double lagOfDamping(const Boom& boom, int odd) {
   return odd < 0 ? lag : lag + gate::kUsual * identifier.delayDeviation(Clock::kPressures);
 }
 
-/// A clock of its own, as the boom's modes show it. explained: late by this without one [s].
+/// Delay of a sensor's own clock by the boom's modes. explained: apparent delay by other causes [s].
 bool isOff(const ModeIdentifier& identifier, Clock clock, double explained = 0.0) {
   constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
   const double delay = identifier.delay(clock);
@@ -59,7 +59,7 @@ void warnOfImuClock(const ModeIdentifier& identifier, std::vector<Warning>& warn
                       true});
 }
 
-/// explained: by what damps the boom they seem late by this [s].
+/// explained: apparent delay by the boom's damping [s].
 void warnOfPressures(const ModeIdentifier& identifier, double explained, std::vector<Warning>& warnings) {
   const double surprise = identifier.oilSurprise();
   if (isOff(identifier, Clock::kPressures, explained)) {
@@ -78,8 +78,8 @@ void warnOfPressures(const ModeIdentifier& identifier, double explained, std::ve
   }
 }
 
-/// The cylinder whose oil differs most from that of the others, where that is more than the boom file has it. odd: mode
-/// whose damping no oil makes, or -1.
+/// The cylinder whose oil differs most from that of the others, if by more than the boom file expects. odd: mode whose
+/// damping is not that of oil, or -1.
 void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
   const CylinderParameters* unlike = nullptr;
   Vibration::OilAgainstOthers found;
@@ -103,7 +103,7 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
   warnings.push_back({"cylinder stiffness", std::move(text), true});
 }
 
-/// Pressures that are not used.
+/// Warns of pressures that are not used.
 void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warning>& warnings) {
   constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of what air has
   if (trust.isLate()) {

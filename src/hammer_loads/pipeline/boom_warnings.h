@@ -1,4 +1,4 @@
-/// Warnings of what the boom's vibration shows of its sensors, its oil and its joints.
+/// Warnings on sensors, oil and joints by the boom's vibration.
 #pragma once
 
 #include <vector>

@@ -23,7 +23,7 @@ struct BudgetFigure {
   std::vector<Source> sources;  ///< without those that add nothing
 };
 
-/// Follows a pipeline's samples: pulse, blow and ranges of the hull's loads, over all turns of the run.
+/// Collects the contributions to pulse, blow and ranges of the hull's loads over all turns of a run.
 class BudgetRecorder {
  public:
   explicit BudgetRecorder(const Pipeline& pipeline);

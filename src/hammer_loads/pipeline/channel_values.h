@@ -14,7 +14,7 @@ inline void wrenchValues(const HullWrench& wrench, double* values) noexcept {
 
 /// Values of all channels at an accepted sample; NaN: not known. boom: as for the names. All arrays have as many places
 /// as there are names. The wrench's deviations are those of extremes at the sample; common: the part of constants in
-/// them.
+/// these.
 void channelValues(const SampleResult& result, const Boom* boom, double* values, double* deviations,
                    double* common) noexcept;
 

@@ -56,7 +56,7 @@ StampSequence::Repeats CrankFollower::repeatsOf(const CrankSample& measured) con
                                                                : Repeats::kAtRest;
 }
 
-/// From one sample to the next the crank passes more than a count of its encoder: none gives the same angle again.
+/// True if the crank passes more than a count of its encoder between two samples, so that no sensor repeats an angle.
 bool CrankFollower::passesCounts() const noexcept {
   if (!turns() || !sequence_.fit().isKnown()) return false;
   return std::abs(estimate_.speed) * 1e-9 * sequence_.fit().interval() > tracker_->angleResolution();
@@ -64,7 +64,7 @@ bool CrankFollower::passesCounts() const noexcept {
 
 bool CrankFollower::turns() const noexcept { return tracker_->hasSpeed() && std::abs(estimate_.speed) > kSlowCrank; }
 
-/// Places the sample in the sequence of arrival and so finds its instant.
+/// Finds the instant of the sample by its place in the sequence of arrival.
 std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& measured) noexcept {
   stamp_ = header;
   if (header < 0 || header > kLastStamp) return Refusal::kBadStamp;
@@ -113,7 +113,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   return Taken::kContinued;
 }
 
-/// The readings say more of the step's length than stamps that jitter.
+/// True if the readings determine the length of the step better than jittering stamps do.
 void CrankFollower::followLostTime() noexcept {
   if (tracker_->slips() > slips_) slipped_ = stamp_;
   slips_ = tracker_->slips();
@@ -148,7 +148,7 @@ void CrankFollower::restart() noexcept {
   samples_since_restart_ = 0;
 }
 
-/// Before the first whole turn there is no peak to compare with: then only the speed must be known.
+/// Before the first whole turn there is no peak for comparison; then only the speed must be known.
 bool CrankFollower::isSettled(const HullMotion& hull, double peak_force) noexcept {
   if (!tracker_->isPlausible() || suspectsUnit()) return false;
   if (!unsettled_) return true;

@@ -1,4 +1,4 @@
-/// From crank samples to the crank's motion: gate, units, filter, the step since the sample before.
+/// Processing of crank samples: gate, units, filter, and the step since the sample before.
 #pragma once
 
 #include <memory>
@@ -21,13 +21,13 @@ class CrankFollower {
   CrankFollower(const CrankFollower&) = delete;
   CrankFollower& operator=(const CrankFollower&) = delete;
 
-  /// The fate of a sample.
+  /// Outcome of a sample.
   enum class Taken {
-    kRefused,    ///< not taken: refusal() says why
-    kBegan,      ///< taken as the first one after a start, a gap or a time that ran back
-    kRevised,    ///< taken; whether the last passage was a blow has turned out otherwise
-    kRestarted,  ///< taken; it contradicts what came before, which does not count any more
-    kContinued,  ///< taken; step() is the time since the sample before
+    kRefused,    ///< not accepted: refusal() has the reason
+    kBegan,      ///< accepted as the first one after a start, a gap or a jump back in time
+    kRevised,    ///< accepted; the decision whether the last passage was a blow is revised
+    kRestarted,  ///< accepted; it contradicts the samples before, which are discarded
+    kContinued,  ///< accepted; step() is the time since the sample before
   };
 
   /// Judges a sample by itself: header stamp and reading. Only if there is no refusal, take() must follow.
@@ -48,9 +48,9 @@ class CrankFollower {
   bool isSettled(const HullMotion& hull, double peak_force) noexcept;
 
   const CrankEstimate& estimate() const noexcept { return estimate_; }
-  /// A rod that gives has the crank there.
+  /// Passes the displacement of the crank by an elastic rod to the filter, see CrankFilter::considerRod().
   void considerRod(const CrankAngle& angle, double speed) noexcept;
-  /// The hull's motion at the sample taken, known better since: the acceleration is that within this motion.
+  /// Updates the hull's motion at the accepted sample; the crank's acceleration is computed with it.
   void hullMoved(const HullMotion& hull) noexcept;
   const CrankStep& step() const noexcept { return step_; }
   const CrankFilter& tracker() const noexcept { return *tracker_; }

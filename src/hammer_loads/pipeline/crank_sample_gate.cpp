@@ -36,11 +36,11 @@ CrankSampleGate::Verdict CrankSampleGate::judge(StampNs stamp, const CrankSample
   return {std::nullopt, place == StampOrder::Place::kFirst ? Order::kFirst : Order::kNext, step, isSpeedDead(sample)};
 }
 
-/// A sensor may stand still while its speed goes on.
+/// A sensor's angle may be frozen while its speed changes.
 bool CrankSampleGate::isFrozen(double step, const CrankSample& sample) noexcept {
   const double speed = std::abs(sample.speed.value_or(0.0)), turn = speed * step;
   const bool turns = speed > limits_.frozen_speed && (frozen_ || (turn > limits_.frozen_turn && turn < 0.5 * kTwoPi));
-  // Bits, not nearness: counts repeat exactly, and any living sensor moves by its noise.
+  // Compares all bits, since counts repeat exactly and the noise of any working sensor changes some bits.
   frozen_ = turns && sample.angle == accepted_.angle;
   return frozen_;
 }

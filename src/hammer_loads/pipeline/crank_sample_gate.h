@@ -25,7 +25,7 @@ class CrankSampleGate {
     std::optional<Refusal> refusal;
     Order order{Order::kFirst};
     double step{};         ///< since the last accepted sample [s]
-    bool speed_is_dead{};  ///< nothing but zeros while the angle moves: many drivers fill in what they do not measure
+    bool speed_is_dead{};  ///< only zeros while the angle moves, as sent by drivers that do not measure the speed
   };
 
   /// Reason for which a sample's own values cannot be accepted, whatever its stamp.

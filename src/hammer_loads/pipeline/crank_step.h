@@ -1,4 +1,4 @@
-/// The crank's way over the step between the last two samples, and where on it the blow is passed.
+/// The crank's path over the step between the last two samples, and its passages of the blow.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr double kPulseStep = 1.25e-3;  ///< [s] between points of a path at mos
 constexpr double kBesideBlow = 1e-7;  ///< [s] before and after the blow where its two sides are looked at
 // Numerical: kBesideBlow
 
-/// The part of an estimate that a load needs.
+/// The part of an estimate that determines a load.
 inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {
   return {crank.position.angle, crank.speed, crank.acceleration};
 }
@@ -33,7 +33,7 @@ class CrankStep {
     bool forward{};
     double speed_before{};  ///< crank speed before the passage, in the order of time [rad/s]
     double speed_after{};   ///< crank speed after the passage [rad/s]
-    bool smooth{};          ///< onto the mirrored branch or back from it: nothing jumps
+    bool smooth{};          ///< onto the mirrored branch or back from it, without a jump
     bool may_strike{};      ///< true if it strikes, or leads onto the mirrored branch, which may turn out wrong
     bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
@@ -90,7 +90,7 @@ class CrankStep {
   bool known_{};
   StampNs start_{};
   double length_{};
-  std::int64_t furthest_blow_{};  ///< highest index passed forward since the restart
+  std::int64_t furthest_blow_{};  ///< highest index of a blow passed forward since the restart
   std::size_t passages_{};
   std::array<Passage, 32> passage_;
 };

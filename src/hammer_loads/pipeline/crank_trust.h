@@ -13,8 +13,8 @@
 
 namespace hammer_loads {
 
-/// Follows the readings of each sample that the tracker has taken, not its estimate: that may have gone astray. While
-/// there is a refusal nothing of the crank is published: no wrench, no blow, no pulse, no load cycle.
+/// Judges the readings of each accepted sample, not the filter's estimate, which may be wrong. While there is a refusal
+/// nothing is published: no wrench, no blow, no pulse, no load cycle.
 class CrankTrust {
  public:
   /// CrankFilter::strikeConsistency() beyond which readings contradict the model. With a zero 30 deg off it is 5, with
@@ -35,22 +35,22 @@ class CrankTrust {
     followTurning(turned);
     if (std::isfinite(strike_consistency)) inconsistent_ = strike_consistency > kMost;
   }
-  /// Time ran back, or a gap: what the crank did meanwhile is not known.
+  /// Notes a gap or a jump back in time, over which the crank's motion is not known.
   void begin() noexcept {
     reading_.reset();
     unbelieved_ = 0;
   }
-  /// The blow was passed forward. believed: the estimate just before it was good enough to be published. A crank that
-  /// rocks at the dead centre gives no information.
+  /// Notes a forward passage of the blow. believed: the estimate just before it was good enough to be published. A
+  /// crank that rocks at the dead centre gives no information.
   void passBlow(bool believed) noexcept {
     if (hasRunUp()) unbelieved_ = believed ? 0 : std::min(unbelieved_ + 1, kUnbelieved);
   }
 
   bool turnsBackward() const noexcept { return backward_; }
-  /// Returns true if the crank has turned forward of late: one that only ever turned backward has not struck.
+  /// Returns true if the crank has turned forward recently; a crank that only turned backward has not struck.
   bool hasRunUp() const noexcept { return forward_ > kRunUp; }
   bool isInconsistent() const noexcept { return inconsistent_ || isLost(); }
-  /// The estimate is not good enough before the blow, turn after turn.
+  /// Returns true if the estimate before the blow was not good enough in several successive turns.
   bool isLost() const noexcept { return unbelieved_ == kUnbelieved; }
   std::optional<Refusal> refusal() const noexcept {
     if (backward_) return Refusal::kBackward;
@@ -58,12 +58,12 @@ class CrankTrust {
   }
 
  private:
-  /// Strokes in a row. Wherever the model holds one in some hundred is not accepted, after lost samples; with a zero 30
-  /// deg off, on a machine with an elastic rod, or one that runs away without a tool, nine of ten are not.
+  /// Number of successive strokes. With a correct model one in a hundred is not accepted, after lost samples; with a
+  /// zero 30 deg off on a machine with an elastic rod, or on a machine without a tool, nine of ten are not.
   static constexpr int kUnbelieved = 2;
-  static constexpr double kRunUp = 1.0;  ///< [rad]: noise of readings is less, a blow's way more
-  /// A hammer that stops falls back on its tool, by less than half a turn: the rocker passes the dead centre no other
-  /// way.
+  static constexpr double kRunUp = 1.0;  ///< [rad]: more than the noise of readings, less than the motion at a blow
+  /// Judges the direction of rotation. A stopping hammer that falls back on its tool turns backward by less than half a
+  /// turn, since the rocker cannot pass the dead centre backward.
   void followTurning(double turned) noexcept {
     forward_ = std::max(0.0, forward_ + turned);
     back_ = std::max(0.0, back_ - turned);
@@ -77,7 +77,7 @@ class CrankTrust {
   }
   CrankSensor sensor_;
   std::optional<double> reading_;  ///< the last one [rad]
-  double forward_{}, back_{};      ///< since it was furthest back, forward [rad]
+  double forward_{}, back_{};      ///< rotation forward since the furthest point backward [rad]
   bool backward_{}, inconsistent_{};
   int unbelieved_{};  ///< strokes in a row of which the estimate was not good enough to be published
 };

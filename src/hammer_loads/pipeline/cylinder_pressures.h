@@ -16,8 +16,8 @@ namespace hammer_loads {
 
 enum class Chamber : std::size_t { kBore, kRod };
 
-/// The last two readings of each chamber. At an instant: on the line through them, beyond the newest one by one
-/// interval at most. No allocation.
+/// The last two readings of each chamber, interpolated linearly and extrapolated by at most one interval. No
+/// allocation.
 class CylinderPressures {
  public:
   /// max_age: from an instant to the nearest reading [s].
@@ -31,7 +31,7 @@ class CylinderPressures {
   bool known(std::size_t cylinder, StampNs stamp) const noexcept {
     return known(tracks_[cylinder][0], stamp) && known(tracks_[cylinder][1], stamp);
   }
-  /// Nothing unless both chambers are known.
+  /// Empty unless both chambers are known.
   std::optional<ChamberPressures> at(std::size_t cylinder, StampNs stamp) const noexcept;
 
   /// Stamp of a cylinder's last reading.
@@ -41,7 +41,7 @@ class CylinderPressures {
   double greatest() const noexcept { return greatest_; }  ///< largest magnitude of all accepted readings [Pa]
   std::uint64_t accepted() const noexcept { return accepted_; }
   std::uint64_t refused() const noexcept { return refused_; }
-  /// Readings taken of a cylinder: what it has more than before is new.
+  /// Number of accepted readings of a cylinder, by which a caller recognises new ones.
   std::uint64_t count(std::size_t cylinder) const noexcept { return counts_[cylinder]; }
 
  private:

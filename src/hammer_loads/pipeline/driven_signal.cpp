@@ -17,12 +17,12 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 // Numerical: kWalks, kWalksOfIntegral
-constexpr double kBlowPart = 0.3;  // part of a blow's impulse, which is known when the crank has turned on
-constexpr double kNoisiest = 3.0;  // times the first guess: a unit whose noise at rest was not seen
-constexpr double kFarOff = square(gate::kRare);  // in variances: a reading farther off counts as this
+constexpr double kBlowPart = 0.3;                // relative error of a blow's impulse until the crank has turned on
+constexpr double kNoisiest = 3.0;                // times the first guess: a unit whose noise at rest was not seen
+constexpr double kFarOff = square(gate::kRare);  // in variances: limit of the contribution of a reading
 constexpr double kComplianceWalk = 0.01;         // part of the first guess's deviation in a second: a pose that changes
 // Prior: kComplianceWalk
-// Of a compliance by a description, whose masses are good to 3 % and centres to 2 cm.
+// Relative error of a compliance by a description whose masses are right to 3 % and centres to 2 cm.
 constexpr double kDescribed = 0.05;
 // Prior: kDescribed
 constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
@@ -30,7 +30,7 @@ constexpr double kLeastNoise = 1e-3;    // part of the first guess, as a logarit
 constexpr double kUnknownSignal = 1e3;  // ratio of the smooth part at the start to the noise
 constexpr double kOfInterval = 0.05;    // weight of one reading in the mean
 // Numerical: kUnknownSignal, kUnknownSlope, kLeastNoise, kOfInterval
-constexpr double kFirstCounts = 10.0;  // readings that the first guess of the noise stands for
+constexpr double kFirstCounts = 10.0;  // weight of the first guess of the noise, in readings
 
 /// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it
 /// the slope counts.
@@ -110,7 +110,7 @@ void DrivenSignal::begin(double reading, const Eigen::Vector3d& load) noexcept {
       c.x[kSmooth] = reading - load.dot(c.x.segment<3>(kCompliance));
     else
       c.x[kIntegral] = reading;
-    // A rate that is read does not show the acceleration.
+    // A measured rate does not determine the acceleration.
     const double smooth = itself ? square(kUnknownSignal) : square(kUnknownSignal * kUnknownSlope);
     c.P(kIntegral, kIntegral) = 1.0, c.P(kSmooth, kSmooth) = smooth;
     c.P(kSlope, kSlope) = smooth * square(kUnknownSlope);
@@ -158,7 +158,7 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
   keepPrior(c);
 }
 
-/// More noise makes a hull's compliance no less known than before any reading.
+/// Limits the variance of a compliance to that before any reading, which a growing noise would exceed.
 void DrivenSignal::keepPrior(Candidate& c) const noexcept {
   const Eigen::Array3d prior = prior_.head<3>(), now = c.variance * c.P.diagonal().segment<3>(kCompliance).array();
   if ((now <= prior).all()) return;

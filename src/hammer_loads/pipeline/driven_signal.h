@@ -1,4 +1,4 @@
-/// One direction of the hull's motion, followed from readings of it and the load that drives it.
+/// Filter of one direction of the hull's motion, from its readings and the load that drives it.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,16 +10,15 @@
 
 namespace hammer_loads {
 
-/// A hull that is free to move answers to a load at once: its acceleration is compliance times load beside what oil,
-/// weight and rock do, which changes no faster than boom and hull vibrate. A jump of the load, as at a blow, is
-/// therefore a jump of the acceleration, and the smooth rest is interpolated and predicted between readings.
+/// A free hull responds to a load at once: its acceleration is compliance times load plus a smooth part by oil, weight
+/// and rock, which changes no faster than boom and hull vibrate. A jump of the load, as at a blow, is therefore a jump
+/// of the acceleration, and the smooth part is interpolated and predicted between readings.
 ///
-/// Kalman filter: integral of the signal (a rate that is read), the smooth part, its slope, which walks at random, and
-/// three compliances, which are learned from all that the load does. The smooth part is what the oil pulls with, so
-/// that it is bent by the hull's own acceleration: three stiffnesses and three dampings over inertia are learned
-/// as above. The ratio of the slope's walk to the noise of a reading is the one among some candidates that predicts the
-/// readings best, and the noise is the prediction's error (maximum likelihood over some thousand readings), so that no
-/// sensor's noise need be given.
+/// Kalman filter with these states: integral of the signal (for a measured rate), the smooth part, its slope (a random
+/// walk), and three compliances. The smooth part is the force of the oil, whose second derivative follows from the
+/// hull's acceleration: three stiffnesses and three dampings over inertia are further states. The intensity of the
+/// random walk over the noise of a reading is the candidate with the largest likelihood over some thousand readings,
+/// and the noise is estimated from the innovations, so that no noise of the sensor must be given.
 class DrivenSignal {
  public:
   enum class Reads { kItself, kIntegral };
@@ -36,11 +35,11 @@ class DrivenSignal {
     double length{};           ///< [s]
     Eigen::Vector3d impulse;   ///< impulse of the load, blows included
     Eigen::Vector3d blow;      ///< impulse of the blows alone
-    Eigen::Vector3d velocity;  ///< by which the hull's vibration changes: x, z, turning
+    Eigen::Vector3d velocity;  ///< change of the hull's velocity by vibration: x, z, turning
     Eigen::Vector3d way;       ///< the integral of that from 0
   };
-  /// A reading closer to a blow than its instant is known: with that probability this was added to the load (where a
-  /// signal is read) or to its impulse (where its integral is).
+  /// A reading closer to a blow than the uncertainty of its instant: with this probability, `added` is a part of the
+  /// load (if the signal is measured) or of its impulse (if its integral is measured).
   struct Doubt {
     double probability{};
     Eigen::Vector3d added = Eigen::Vector3d::Zero();
@@ -61,24 +60,25 @@ class DrivenSignal {
   /// that. The first description replaces the first guess. From one to the next, as the pose changes, the identified
   /// values move by the difference of the descriptions.
   void expect(const Eigen::Vector3d& compliance, const Eigen::Vector3d& most) noexcept;
-  /// Readings are not continuous with those before; what the hull is stays known.
+  /// Forgets the motion, as readings do not continue those before; the hull's constants are kept.
   void forgetMotion() noexcept { begun_ = false; }
-  /// The load has grown: readings up to now count for that part only in how the signal walks and is read.
+  /// Reduces the weight of all readings so far in the likelihoods and the noise by that factor, since the load has
+  /// grown.
   void outdate(double part) noexcept { counted_ *= part; }
-  /// All that is known is a number.
+  /// Returns true if all states and variances are finite.
   bool isFinite() const noexcept { return 0.0 * (best().x.sum() + best().P.sum()) == 0.0; }
   const Settings& settings() const noexcept { return settings_; }
-  /// On from the last reading.
+  /// Predicts over a step after the last reading.
   void advance(const Step& step) noexcept;
-  /// At the load there is; step: all since the last reading [s]; counts: the readings show how the signal walks, as
-  /// they do while the hammer works.
+  /// Updates by a reading at the present load. step: time since the last reading [s]; counts: the reading counts for
+  /// the likelihoods, as it does while the hammer works.
   void read(double reading, double step, const Eigen::Vector3d& load, const Doubt& doubt, bool counts) noexcept;
 
   /// Change of the signal's integral over a step to come, and the integral of that from 0.
   struct Swing {
     double velocity{}, way{};
   };
-  /// The state, carried on from the last reading without another one.
+  /// Prediction of the state beyond the last reading.
   class Future {
    public:
     explicit Future(const DrivenSignal& signal) noexcept : signal_(signal), x_(signal.best().x), P_(signal.best().P) {}
@@ -95,7 +95,7 @@ class DrivenSignal {
     Covariance P_;
     double since_{};
   };
-  /// By what is known best.
+  /// Swing by the best candidate.
   Swing swing(double length, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) const noexcept {
     return swing(best().x, length, impulse, lasting);
   }
@@ -132,7 +132,7 @@ class DrivenSignal {
   double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: what a reading is of that
   double walkOf(const Candidate& candidate) const noexcept;
   const Candidate& best() const noexcept { return candidates_[best_]; }
-  /// Variance of what readings show at work beside their noise at rest: motion that is too fast for them.
+  /// Excess of the readings' variance at work over that at rest, by motion that is too fast for the filter.
   double unfollowed() const noexcept {
     return std::max(0.0, best().variance - std::max(best().quiet, square(settings_.noise)));
   }

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kMemory = look_back::kSomeTurns;  // time constant of each filter
 constexpr double kLost = 0.5;                      // jump of an angle that winds or came back [rad]
-constexpr double kStill = 0.03;                    // [rad]: after a gap, of a boom that vibrates where it was to be
+constexpr double kStill = 0.03;                    // [rad]: deviation after a gap that vibration alone explains
 constexpr double kFast = 0.05;                     // [rad/s]: its acceleration hides the vibration
-constexpr double kSettles = 2.5;                   // [s]: this long what was no slow motion is seen as an acceleration
+constexpr double kSettles = 2.5;  // [s]: time for which the filters show a fast motion as an acceleration
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   if (settling_ == 0.0) motion_.acceleration = slowAcceleration();
 }
 
-/// Over a gap, at the operator's last rate.
+/// Extrapolates over a gap at the operator's last rate.
 void HeldPose::goOn(double step) noexcept {
   const JointVector way = step * slowRate();
   for (JointVector* angle : {&first_, &slow_, &slowest_, &last_}) *angle += way;
@@ -69,7 +69,7 @@ void HeldPose::struck() noexcept {
 
 JointVector HeldPose::slowRate() const noexcept { return (first_ - slow_) / kMemory; }
 
-/// The acceleration by three filters, brought forward by their delay with what four show of its change.
+/// The acceleration by three filters, extrapolated over their delay by the change that four filters show.
 JointVector HeldPose::slowAcceleration() const noexcept {
   const JointVector late = first_ - 2.0 * slow_ + slowest_, change = late - (slow_ - 2.0 * slowest_ + last_);
   return (late + 3.0 * change) / square(kMemory);

@@ -7,16 +7,16 @@ namespace hammer_loads {
 
 /// Joint angles by three filters of the first order in a row, 0.5 s each (Brown's triple exponential smoothing): a
 /// joint that is driven at a constant acceleration is followed without lag; of a vibration of 3.4 Hz 28 % is left, of
-/// one of 9 Hz 10 %. A vibration as a sensor of 50 Hz shows it is no motion of the boom: as a pose for the modes and
-/// as a velocity it spoils joint torques by several per cent.
+/// one of 9 Hz 10 %. A vibration sampled at 50 Hz must not be taken for the boom's slow motion: as pose of the modes
+/// and as velocity it would change joint torques by several per cent.
 ///
 /// Error: 0.125 s^3 times the rate of the operator's acceleration; so while he drives a joint faster than 0.05 rad/s,
 /// 2 s after that and 1 s after the start the joints count as they are measured. No allocation.
 class HeldPose {
  public:
-  /// The joints as they are measured, less the vibration as far as it is known, a step [s] after the call before.
+  /// Takes the measured joints less the known vibration, a step [s] after the previous call.
   void follow(const JointMotion& measured, double step) noexcept;
-  /// A blow was struck in the last step.
+  /// Notes that a blow was struck in the last step.
   void struck() noexcept;
   bool isDriven() const noexcept { return unrest_ > 0.0; }
   /// Motion at the last call; as measured while driven. The acceleration is the operator's slow one, except while

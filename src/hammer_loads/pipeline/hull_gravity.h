@@ -1,4 +1,4 @@
-/// Gravity as the hull sees it, by the latest joint angles.
+/// Gravity in the hull's axes, by the latest joint angles.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ class HullGravity {
  public:
   HullGravity(const PipelineSettings& settings, const std::optional<Boom>& boom);
 
-  /// Takes boom joint angles, any subset in any order. Returns true if any was of use.
+  /// Takes boom joint angles, any subset in any order. Returns true if any was used.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
   /// Positions of the chain's joints once all of them have been received; null before, or without a chain.

@@ -33,7 +33,7 @@ enum class ImuRefusal : std::size_t { kNotFinite, kImplausible, kOutOfOrder, kJu
 constexpr std::array<const char*, static_cast<std::size_t>(ImuRefusal::kCount)> kImuRefusalNames{
     "not finite", "implausible", "out of order", "jumps"};
 
-/// From readings to the hull's motion at D: replaces weight and tilt together. The turning's acceleration is the
+/// Conversion of readings to the hull's motion at D, which includes weight and tilt. The turning's acceleration is the
 /// difference of the last two rates that did not come together: half an interval late, noise sqrt(2)/interval times the
 /// rate's. It also moves the specific force from the unit to D, so mounting the unit near D keeps that noise out of the
 /// wrench (model.md 3).
@@ -45,7 +45,7 @@ class HullImu {
   /// follows it, as when a log is played again. One that is far off the others is refused (JumpGuard). No allocation.
   std::optional<ImuRefusal> update(StampNs stamp, const ImuReading& reading) noexcept;
 
-  /// A blow was struck at that instant: accelerations jump there, so no line and no difference goes across it.
+  /// Notes a blow at that instant, where accelerations jump: no interpolation and no difference extends across it.
   void struck(StampNs stamp) noexcept;
   /// Motion of D at the last blow; none where it is not known.
   std::optional<TipVelocity> speedAtBlow() const noexcept { return speed_.atBlow(); }
@@ -57,7 +57,7 @@ class HullImu {
   /// Motion at a stamp, known as reading() is. Turning acceleration zero until two readings after a blow give it.
   std::optional<HullMotion> at(StampNs stamp) const noexcept;
 
-  /// For how long more than one reading should have come since the last one [s]; below 0: not yet.
+  /// Time since a second reading after the last one was due [s]; negative if it is not due yet.
   double overdue(StampNs stamp) const noexcept {
     return hammer_loads::overdue(seconds(stamp - now_.stamp), std::max(0.0, seconds(now_.stamp - before_.stamp)));
   }

@@ -12,8 +12,9 @@ namespace {
 
 // First guesses of a reading's noise, a usual MEMS unit's; learned.
 constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
-constexpr double kSwings = 2.0;  // times what a load does to it at once: a hull on oil, whose modes blows excite
-// Standard deviation of what such a unit adds to all readings alike, which no filter shows.
+constexpr double kSwings =
+    2.0;  // ratio to the immediate response to a load: a hull on oil, whose modes are excited by blows
+// Standard deviation of a constant offset of such a unit, which the filter cannot identify.
 constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
 // Prior: kForceOffset, kRateOffset
 // A hull is some five times as heavy as its rocker at least.
@@ -85,7 +86,7 @@ HullMotionCovariance HullMotionFilter::unread() const noexcept {
   return Eigen::Vector4d(x_.yielding(square), z_.yielding(square), 0.0, turning_.yielding(square)).asDiagonal();
 }
 
-/// At rest readings show noise alone.
+/// Returns true if the hammer works; at rest readings contain noise alone.
 bool HullMotionFilter::works(const Eigen::Vector3d& load) noexcept {
   const double size = load.head<2>().norm();
   if (size > greatest_load_) {

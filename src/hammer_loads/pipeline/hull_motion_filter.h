@@ -1,4 +1,4 @@
-/// The hull's motion from its IMU, with the load that drives it: jumps where the load jumps.
+/// The hull's motion by its IMU and the load that drives it, with jumps at blows.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,21 +27,21 @@ struct KnownHullMotion {
 };
 
 /// Three signals at the unit, each driven by the load of links and drive: force along x, force along z, turning about y
-/// by its rate. Readings wait for the crank sample after them, which gives the load at their stamps; nothing is taken
-/// from the future. The effective inertia of the hull at D - on its boom and oil, on rock - is learned: it needs no
-/// boom file, and begins with what there is in one.
+/// by its rate. Readings wait for the next crank sample, which determines the load at their stamps; no later data are
+/// used. The effective inertia of the hull at D, on its boom and oil or on rock, is estimated; a boom file is not
+/// required, but gives the initial value.
 class HullMotionFilter {
  public:
   HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer);
 
-  /// Sets the mobility of the hull that a robot description gives.
+  /// Sets the mobility of the hull by a robot description.
   void expect(const HullMobility::Mobility& mobility) noexcept;
-  /// A reading that was taken, axes of hammer_hull.
+  /// Adds an accepted reading, axes of hammer_hull.
   void add(const StampedImuReading& reading) noexcept { waiting_.add(reading); }
-  /// A crank sample and the load of the step that it ends; beside: what acts on the hull beside that at the sample. A
-  /// step without pieces: what is known of motion is forgotten.
+  /// Takes a crank sample and the load of the step that it ends. beside: other loads on the hull at the sample. A step
+  /// without pieces resets the motion.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
-  /// Known from the second reading with a known load on, until the last one is max_age old.
+  /// Motion at a stamp, from the second reading with a known load until the last one is max_age old.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
   /// Readings up to a stamp that no crank sample has followed yet.
   std::ptrdiff_t waiting(StampNs stamp) const noexcept { return waiting_.upTo(stamp); }

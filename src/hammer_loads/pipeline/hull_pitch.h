@@ -22,14 +22,14 @@ class HullPitch {
   /// [rad].
   HullPitch(std::vector<std::string> joints, std::vector<int> signs, double offset, double initial);
 
-  /// Takes what it knows from a message; returns whether any pitch joint was in it. Angles that are not finite
-  /// or beyond 1e4 rad are refused and counted.
+  /// Takes the pitch joints of a message; returns whether there was any. Angles that are not finite or beyond 1e4 rad
+  /// are refused and counted.
   bool update(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
   double pitch() const noexcept { return pitch_; }             ///< [rad]
   bool known() const noexcept { return unheard_ == 0; }        ///< every pitch joint has been heard
   std::uint64_t refused() const noexcept { return refused_; }  ///< joint angles refused
-  /// The latest angle of some joint lies beyond a whole turn: no boom reaches there.
+  /// Returns true if the latest angle of a joint exceeds a whole turn, which no boom reaches.
   bool looksLikeDegrees() const noexcept;
   /// Joints not heard yet, for diagnostics.
   std::vector<std::string> unheard() const;

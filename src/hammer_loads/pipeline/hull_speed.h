@@ -14,7 +14,7 @@ namespace hammer_loads {
 /// From blow to blow [s]: over a longer one the hull's velocity has a mean.
 constexpr double kLongestTurn = look_back::kFiveTurns;
 
-/// The hull comes back each turn: from blow to blow its velocity has no trend, and no mean. This condition removes
+/// The hull's motion is periodic: from blow to blow its velocity has no trend and no mean. This condition removes
 /// weight, offsets and the jump at the blow from the integral of the unit's readings. The rest at both ends is the
 /// velocity at the blow, mean of before and after it. None before the second blow in a row, or after a pause of the
 /// unit.
