@@ -35,7 +35,7 @@ HullState::HullState(const HammerParameters& hammer, const PipelineSettings& set
   weigh();
 }
 
-/// By the joint angles as they are now. A fixed hull has no motion but its weight.
+/// Motion by the present joint angles: weight alone, as for a fixed hull.
 void HullState::weigh() noexcept {
   pitch_known_ = weight_.pitch().known();
   in_degrees_ = weight_.pitch().looksLikeDegrees();
@@ -50,7 +50,7 @@ void HullState::carry(const HullWrench& load, double duration) noexcept {
   now_.covariance = unmeasured();
 }
 
-/// By the scatter of the load in the last 2 s: the boom carries its mean.
+/// Covariance by the variance of the load in the last 2 s, as the boom carries its mean.
 HullMotionCovariance HullState::unmeasured() const noexcept {
   return prior_.motion((load_square_.mean() - load_.mean().cwiseAbs2()).cwiseMax(0.0));
 }
@@ -84,7 +84,7 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
   return now_.motion;
 }
 
-/// By the filter, unless a slow crank has left it behind: then by the newest readings alone.
+/// Motion by the filter, or by the newest readings alone if the filter lags behind for lack of crank samples.
 std::optional<KnownHullMotion> HullState::measured(StampNs stamp) const noexcept {
   if (imu_trust_.isLost()) return std::nullopt;
   constexpr std::ptrdiff_t kLeftBehind = 3;  // readings
@@ -107,8 +107,8 @@ void HullState::find(StampNs stamp) noexcept {
   if (overdue > 0.0 && pitch_known_) forgetReading(1.0 - forgottenPart(overdue));
 }
 
-/// Reduces the part beside the weight of a reading that is held too long. A full value held to the end would bias the
-/// crank's filter, and the motion would jump there.
+/// Reduces the acceleration in a reading that is held too long. Held in full, it would bias the crank's filter and end
+/// with a jump.
 void HullState::forgetReading(double part) noexcept {
   HullMotion& m = now_.motion;
   const Gravity& weight = weight_.gravity();
@@ -117,7 +117,8 @@ void HullState::forgetReading(double part) noexcept {
   now_.covariance = square(part) * now_.covariance + square(1.0 - part) * usualMotion();
 }
 
-/// By which weight alone is off as a rule: what the hull has moved by, or would under its load where no IMU ever spoke.
+/// Covariance of the error of weight alone: by the measured motion, or without an IMU by the expected response to the
+/// load.
 HullMotionCovariance HullState::usualMotion() const noexcept {
   if (!imu_trust_.isKnown()) return filter_.unread();
   return imu_trust_.power(weight_.gravity()).asDiagonal();

@@ -1,4 +1,4 @@
-/// The hull's state: its pitch, its own motion and where that comes from.
+/// The hull's state: its pitch, its own motion and the source of that.
 #pragma once
 
 #include <array>
@@ -26,13 +26,13 @@ struct ImuCounts {
   std::uint64_t missed{};  ///< crank samples at which it did not show the hull's motion
 };
 
-/// Owns gravity and IMU, and the boom's last vibration. Where the IMU is silent, overdue or not to be used, the
-/// vibration of a boom whose oil sensors have identified gives the hull's motion.
+/// Owns gravity and IMU, and the boom's last vibration. If the IMU is missing, overdue or rejected, the hull's motion
+/// is that of the boom's vibration, provided that sensors have identified the oil.
 class HullState {
  public:
   struct Motion {
     HullMotion motion;  ///< at the sample
-    bool moves{};       ///< the hull's own motion is in it
+    bool moves{};       ///< true if it includes the hull's own motion
     /// Covariance of an IMU's motion, or of that of a boom whose oil the sensors identify. Zero for other sources.
     HullMotionCovariance covariance = HullMotionCovariance::Zero();
   };
@@ -43,12 +43,11 @@ class HullState {
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
   std::optional<ImuRefusal> imu(StampNs stamp, const ImuReading& reading) noexcept;
 
-  /// Before a sample is taken: its motion as far as it is known by then (of the boom's vibration: that of the sample
-  /// before).
+  /// Predicts the motion before a sample is processed (by the boom's vibration: that of the sample before).
   const HullMotion& predict(StampNs stamp) noexcept;
-  /// A blow was struck within the step to a sample. Call before follow().
+  /// Notes a blow within the step to a sample. Call before follow().
   void struck(StampNs blow) noexcept { imu_.struck(blow); }
-  /// After a sample was taken: its motion again, with what the step's load shows. beside: DisplacedLinks at the sample.
+  /// Updates the motion after a sample was processed, with the step's load. beside: DisplacedLinks at the sample.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
   /// Prior of the motion where nothing measures it; null: the hull is held.
   const UnmeasuredHull* prior() const noexcept { return source_ == HullMotionSource::kFixed ? nullptr : &prior_; }
@@ -57,19 +56,19 @@ class HullState {
   std::optional<TipVelocity> speedAtBlow() const noexcept {
     return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
   }
-  /// The IMU's reading at the sample in the hull's axes, if one has come since the last call; where its stamps jitter,
-  /// which bends the line through two of them, the last as it is.
+  /// The IMU's reading at the sample in the hull's axes, if there is a new one since the last call. If its stamps
+  /// jitter, which would distort the interpolation, it is the last reading itself.
   std::optional<StampedImuReading> newImuReading(StampNs sample, bool stamps_jitter) noexcept;
-  /// The wrench on the hull at a sample, and how long it lasts [s]: what an unmeasured hull does by it.
+  /// Takes the wrench on the hull at a sample and its duration [s], for the motion of an unmeasured hull.
   void carry(const HullWrench& load, double duration) noexcept;
-  /// After it: the vibration of the boom at the sample; null: not known.
+  /// Takes the vibration of the boom at the sample; null: not known. Call after carry().
   void vibrates(const BoomFollower* boom) noexcept;
-  /// Coming samples are not continuous with those before: the boom is at rest.
+  /// Notes a gap before the coming samples; the boom is at rest.
   void rest() noexcept { vibration_.reset(), vibration_doubt_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }
-  /// False where IMU or boom should give the hull's motion and do not, or the IMU cannot be used: weight by joint
-  /// angles then, and the vibration of a boom whose oil is identified.
+  /// Returns false if the hull's motion is to be that of IMU or boom and is not known, or if the IMU is rejected. Then
+  /// the weight is by the joint angles, with the vibration of a boom whose oil is identified.
   bool motionKnown() const noexcept { return known_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
   bool pitchKnown() const noexcept { return pitch_known_; }

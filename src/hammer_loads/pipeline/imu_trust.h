@@ -14,13 +14,13 @@
 
 namespace hammer_loads {
 
-/// In the mean of 2 s the hull stays in place: a unit shows its weight there, as the joint angles give it, except for
-/// the part of the blows that it misses, up to 2 m/s2. No boom turns by 3 rad/s, root mean square, while it holds a
-/// hammer: near a resonance by 0.5. Readings in g, degrees per second or with an axis the wrong way are therefore
-/// recognised; 20 deg of mounting are not.
+/// In the mean of 2 s the hull does not move: a unit measures the weight by the joint angles, but for the part of the
+/// blows that it misses, up to 2 m/s2. No boom turns by 3 rad/s, root mean square, while it holds a hammer: near a
+/// resonance by 0.5. Readings in g, degrees per second or with an axis the wrong way are therefore recognised; 20 deg
+/// of mounting are not.
 class ImuTrust {
  public:
-  /// A reading in axes of hammer_hull: specific force [m/s2], turning rate [rad/s], step since the last one [s].
+  /// Takes a reading in axes of hammer_hull: specific force [m/s2], turning rate [rad/s], step since the last one [s].
   void follow(const Eigen::Vector3d& force, const Eigen::Vector3d& rate, double step) noexcept {
     const bool same = force == force_ && rate == rate_;
     varies_ = varies_ || (!same && mean_.count() > 0.0);
@@ -34,8 +34,8 @@ class ImuTrust {
     if (step >= kSameInstant) turning_.add(square((rate.y() - last_rate_) / step), lasts), last_rate_ = rate.y();
     rate_square_.add(rate.squaredNorm(), lasts);
   }
-  /// After it; weight: by the joint angles, in the plane of the hull. One damaged angle is no more than a part of the
-  /// mean.
+  /// Judges after a reading; weight: by the joint angles, in the plane of the hull. A single damaged angle affects only
+  /// a part of the mean.
   void judge(const Gravity& weight, double step) noexcept {
     if (step > 0.0)
       off_.add({force_.x() + weight.x, force_.z() + weight.z}, std::min(step, look_back::kLongestReading));
@@ -43,18 +43,18 @@ class ImuTrust {
     off_weight_.follow(off_.mean().norm() / std::hypot(weight.x, weight.z));
     is_lost_ = isFrozen() || turnsTooFast() || off_weight_.isEngaged();
   }
-  /// Mean squares of what the hull has beside such a weight, its plane's, and of what it turns: along x and z [m2/s4],
-  /// rate [rad2/s2], its derivative [rad2/s4].
+  /// Mean squares of the hull's acceleration in its plane and of its rotation: along x and z [m2/s4], rate [rad2/s2],
+  /// its derivative [rad2/s4].
   Eigen::Vector4d power(const Gravity& weight) const noexcept {
     const Eigen::Vector3d& power = power_.mean();
     return {power.x() + square(mean().x() + weight.x), power.y() + square(mean().z() + weight.z), power.z(),
             turning_.mean()};
   }
-  /// Readings have come for long enough.
+  /// Returns true if there were readings for long enough.
   bool isKnown() const noexcept { return mean_.count() >= look_back::kSomeTurns; }
   bool isLost() const noexcept { return is_lost_; }
   bool turnsTooFast() const noexcept { return rate_square_.mean() > square(kMostRate); }
-  bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
+  bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< readings do not change any more
   const Eigen::Vector3d& mean() const noexcept { return mean_.mean(); }       ///< specific force [m/s2]
   double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]
 

@@ -74,7 +74,7 @@ bool JointBuffer::isInOrder(Track& track, StampNs stamp) noexcept {
   return true;
 }
 
-/// A damaged state costs itself.
+/// Returns true for a single jump, which is a damaged state.
 bool JointBuffer::jumps(Track& track, StampNs stamp, double position) noexcept {
   const bool second = track.jumped;
   track.jumped = false;
@@ -104,7 +104,8 @@ void JointBuffer::add(Track& track, StampNs stamp, double position, std::optiona
   ++track.count;
 }
 
-/// The last one, by one that came with it: over so short a time no velocity and no acceleration is found.
+/// Replaces the last state by one that came with it; over so short a time, velocity and acceleration cannot be
+/// determined.
 void JointBuffer::replace(Track& track, State next, bool has_velocity) noexcept {
   State& last = track.states[(track.count - 1) % kKept];
   if (!has_velocity) next.velocity = last.velocity, next.velocity_age = last.velocity_age;

@@ -1,4 +1,4 @@
-/// Boom joint motion at the instants of the crank samples, from joint states that come at their own.
+/// Boom joint motion at the instants of the crank samples, interpolated between joint states.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@ namespace hammer_loads {
 
 /// Reason why the joints' motion is not known at an instant.
 struct JointFault {
-  /// kRunAway: the boom's vibration was more than anything makes it, and restarts
+  /// kRunAway: the boom's vibration was implausibly large and restarts
   enum class Kind { kMissing, kStale, kRunAway };
   Kind kind{};
   int joint{};   ///< the first one concerned, index in the chain; of kRunAway 0
   double age{};  ///< from its nearest state to the instant [s]; infinity for a missing one
 };
 
-/// Joint states that were not taken, by reason.
+/// Refused joint states, by reason.
 struct JointRefusals {
   std::uint64_t not_finite{};    ///< position or velocity; a position with a bad velocity counts as one without
   std::uint64_t short_array{};   ///< fewer positions, or fewer velocities than positions, than names
@@ -35,20 +35,21 @@ struct JointRefusals {
 /// the newest they are held.
 ///
 /// A velocity that is not measured is the difference of the positions before and after it, zero until there are two.
-/// Neglects: what a joint does between its states (error of the position a'' h^2/8: 3e-5 rad for 0.5 rad/s2 at 50 Hz).
+/// Neglects: acceleration of a joint between its states (error of the position a'' h^2/8: 3e-5 rad for 0.5 rad/s2 at 50
+/// Hz).
 class JointBuffer {
  public:
-  /// zeros: what the joints read at the chain's zeros; it is taken off. None: zero.
+  /// zeros: readings of the joints at the chain's zeros, which are subtracted. None: zero.
   JointBuffer(const Chain& chain, const PipelineSettings& settings, const JointVector& zeros = {});
 
-  /// Takes what concerns the chain; returns whether anything was taken. Time running back is accepted from a joint's
-  /// second state on: the first may just be late. No allocation.
+  /// Takes the states of the chain's joints; returns whether there were any. A jump back in time is accepted with a
+  /// joint's second state, since the first one may be late. No allocation.
   bool update(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
               const std::vector<double>& velocities) noexcept;
-  /// Motion at an instant, or what is not known of it (then `motion` is void). No allocation.
+  /// Motion at an instant, or the reason why it is not known (then `motion` is not valid). No allocation.
   std::optional<JointFault> at(StampNs stamp, JointMotion& motion) const noexcept;
 
-  /// A joint's angle as it came.
+  /// A joint's angle as received.
   struct Reading {
     StampNs stamp{};
     double position{};
@@ -58,7 +59,7 @@ class JointBuffer {
 
   const JointRefusals& refusals() const noexcept { return refusals_; }
   const std::string& name(int joint) const noexcept { return names_[static_cast<std::size_t>(joint)]; }
-  /// Every joint that is missing or stale at an instant, for diagnostics: "arm_joint: never heard".
+  /// Joints that are missing or stale at an instant, for diagnostics: "arm_joint: never heard".
   std::vector<std::string> complaints(StampNs stamp) const;
 
  private:

@@ -1,4 +1,4 @@
-/// A damaged reading among good ones.
+/// Detection of single damaged readings.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace hammer_loads {
 
-/// Refuses a reading that jumps twelve times as far as its fellows do, root mean square over some hundred of them; a
-/// second one in a row is accepted, so that what truly jumps comes one reading late. On a hammer at work, on rock too,
-/// readings jump up to nine times as far (IMU of 1 kHz to 100 Hz, pressures of 500 to 200 Hz).
+/// Refuses a reading that differs from the last one by more than twelve times the root mean square of some hundred such
+/// differences. A second one in a row is accepted, so that a true jump is one reading late. On a hammer at work, also
+/// on rock, differences reach nine times the root mean square (IMU of 1 kHz to 100 Hz, pressures of 500 to 200 Hz).
 class JumpGuard {
  public:
   /// least: a jump that is never too far.

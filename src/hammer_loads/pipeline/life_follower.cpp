@@ -10,7 +10,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kKnown = gate::kRare;  // deviations from the blow: no reading stands for what is counted closer
+constexpr double kKnown =
+    gate::kRare;  // deviations from the blow; closer loads are not counted, as no reading determines them
 
 }  // namespace
 
@@ -112,8 +113,8 @@ void LifeFollower::countBetween(StampNs stamp) noexcept {
   turn_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
 }
 
-/// An elastic rod vibrates between samples: what its path has there, beyond the samples as far as the path comes to the
-/// second of them within the deviations published at both.
+/// Load between samples with an elastic rod: the extremes of its path, if the path reaches the second sample within the
+/// deviations published at both.
 void LifeFollower::followRing(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const ElasticFollower& rod = pipeline_->elastic();
@@ -202,7 +203,7 @@ void LifeFollower::endTurn(StampNs stamp) noexcept {
   next_turn_ = (next_turn_ + 1) % turns_.size();
 }
 
-/// A turn that began with what turned out to be no blow is not whole.
+/// A turn is not whole if the blow that began it has been revised.
 void LifeFollower::confirmTurns(const SampleResult& result) noexcept {
   for (std::size_t i = 0; i < result.turn_ends; ++i) {
     if (!result.ends[i].blow.impossible) recorder_.turn();

@@ -15,9 +15,9 @@
 
 namespace hammer_loads {
 
-/// Takes what a pipeline's samples gave: every channel at each sample whose loads are published, the hull wrench
-/// between two such where it is extreme and as close to both sides of a blow as is known, as far as both state it, in
-/// time order. Beside the pipeline, which does not know of it. How a run goes:
+/// Counts the loads of a pipeline's samples in time order: every channel at each sample whose loads are published, and
+/// the hull wrench between two such samples at its extremes and as close to both sides of a blow as it is known, if
+/// both samples agree. The pipeline is independent of it. Sequence of a run:
 ///
 ///     const SampleResult& result = pipeline.crankSample(...);
 ///     if (follower.due()) use(follower.take());
@@ -32,7 +32,7 @@ class LifeFollower {
   bool due() const noexcept;
   /// Ends the piece and adds it to the total. Allocates.
   life::LifePiece take();
-  /// Takes the pipeline's last sample; once. No allocation.
+  /// Takes the pipeline's last sample; call once per sample. No allocation.
   void follow() noexcept;
   /// Takes the ends of Pipeline::end().
   void end() noexcept { confirmTurns(pipeline_->result()); }

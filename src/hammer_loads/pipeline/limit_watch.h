@@ -1,4 +1,4 @@
-/// Judges the limits of a machine once a turn.
+/// Check of a machine's limits, once per turn.
 #pragma once
 
 #include <array>
@@ -26,7 +26,8 @@ struct LimitState {
   StampNs since{};                ///< stamp of the first revolution at the present level [ns]
 };
 
-/// A sum over the last hour of work, in whole minutes; before that over all of the work. Nothing is extrapolated.
+/// Sum over the last hour of work, in whole minutes, or over all of the work if that is shorter. It is not
+/// extrapolated.
 class LastHour {
  public:
   /// time: at work, not less than before [s].

@@ -27,8 +27,8 @@ Rubbing rubbing(const Seals& seals, double vibrating) noexcept {
           std::sqrt(one_way) * seals.deviation};
 }
 
-/// Error of a line through two readings, an interval apart, where readings are late by `delay` over that of one that
-/// are not, squared: it goes on for that much longer, and a swing is bent.
+/// Square of the error of a line through two readings that are late by `delay`, relative to that of readings without
+/// delay: the line is extrapolated further, and an oscillation is curved.
 double longerLine(double delay, double interval) noexcept {
   const double late = interval > 0.0 ? std::max(delay, 0.0) / interval : 0.0;
   return square((1.0 + late) * (1.0 + 0.5 * late));
@@ -36,8 +36,8 @@ double longerLine(double delay, double interval) noexcept {
 
 }  // namespace
 
-/// Follows the rest as a random walk with measurement noise (Kalman filter): a change over two readings contains the
-/// walk twice and the noise once. A jump comes from the rock.
+/// Estimates the residual as a random walk with measurement noise (Kalman filter): the variance of its change over two
+/// readings contains the walk twice and the noise once. A jump is a force of the rock.
 void MeasuredTorques::followRest(Track& track, double rest) noexcept {
   track.one_square.add(square(rest - track.last));
   track.two_square.add(square(rest - track.before));
@@ -52,7 +52,7 @@ void MeasuredTorques::followRest(Track& track, double rest) noexcept {
   track.rest += track.gain * error;
 }
 
-/// model: at the reading, after it was taken and as it was said before.
+/// model: at the reading, after and before the update by it.
 void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept {
   const double step = seconds(stamp - track.stamp);
   if (track.readings > 0 && step > 0.0 && cameTogether(track.stamp, stamp)) return;

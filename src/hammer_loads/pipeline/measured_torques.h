@@ -1,4 +1,4 @@
-/// Torques of the load on the joints, as the pressures of their cylinders show them.
+/// Torques of the load on the joints by the pressures of their cylinders.
 #pragma once
 
 #include <array>
@@ -12,21 +12,21 @@
 
 namespace hammer_loads {
 
-/// The oil's torque in the vibration and what readings show beside it, their noise smoothed as far as that stands
-/// still; or the line through the last two readings, whichever was nearer to the readings that came: the line where the
-/// oil is not as given, the oil where readings are rare or the hull lands on rock. No allocation.
+/// Two predictors: the oil's torque in the vibration plus the smoothed residual of the readings, and the line through
+/// the last two readings. The one with the smaller past errors is used. The line is better if the oil differs from the
+/// file, the vibration if readings are rare or the hull lands on rock. No allocation.
 class MeasuredTorques {
  public:
   /// ModeIdentifier::oilSurprise() from which on the readings do not follow the boom's motion, as when stamps lag.
   static constexpr double kSurprised = 1.0;
 
   struct Torque {
-    double value{};       ///< torque of the load on the cylinder's joint [N m]
-    double deviation{};   ///< standard: how far the last readings were from what was said before them; more where the
-                          ///< readings do not fit the vibration (kSurprised): by their difference, or where it is
-                          ///< not known how late they are as if they lagged; or where the next is overdue [N m]
-    double constant{};    ///< standard deviation by constants, beside it: friction of the seals, offsets [N m]
-    double lasting{};     ///< the part of that which stays while the operator drives the joint one way [N m]
+    double value{};      ///< torque of the load on the cylinder's joint [N m]
+    double deviation{};  ///< standard deviation by the errors of the last predictions; larger if the readings
+                         ///< contradict the vibration (kSurprised), by their difference or as for an unknown lag, or if
+                         ///< the next reading is overdue [N m]
+    double constant{};   ///< standard deviation by constants, beside it: friction of the seals, offsets [N m]
+    double lasting{};    ///< the part of that which stays while the operator drives the joint one way [N m]
     CylinderPosition at;  ///< position by the joint's sensor
   };
 
@@ -34,8 +34,9 @@ class MeasuredTorques {
     StampNs stamp{};
     double noise{};  ///< standard deviation of the stamp [s]
   };
-  /// After the vibration has taken the readings. steady: weight and motion [N m]; position: as joint sensors show it.
-  /// The known friction of the seals (from the boom file) is subtracted as the rods move by `motion` and vibration.
+  /// Takes new readings; call after the vibration was updated by them. steady: weight and motion [N m]; position: by
+  /// the joint sensors. The known friction of the seals (from the boom file) is subtracted by the rods' direction of
+  /// motion and vibration.
   void follow(const Boom& boom, const JointVector& position, const JointVector& steady, const JointVector& motion,
               const Instant& instant, const CylinderPressures& pressures) noexcept;
   /// Index as in Boom::cylinders(); none without both pressures or at a zero moment arm.

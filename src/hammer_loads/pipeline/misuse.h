@@ -8,11 +8,11 @@
 
 namespace hammer_loads {
 
-/// Since the start. Misuse that nothing measures is not counted: `judged_blows` and `placed_time` say of how much the
-/// counts beside them speak; none of it: not known, which is not zero.
+/// Counters since the start. Misuse is counted only where it is measured: `judged_blows` and `placed_time` are the
+/// number of blows and the time that were judged; zero means unknown.
 struct MisuseCounts {
   double work_time{};             ///< over accepted samples, gaps left out [s]
-  std::uint64_t blank_firings{};  ///< the rocker went through where the tool should have been
+  std::uint64_t blank_firings{};  ///< the rocker passed without meeting the tool
   std::uint64_t judged_blows{};   ///< at which cylinder pressures show the rock's force on the hull
   /// Number of judged blows at which the hold-down force had not exceeded its error since the previous blow. The blow
   /// falls on the hull's retainer, or the hold-down force is too small to bring the hull back after its recoil; in the
@@ -38,7 +38,8 @@ struct MisuseCounts {
   }
 };
 
-/// A tool that penetrates takes the hull along: hammering while the hull stays where it is gives heat and noise.
+/// Hammering without penetration: the hull follows a tool that penetrates; if it does not move, the work becomes heat
+/// and noise.
 class MisuseFollower {
  public:
   /// Makers of breakers allow 15 to 20 s at one place (Stanley MB05, operation: "15 - 20 seconds. If breakout does not
@@ -53,7 +54,7 @@ class MisuseFollower {
     place_ = place;
     at_place_ = 0.0;
   }
-  /// The joints do not show where the hull is.
+  /// Notes that the joints do not determine the hull's place.
   void hullLost() noexcept { place_.reset(); }
   /// Takes whether the rock bears on the hull at a sample; none where pressures do not show it. A hull leaves the rock
   /// at each recoil: that is no misuse as long as it comes back.

@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Standard deviation of one reading, of its offset at the start, and how far that wanders in a second.
+/// Standard deviations of one reading, of its initial offset, and of the offset's random walk in a second.
 struct Doubt {
   double noise, offset, walk;
 };

@@ -1,4 +1,4 @@
-/// Sensors of the boom's vibration, as readings for its ModeIdentifier.
+/// Conversion of the boom's sensors to readings for its ModeIdentifier.
 #pragma once
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace hammer_loads {
 
-/// Each reading is given once, at the crank sample that follows it. Joint sensors see the vibration too: what the
-/// operator does is taken as what is left of their angles below some 0.3 Hz. Joint angles count above 100 Hz; the
-/// faster a joint moves, the less. While the operator drives a joint fast, 2 s after that and 1 s after the start only
-/// pressures count. No allocation.
+/// Each reading is passed on once, at the crank sample that follows it. Joint sensors also measure the vibration: the
+/// operator's motion is the part of their angles below some 0.3 Hz. Joint angles are used if they are sampled above 100
+/// Hz, with less weight the faster a joint moves. While the operator drives a joint fast, 2 s after that and 1 s after
+/// the start only pressures count. No allocation.
 class ModeObserver {
  public:
   /// imu_position: from D, axes of hammer_hull [m].
   explicit ModeObserver(const Eigen::Vector3d& imu_position) : imu_position_(imu_position) {}
 
-  /// A new reading, in the hull's axes. It waits until the sensors' time has come to its stamp.
+  /// Takes a new reading in the hull's axes, which waits until the sensors' time reaches its stamp.
   void imu(Boom& boom, const HeldPose& held, StampNs sample, double step, const StampedImuReading& reading) noexcept;
   void joints(Boom& boom, const HeldPose& held, StampNs sample, double step, const JointBuffer& joints) noexcept;
   void pressures(Boom& boom, const HeldPose& held, StampNs sample, const CylinderPressures& pressures) noexcept;

@@ -9,14 +9,14 @@
 
 namespace hammer_loads {
 
-/// By constants, one standard deviation each of errors that are independent of each other (order of LoadColumns), the
-/// same in all turns; and by what is drawn in each turn.
+/// Errors by constants, equal in all turns, one standard deviation each of independent errors (order of LoadColumns);
+/// and the deviation of errors that are independent in each turn.
 struct NumberError {
   using Columns = Eigen::Matrix<double, 1, kLoadColumns>;
 
   Columns columns{Columns::Zero()};  ///< unit of the number
   double own{};                      ///< standard deviation, as above
-  double rod{};                      ///< the part of it that a rod makes which may give
+  double rod{};                      ///< the part of it by a possibly elastic rod
 
   /// Sets the rod's part where it is not known separately: the part of the deviation beyond that of readings alone.
   void setRodBeyond(double readings) noexcept { rod = std::sqrt(std::max(0.0, own * own - readings * readings)); }

@@ -1,4 +1,4 @@
-/// A sensor whose next reading should have come.
+/// Detection of an overdue reading.
 #pragma once
 
 #include <cmath>
@@ -7,13 +7,14 @@
 
 namespace hammer_loads {
 
-/// For how long more than one reading should have come [s]; below 0: not yet. since: the last one; interval: before it.
+/// Time since a second reading was due [s]; negative before that. since: time of the last reading; interval: time
+/// between the last two.
 inline double overdue(double since, double interval) noexcept {
   constexpr double kIntervals = 2.0;
   return since - kIntervals * interval;
 }
 
-/// Part of what the last reading showed that is no longer true, 0 to 1. overdue: as above [s].
+/// Part of the last reading that is no longer valid, 0 to 1. overdue: as above [s].
 inline double forgottenPart(double overdue) noexcept {
   return overdue > 0.0 ? -std::expm1(-overdue / look_back::kHeld) : 0.0;
 }

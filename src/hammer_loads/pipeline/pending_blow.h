@@ -11,8 +11,8 @@
 
 namespace hammer_loads {
 
-/// A blow shows in the samples after it: its factor is taken when the crank has turned on by a
-/// radian, or what is known of it when the crank stops before, restarts or strikes again.
+/// The samples after a blow determine its factor: it is estimated once the crank has turned by a further radian, or
+/// earlier if the crank stops, restarts or strikes again.
 class PendingBlow {
  public:
   /// time: of the blow [s]; speed of the crank when it reaches the dead centre [rad/s], its rate there [1/s]
@@ -33,7 +33,7 @@ class PendingBlow {
   bool isEarly() const noexcept { return early_; }  ///< the tool was met before the dead centre
   /// Discards the passage, which was no blow.
   void drop() noexcept { waiting_ = false; }
-  /// The estimate at the latest sample; call after begin() and then at each sample that continues.
+  /// Takes the estimate at the latest sample; call after begin() and then at each sample that continues.
   void follow(const BlowFactor& factor) noexcept {
     blow_.factor = factor.mean;
     blow_.factor_std = factor.deviation;
@@ -53,11 +53,11 @@ class PendingBlow {
     if (early_) return columns_.row(0);
     return blow_.factor * columns_.row(0) + blow_.speed * columns_.row(1);
   }
-  /// A sample after it, whose loads were published or withheld: a crank whose readings are not known to agree with the
-  /// model, in degrees for instance, has struck none where most of them were withheld.
+  /// Counts a sample after the blow as published or withheld. If most are withheld, as with angles in degrees, the blow
+  /// is not confirmed.
   void count(bool published) noexcept { ++(published ? published_ : withheld_); }
   bool isWithheld() const noexcept { return withheld_ > published_; }
-  /// The crank has gone on far enough, or long enough.
+  /// Returns true if the crank has turned far enough or the time is over.
   bool isMeasured(double time, const CrankPosition& now) const noexcept {
     return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > look_back::kTurn);
   }

@@ -1,4 +1,4 @@
-/// Check that measured pressures can be those of a hammer that stands on rock or hangs free.
+/// Plausibility of measured pressures for a hammer on rock or hanging free.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace hammer_loads {
 
-/// Rock bears on the hull along the tool. The force that three cylinders show beyond weight, motion and blows is a load
-/// on the tip in its plane: across the tool, and about the tool's axis, there must be next to none in the mean of 2 s.
-/// Pressures in bar, chambers or cylinders that are exchanged show 13 to 220 % of the weight there, right ones 4 %;
-/// what a lag of their stamps makes has no mean and is not seen there. A delay that the boom's vibration shows is
-/// allowed for as behind a hose; where they are later than any and do not fit one, nothing is used of them for a while.
+/// Rock pushes on the hull along the tool. The residual of three cylinders' forces beyond weight, motion and blows is a
+/// load on the tip in its plane, whose mean over 2 s across the tool and about its axis must be small. Pressures in bar
+/// and exchanged chambers or cylinders cause 13 to 220 % of the weight there, correct ones 4 %; a lag of their stamps
+/// has no effect on the mean. A delay by the boom's vibration is accepted as that of a hose. Pressures that are later
+/// than any hose makes them, or that fit no delay, are not used for a while.
 class PressureTrust {
  public:
   /// Loads on the tip, axes of the tip: measured beyond the model's, and of the weight; arm: from D to the tool [m];
@@ -39,8 +39,8 @@ class PressureTrust {
   bool isLate() const noexcept { return late_left_ > 0.0; }
   double lateBy() const noexcept { return late_by_; }  ///< delay when it was detected [s]
   bool isLost() const noexcept { return lost_.isEngaged() || isLate(); }
-  /// Mean load on the tip that no rock makes; along the tool it may, from least_force [N] on. Pressures, lengths or
-  /// masses are otherwise than said.
+  /// Mean load on the tip that is not one of rock, which acts along the tool from least_force [N] on. It shows that
+  /// pressures, lengths or masses are wrong.
   Wrench notOfRock(double arm, double least_force) const noexcept {
     const double not_rock = along() < least_force ? along() : 0.0;
     return {{across(), 0.0, not_rock}, {0.0, turning() + arm * not_rock, 0.0}};

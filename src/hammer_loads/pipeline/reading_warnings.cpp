@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-/// A speed cannot be ahead of its crank: then the angle is behind it.
+/// A measured speed that leads the angle means that the angle lags.
 void warnOfSpeeds(const SpeedTrust& speeds, const AngleLag& taken_off, std::vector<Warning>& warnings) {
   const auto warnOfAngles = [&](double lag, double deviation, const char* what_is_done) {
     warnings.push_back({"angle lag",

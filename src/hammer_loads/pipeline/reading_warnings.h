@@ -1,4 +1,4 @@
-/// Warnings of sensors that their own readings show to be wrong: speeds that are filtered, a zero that slipped, an IMU.
+/// Warnings of sensor faults by their own readings: filtered speeds, a slipped zero, an IMU.
 #pragma once
 
 #include <vector>

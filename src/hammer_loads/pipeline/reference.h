@@ -1,4 +1,4 @@
-/// A measured load of the hull beside the computed one.
+/// Comparison of the computed load on the hull with a measured one.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ struct ReferenceFigures {
   double within_two_std{kNaN};  ///< fraction of errors within two of the stated standard deviations [-]
 };
 
-/// Compares at the stamps of the measured load. The computed one is interpolated between two samples; what lies between
-/// samples with a blow or a gap between them, or more than kKept samples back, is left out. Changes no output.
+/// Compares at the stamps of the measured load. The computed load is interpolated between two samples. Measured loads
+/// between samples with a blow or a gap, or more than kKept samples back, are left out. No output depends on it.
 class ReferenceComparison {
  public:
   static constexpr std::size_t kComponents = 3;  ///< force x, force z, torque y

@@ -1,4 +1,4 @@
-/// Reasons why inputs gave no wrench, and their counts.
+/// Reasons for samples without a wrench, and their counts.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ struct SampleCounts {
     for (std::size_t i = 0; i < refused.size(); ++i) sum += isOfUnit(static_cast<Refusal>(i)) ? refused[i] : 0;
     return sum;
   }
-  /// Withheld because the readings are not those of such a machine.
+  /// Number of samples withheld because the readings contradict the model.
   std::uint64_t contradicting() const noexcept {
     return inOtherUnit() + refusedFor(Refusal::kBackward) + refusedFor(Refusal::kInconsistent);
   }

@@ -10,8 +10,8 @@ namespace hammer_loads {
 class StampOrder {
  public:
   enum class Place {
-    kFirst,       ///< nothing to continue from: start, gap, time ran back
-    kNext,        ///< behind the last accepted sample
+    kFirst,       ///< the first one after a start, a gap or a jump back in time
+    kNext,        ///< after the last accepted sample
     kDuplicate,   ///< stamp equal to that of the last accepted sample
     kOutOfOrder,  ///< older than it
   };
@@ -23,7 +23,7 @@ class StampOrder {
   /// stale_after: age of the last sample from which on a new one restarts [s].
   explicit StampOrder(double stale_after) : stale_after_(stale_after) {}
 
-  /// Time running back is accepted from the second sample on: the first may just be late.
+  /// A jump back in time is accepted with the second sample, since the first one may be late.
   Verdict judge(StampNs stamp) noexcept {
     if (!last_) return {};
     if (stamp == *last_) return {Place::kDuplicate};

@@ -21,7 +21,7 @@ struct LoadImpulse {
 LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step, double from,
                           double to) noexcept;
 
-/// The hull's motion over a step: on the line between those at its ends, but for a blow, at which it jumps.
+/// The hull's motion over a step: linear between its ends, with a jump at a blow.
 struct HullPath {
   HullMotion from, to;
   double length{};             ///< length of the step [s]
@@ -39,8 +39,8 @@ struct HullPath {
 LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step,
                          const HullPath& hull, double from, double to) noexcept;
 
-/// The load of links and drive over the whole step as the boom takes it, blows included; pieces beyond those that a
-/// WrenchHistory holds are left out (a step of several turns).
+/// The load of links and drive over the whole step for the boom, blows included. Pieces in excess of the capacity of
+/// WrenchHistory are left out (a step of several turns).
 WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept;
 
 }  // namespace hammer_loads

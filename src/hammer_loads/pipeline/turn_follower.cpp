@@ -73,7 +73,7 @@ void TurnFollower::recordTo(double from, double to) noexcept {
   }
 }
 
-/// A crank that swings at the dead centre passes it as often forward.
+/// Counts backward passages less the forward ones, since a crank that swings at the dead centre passes it both ways.
 void TurnFollower::countBackward(const CrankStep::Passage& passage) noexcept {
   if (!passage.forward) ++backward_;
   if (passage.forward && !passage.may_strike && backward_ > 0) --backward_;
@@ -131,7 +131,7 @@ void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, 
   if (is_rings) errors_.doubtBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
 }
 
-/// The turn ends now; what the blow was shows later.
+/// Ends the turn; the blow is measured later.
 void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd& end = pending_end_;
   end = {};
@@ -189,7 +189,7 @@ void TurnFollower::doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) co
   addDoubt(end.blow, other, end.blow_errors);
 }
 
-/// A hull that yields takes part of the rocker's inertia, and its acceleration turns the crank.
+/// A hull that yields reduces the effective inertia of the rocker, and its acceleration acts on the crank.
 void TurnFollower::doubtHull(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept {
   const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
   const double per_acceleration = model_->mechanism().rockerFirstMoment() * inertia.u_before / inertia.before();
@@ -198,7 +198,7 @@ void TurnFollower::doubtHull(const HullMotionCovariance& hull, CrankBlow& crank)
   crank.factor_std = std::hypot(crank.factor_std, kick / crank.speed);
 }
 
-/// The tool rests on the rock, not in the hull: the hull's velocity works with the tool's impulse.
+/// Adds the work of the tool's impulse by the hull's velocity, since the tool rests on the rock and not on the hull.
 void TurnFollower::countHullSpeed(TurnEnd& end) const noexcept {
   RockerBlow& blow = end.blow;
   if (pending_.hullSpeed()) {

@@ -32,17 +32,17 @@ class TurnFollower {
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
-  /// Earlier samples do not belong to the coming turn.
+  /// Begins a turn that is not whole, as earlier samples do not belong to it.
   void restart() noexcept;
-  /// Neither the present turn nor the blow that is being measured count.
+  /// Discards the present turn and the blow that is being measured.
   void discard() noexcept;
-  /// The blow that is being measured, as it is known by now, is one of the `ends`.
+  /// Ends the measurement of the pending blow, which becomes one of the `ends`.
   void finishBlow(SampleResult& result) noexcept;
   /// Follows the step up to the sample of `result`. Turns whose blow is measured by now are its `ends`: some 50 ms
   /// after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
 
-  /// The last sample's loads were withheld.
+  /// Notes that the last sample's loads were withheld.
   void withheld() noexcept {
     run_up_ = false;
     peak_.withheld = std::max(peak_.withheld, std::exchange(peak_.of_step, 0.0));
@@ -64,7 +64,7 @@ class TurnFollower {
   }  ///< peak force of the last whole revolution's strike [N], 0 before it
   std::uint64_t blows() const noexcept { return turns_ - impossible_; }   ///< since the start
   std::uint64_t impossibleBlows() const noexcept { return impossible_; }  ///< RockerBlow::impossible, not among them
-  std::uint64_t blankFirings() const noexcept { return blank_; }  ///< onto the mirrored branch: no tool was there
+  std::uint64_t blankFirings() const noexcept { return blank_; }  ///< passages onto the mirrored branch, without a tool
   std::uint64_t backwardPasses() const noexcept {
     return backward_;
   }  ///< number of backward passages of the blow, less those forward again

@@ -1,4 +1,4 @@
-/// Follows a turn from blow to blow, so that its pulse, and how far that may be off, is known when it ends.
+/// Recorder of a turn from blow to blow, for its pulse and the pulse's deviation.
 #pragma once
 
 #include <algorithm>
@@ -22,17 +22,17 @@ struct TurnInstant {
   double weight_z{};      ///< weight along z [N]
 };
 
-/// Keeps the force and the exact impulses of the present turn in a track of bounded size: a turn with too many instants
-/// loses every other point of it, never an impulse.
+/// Keeps the force and the exact impulses of the present turn in a track of bounded size. A turn with too many instants
+/// loses every other point, but no impulse.
 class TurnRecorder {
  public:
   TurnRecorder();
 
   /// A turn begins just after a blow.
   void begin(const TurnInstant& after_blow) noexcept;
-  /// The momentum just after the blow is better known by now than when the turn began.
+  /// Replaces the momentum just after the blow by its better estimate.
   void correctBegin(const LinkMomentum& after_blow) noexcept;
-  /// Coming samples may not belong to the turn: its pulse is not given.
+  /// Discards the turn's pulse, as the coming samples may not belong to it.
   void abandon() noexcept { recording_ = false; }
   bool recording() const noexcept { return recording_; }
   /// Momentum that the turn's load would have given a free hull by the blow that ended the last turn [N s, N m s]. The
@@ -72,7 +72,7 @@ class TurnErrors {
   }
   /// Returns true if Fz rises through zero with the coming sample; the caller calls rose() first if so.
   bool rises(double force_z) const noexcept { return last_force_ <= 0.0 && force_z > 0.0; }
-  /// A lobe begins here. There the momentum along z stands still, so that the instant itself does not matter.
+  /// Begins a lobe. The momentum along z is stationary here, so that an error of the instant has no effect.
   void rose(StampNs stamp, const MomentumColumns& columns) noexcept { rise_ = {stamp, columns}; }
   /// The load at a sample, its deviation as of an extreme. rod: of that what a rod makes that may give.
   void sample(double force_z, double deviation, double common, double rod, const LoadColumns& columns) noexcept;
@@ -80,8 +80,8 @@ class TurnErrors {
   /// constants [N s]; weight: what constants make of the links' weight [N].
   PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow, const MomentumColumns& at_end,
                   const MomentumColumns& weight) const noexcept;
-  /// The peak of a vibration lies between samples, by its model alone: what it is beyond the highest of them is
-  /// uncertain.
+  /// Adds the uncertainty of a vibration's peak between samples, which only the model determines: its excess over the
+  /// highest sample.
   void doubtBetween(double peak, NumberError& error) const noexcept {
     const double beyond = std::max(0.0, peak - peak_);
     error.own = std::hypot(error.own, beyond), error.rod = std::hypot(error.rod, beyond);

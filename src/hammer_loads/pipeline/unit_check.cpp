@@ -124,7 +124,7 @@ void UnitCheck::followCycle(double dt, double turned) noexcept {
   vote(cycle_votes_, *unit);
 }
 
-/// One judge suffices to recognise a unit; all must agree that it is over.
+/// One criterion suffices to recognise a unit; all must agree that it is right again.
 void UnitCheck::vote(int& votes, CrankUnit unit) noexcept {
   const bool wrong = unit != CrankUnit::kRadians;
   votes = std::clamp(votes + (wrong ? 1 : -1), 0, kEnough);
