@@ -97,10 +97,10 @@ CREATE TABLE turn_loads(
   minimum REAL,                 -- [channel] minimum in the turn
   maximum REAL,                 -- [channel] maximum in the turn
   mean REAL,                    -- [channel] mean over the time of the turn
-  minimum_std REAL,             -- [channel] standard deviation of the minimum, everything included
-  maximum_std REAL,             -- [channel] standard deviation of the maximum, everything included
-  minimum_systematic_std REAL,  -- [channel] part of it that constants make
-  maximum_systematic_std REAL,  -- [channel] part of it that constants make
+  minimum_std REAL,             -- [channel] total standard deviation of the minimum
+  maximum_std REAL,             -- [channel] total standard deviation of the maximum
+  minimum_systematic_std REAL,  -- [channel] systematic part, by constants
+  maximum_systematic_std REAL,  -- [channel] systematic part, by constants
   PRIMARY KEY(run_id, turn, channel)) WITHOUT ROWID;
 CREATE TABLE cycles(
   run_id INTEGER,   -- [-] number of the run
