@@ -41,8 +41,9 @@ class BagWarnings : public test::BagFiles {
 };
 
 TEST_F(BagWarnings, AGoodRecordingGivesNoneAndOneLineStatesWhatWasWritten) {
-  const test::Outcome outcome =
-      run(kSession + " " + path("out.bag") + " --params " + configDirectory() + "/hammer_mo100.yaml");
+  const test::TemporaryFile known_zero("crank_zero_std_rad: 0.003\n");
+  const test::Outcome outcome = run(kSession + " " + path("out.bag") + " --params " + configDirectory() +
+                                    "/hammer_mo100.yaml --params " + known_zero.path());
   EXPECT_EQ(outcome.err, "");
   unsigned wrenches = 0;
   const std::string begin = path("out.bag") + ": 2979 crank samples, ";
@@ -50,6 +51,10 @@ TEST_F(BagWarnings, AGoodRecordingGivesNoneAndOneLineStatesWhatWasWritten) {
   std::sscanf(outcome.out.c_str() + begin.size(), "%u", &wrenches);
   EXPECT_EQ(outcome.out, begin + std::to_string(wrenches) + " wrenches, 122 turns, written under /hammer_loads\n");
   EXPECT_GT(wrenches, 0.99 * 2979) << "samples beside a blow have none";
+}
+
+TEST_F(BagWarnings, AnUnknownZeroGivesNoneEither) {
+  EXPECT_EQ(warnings(kSession), "") << "the first revolutions show it";
 }
 
 TEST_F(BagWarnings, AHammerFileThatWasNotGivenIsNamed) {

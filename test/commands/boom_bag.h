@@ -13,6 +13,8 @@ namespace hammer_loads::test {
 
 inline constexpr double kSide = 0.8;  // [m] from arm_link back to the strain gauge
 inline const std::string kUrdf = sourceFile("urdf/eo2621_mo100.urdf");
+/// The encoder's zero is known as by `calibrate`: else samples of the first turns are withheld.
+inline const std::string kCalibrated = "crank_zero_std_rad: 0.003\n";
 inline const std::string kBoomFile = configDirectory() + "/boom_eo2621.yaml";
 
 /// Two and a half seconds of a machine that soon strikes; `moving`: its boom moves as well.
@@ -100,14 +102,14 @@ class InputBag {
 class BoomBag : public BagFiles {
  protected:
   Outcome process(const std::string& out, const std::string& parameters, const std::string& more = {}) const {
-    const TemporaryFile given(parameters);
+    const TemporaryFile given(kCalibrated + parameters);
     return runCommand(HAMMER_LOADS_PROCESS_BAG, path("in.bag") + " " + path(out) + " --pins --urdf " + kUrdf +
                                                     " --params " + kBoomFile + " --params " + given.path() + " " +
                                                     more);
   }
   /// What the live node's flow makes of the same messages.
   Recorded live(const std::string& parameters, const std::string& imu_topic = {}) const {
-    const TemporaryFile given(parameters);
+    const TemporaryFile given(kCalibrated + parameters);
     const Settings settings = *loadFiles(configDirectory(), {kBoomFile, given.path()}, textOf(kUrdf)).value;
     const InputTopics topics{"/hammer/crank", "/joint_states", imu_topic.empty() ? "/hammer/hull_imu" : imu_topic,
                              "/hammer/cylinder_pressures", "/hammer/reference"};

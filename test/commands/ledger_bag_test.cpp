@@ -24,8 +24,9 @@ class LedgerOfBags : public test::BagFiles {
 };
 
 TEST_F(LedgerOfBags, HasEachRecordingOnce) {
+  std::ofstream(path("known_zero.yaml")) << "crank_zero_std_rad: 0.003\n";
   for (const std::size_t times : {0U, 1U}) {
-    const test::Outcome outcome = add(kSession);
+    const test::Outcome outcome = add(kSession, "--params " + path("known_zero.yaml"));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(outcome.err.find("not counted again") != std::string::npos, times > 0) << outcome.err;
     ASSERT_EQ(epochs().size(), 1U);
@@ -36,6 +37,12 @@ TEST_F(LedgerOfBags, HasEachRecordingOnce) {
   EXPECT_EQ(add(std::string(HAMMER_LOADS_TEST_DATA) + "/mo100_1khz.bag").exit_code, 0);
   EXPECT_EQ(epochs().at(0).runs, 2U);
   EXPECT_EQ(epochs().at(0).days.at(0).turns, 122U + 76U);
+}
+
+/// The machine starts at 2 s and strikes four times a second: eight revolutions take until 4 s.
+TEST_F(LedgerOfBags, CountsNothingBeforeTheZeroIsKnown) {
+  EXPECT_EQ(add(kSession).exit_code, 0);
+  EXPECT_NEAR(1e-9 * static_cast<double>(epochs().at(0).days.at(0).duration), 26.0, 1.0);
 }
 
 TEST_F(LedgerOfBags, AnotherMachineBeginsAnotherEpoch) {

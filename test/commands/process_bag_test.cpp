@@ -37,6 +37,7 @@ ParameterMap parametersWithInertia(double factor) {
       *readParameterFile(configDirectory() + "/hammer_mo100.yaml", *std::make_unique<std::vector<std::string>>());
   given["drive_inertia_kg_m2"].value = YAML::Load(std::to_string(0.6 * factor));
   given["level"] = {YAML::Load("rocker"), "level of the recorded machine"};
+  given["crank_zero_std_rad"] = {YAML::Load("0.003"), "known zero of the recorded machine"};
   return given;
 }
 

@@ -63,9 +63,9 @@ TEST(ConstantErrors, ConcludesNothingBeforeSomeTurns) {
   }
   EXPECT_EQ(errors.estimate(), ConstantErrors::Vector::Zero());
   ConstantErrors::Matrix moment = errors.moment();
-  for (const int considered : {ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale}) {
-    EXPECT_GT(moment(considered, considered), 0.0);
-    moment(considered, considered) = 0.0;
+  for (const int by_prior : {ConstantErrors::kZero, ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale}) {
+    EXPECT_GT(moment(by_prior, by_prior), 0.0);
+    moment(by_prior, by_prior) = 0.0;
   }
   EXPECT_EQ(moment, ConstantErrors::Matrix::Zero());
 }

@@ -17,7 +17,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hammer_loads.msg import LoadCycles
 from sensor_msgs.msg import JointState
 
-from process_rostest import DATA, NodeProcess, command, eventually
+from process_rostest import DATA, KNOWN_ZERO, NodeProcess, command, eventually
 
 # Commits are counted in runs.pieces: one for each period live, one for a run from its bags.
 TABLES = {'epochs': '*', 'channels': '*', 'runs': 'run, name, epoch, parameters, messages', 'days': '*',
@@ -66,7 +66,7 @@ class LedgerTest(unittest.TestCase):
         directory = os.path.join(self.directory, name)
         os.mkdir(directory)
         return NodeProcess(name, {'life_ledger': ledger, 'life_period_s': 1.0, 'log_enabled': log,
-                                  'log_directory': directory, 'log_min_free_mb': 0})
+                                  'log_directory': directory, 'log_min_free_mb': 0, 'crank_zero_std_rad': KNOWN_ZERO})
 
     def count_bag_of(self, name, ledger):
         """Counts the node's recording."""

@@ -121,7 +121,8 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = 4.0;
   machine.start_stamp = static_cast<std::int64_t>(start_.toNSec());
-  const Settings settings = *loadFiles(configDirectory(), {}).value;
+  Settings settings = *loadFiles(configDirectory(), {}).value;
+  settings.pipeline.crank_zero_std = 0.003;  // as the node's
   machine.hammer = settings.mechanism.parameters();
   machine.level = settings.pipeline.level;
   const simulation::Session session = simulation::recordSession(machine);

@@ -23,6 +23,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
 DEADLINE = 120.0  # [s] for what takes a second at most: only a node that hangs takes longer, however busy the computer is
+KNOWN_ZERO = 0.003  # [rad]: no sample is withheld for the zero
 DATA = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'data')
 
 
@@ -182,7 +183,8 @@ class ProcessTest(unittest.TestCase):
         return sent, len(wrenches)
 
     def log_after(self, name, sign):
-        node = NodeProcess(name, {'log_enabled': True, 'log_directory': self.directory, 'log_min_free_mb': 0})
+        node = NodeProcess(name, {'log_enabled': True, 'log_directory': self.directory, 'log_min_free_mb': 0,
+                                  'crank_zero_std_rad': KNOWN_ZERO})
         sent, received = self.publish_session(name, 4.0)
         code, out, err = node.end(sign)
         self.assertEqual(code, 0, err)
@@ -246,7 +248,7 @@ class ProcessTest(unittest.TestCase):
             states.extend(status.message for status in message.status if status.name == name + ': log')
         subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
         node = NodeProcess(name, {'log_enabled': True, 'log_directory': self.directory, 'log_min_free_mb': 10,
-                                  'diagnostic_period': 0.1})
+                                  'crank_zero_std_rad': KNOWN_ZERO, 'diagnostic_period': 0.1})
         self.assertTrue(eventually(lambda: 'recording' in states))
         other = os.path.join(self.directory, 'other')
         with open(other, 'wb') as file:

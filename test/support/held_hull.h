@@ -1,14 +1,15 @@
-/// Settings for simulated machines whose hull is held.
+/// Settings for simulated machines whose hull is held and whose encoder has a known zero.
 #pragma once
 
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::test {
 
-/// The deviations do not count what an unmeasured hull might do.
+/// The deviations do not count what an unmeasured hull might do, and the zero is known as by `calibrate`.
 inline Settings heldHull(Settings settings) {
   if (settings.pipeline.hull_motion == HullMotionSource::kUnmeasured)
     settings.pipeline.hull_motion = HullMotionSource::kFixed;
+  settings.pipeline.crank_zero_std = 0.003;
   return settings;
 }
 

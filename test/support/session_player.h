@@ -22,10 +22,11 @@ constexpr double kSessionWorks = 2.0;  ///< [s]: from then on the machine strike
 constexpr double kSessionEnd = 5.0;    ///< [s]
 
 /// The shipped settings with the shipped boom, and with the keys in `text` over them. Unless `text` has others, the
-/// level is rocker, since the machine of the sessions has a massless crank and rod, and the hull is held.
+/// level is rocker, since the machine of the sessions has a massless crank and rod, the hull is held, and the encoder's
+/// zero is known as by `calibrate`.
 inline Settings settingsWith(const std::string& text, bool boom_file = true) {
   const TemporaryFile given(text);
-  const TemporaryFile level("level: rocker\nhull_motion: fixed\n");
+  const TemporaryFile level("level: rocker\nhull_motion: fixed\ncrank_zero_std_rad: 0.003\n");
   std::vector<std::string> files{level.path(), given.path()};
   if (boom_file) files.insert(files.begin(), configDirectory() + "/boom_eo2621.yaml");
   const Checked<Settings> settings = loadFiles(configDirectory(), files, shippedUrdf());

@@ -138,7 +138,7 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
   CrankSensorPlace place;
   for (const calibration::Estimate& e : calibration::calibrate(samples, basis).estimates) {
     if (!e.determined()) continue;
-    if (e.key == "crank_zero_rad") place.zero = e.value;
+    if (e.key == "crank_zero_rad") place.zero = e.value, pipeline.crank_zero_std = e.deviation;
     if (e.key == "crank_direction") place.direction = static_cast<int>(e.value);
     if (e.key == "crank_eccentricity_1_rad") place.eccentricity[0] = e.value;
     if (e.key == "crank_eccentricity_1_phase_rad") place.eccentricity_phase[0] = e.value;

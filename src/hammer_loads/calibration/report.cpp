@@ -233,6 +233,8 @@ std::string yamlOf(const Calibration& c, const std::string& source) {
                e.unit == "rad" ? format("%.4g deg ", e.value / kDegree).c_str() : "", e.deviation, e.meaning.c_str());
     if (e.determined()) {
       text += e.key + ": " + value + "  # " + comment + "\n";
+      if (e.key == "crank_zero_rad")
+        text += "crank_zero_std_rad: " + numberText(e.deviation) + "  # [rad] its standard deviation\n";
     } else {
       text += format("# %s is not determined: +- %.2g, limit %.2g\n", e.key.c_str(), e.deviation, e.limit);
     }

@@ -20,17 +20,15 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
 
-constexpr double kNotSeen = 0.6;   // of the zero's prior
-constexpr double kGiven = 0.01;    // standard deviation of a zero as it is given [rad]
-constexpr int kTurnsToSee = 2;     // between the ends of the first and the second turn there is a blow
-constexpr double kUnseen = 0.026;  // standard deviation of a zero before any blow: couplings slip by up to 10 deg [rad]
+constexpr double kNotSeen = 0.6;  // of the zero's prior
+constexpr double kGiven = 0.01;   // standard deviation of a zero at most [rad], at constant speed
 
 }  // namespace
 
 bool ConstantErrors::knows() const noexcept { return turns_ >= kTurnsToKnow; }
 
 double ConstantErrors::zeroDeviation() const noexcept {
-  return std::hypot(std::sqrt(moment_(kZero, kZero)), knows() ? kUnknowns[kZero].unmodelled : kGiven);
+  return std::hypot(std::sqrt(moment_(kZero, kZero)), kUnknowns[kZero].unmodelled);
 }
 
 void ConstantErrors::takeSupply(double change) noexcept {
@@ -51,16 +49,10 @@ void ConstantErrors::stepZero(double variance) noexcept {
   root_ = covarianceRoot(moment_);
 }
 
-ConstantErrors::ConstantErrors(const Vector& prior) noexcept : prior_(prior) {
+ConstantErrors::ConstantErrors(const Vector& prior, double zero_std) noexcept : prior_(prior), zero_given_(zero_std) {
   fit_.begin(prior_);
   considerPriors();
-  moment_(kZero, kZero) = square(kUnseen);
-  root_ = covarianceRoot(moment_);
-}
-
-/// Standard deviation of the zero before the estimate is known: nothing in the readings shows the zero before a blow.
-void ConstantErrors::considerZeroOfFirstTurns() noexcept {
-  moment_(kZero, kZero) = stepped_ + square(turns_ < kTurnsToSee ? kUnseen : zeroSeen());
+  moment_(kZero, kZero) = square(zero_given_);
   root_ = covarianceRoot(moment_);
 }
 
@@ -90,7 +82,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
     fit_.begin(prior_);
     beside_.setZero();
   }
-  if (turns_ < kTurnsToKnow) return considerZeroOfFirstTurns();
+  if (turns_ < kTurnsToKnow) return;
   for (int i = 0; i < kTable; ++i)
     if (kUnknowns[static_cast<std::size_t>(i)].use == Unknown::Use::kTakenUp)
       covariance(i, i) = 1.0 / fit_.information()(i, i);
@@ -113,8 +105,10 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
   // A crank that turns at constant speed shows nothing of its zero: it counts as given.
-  if (growth * covariance(kZero, kZero) > square(kNotSeen * prior_[kZero])) moment_(kZero, kZero) = square(kGiven);
+  if (growth * covariance(kZero, kZero) > square(kNotSeen * prior_[kZero]))
+    moment_(kZero, kZero) = square(std::min(kGiven, zero_given_));
   moment_(kZero, kZero) += stepped_ + square(zeroNotLinear());
+  if (!zeroIsShown()) moment_(kZero, kZero) = std::max(moment_(kZero, kZero), square(zero_given_));
   considerPriors();
   root_ = covarianceRoot(moment_);
   fit_.fade(1.0 - 1.0 / look_back::kManyTurns);

@@ -25,6 +25,10 @@ class ConstantErrors {
   static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
                        kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
                        kSpeedScale = indexOfUnknown("speed scale");
+  static constexpr double kUnknownZero = 0.09;     ///< [rad]: a coupling slips by up to 10 deg
+  static constexpr double kCalibratedZero = 0.02;  ///< [rad]: a zero of a smaller standard deviation needs no proof
+  /// Standard deviation of estimate() where an elastic connecting rod looks like part of the zero's error [rad].
+  static constexpr double kRodHides = 0.01;
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< errors of the table alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
@@ -35,8 +39,8 @@ class ConstantErrors {
     for (int i = 0; i < kTable; ++i) prior[i] = kUnknowns[static_cast<std::size_t>(i)].prior;
     return prior;
   }
-  /// prior: standard deviations, >= 0.
-  explicit ConstantErrors(const Vector& prior = priors()) noexcept;
+  /// prior: standard deviations, >= 0. zero_std: of the encoder's zero until the turns show its error [rad], >= 0.
+  explicit ConstantErrors(const Vector& prior = priors(), double zero_std = kUnknownZero) noexcept;
 
   /// d(reading)/db.
   static Row ofAngle(const ReadingPlace& at) noexcept {
@@ -74,6 +78,13 @@ class ConstantErrors {
   double zeroLooks() const noexcept { return zero_looks_; }
   /// Enough turns have been seen for estimate() and deviation().
   bool knows() const noexcept;
+  int turns() const noexcept { return turns_; }
+  /// The turns have shown the zero, or it was given well enough. Until then moment() contains it as it was given: in
+  /// the first turns the estimate of a zero that is 8 deg off may pass through 0.
+  bool zeroIsShown() const noexcept { return zeroIsGiven() || (knows() && !zero_is_doubted_); }
+  bool zeroIsGiven() const noexcept { return zero_given_ < kCalibratedZero; }
+  /// Another judge does not agree with estimate().
+  void doubtZero(bool doubted) noexcept { zero_is_doubted_ = doubted; }
   /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
   /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().
   double zeroNotLinear() const noexcept { return kNotLinear * estimate_[kZero] * estimate_[kZero]; }
@@ -102,16 +113,16 @@ class ConstantErrors {
     return all;
   }
   void considerPriors() noexcept;
-  void considerZeroOfFirstTurns() noexcept;
 
   Vector prior_;
+  double zero_given_{};  ///< [rad]
   ConstantFit<kTable> fit_;
   ByConstants<kPlace, kMachineColumns> beside_{
       ByConstants<kPlace, kMachineColumns>::Zero()};  ///< derivatives of fit_'s score by the hammer's errors
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
   double zero_looks_{};  ///< [rad]
-  bool zero_is_seen_{};
+  bool zero_is_seen_{}, zero_is_doubted_{};
   double stepped_{};         ///< variance of the zero's steps [rad2]
   int turns_{}, samples_{};  ///< samples: of this turn
 };

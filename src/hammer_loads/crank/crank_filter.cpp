@@ -36,7 +36,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       supply_(settings.initial_torque_std),
-      errors_(settings.constant_deviations),
+      errors_(settings.constant_deviations, settings.zero_std),
       blows_({settings.blow_factor, settings.blow_std}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;

@@ -37,6 +37,7 @@ struct CrankFilterSettings {
   double max_speed{};            ///< bound of an unknown speed [rad/s], > 0
   double blow_factor{1.0};       ///< a blow's factor on the crank's speed, first guess [-], > 0
   ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< deviations of kUnknowns, each in its unit
+  double zero_std{ConstantErrors::kUnknownZero};  ///< deviation of the encoder's zero before the first turns [rad]
   double blow_std{0.25};  ///< standard deviation of blow_factor, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
   // Prior: blow_std
 };
@@ -113,6 +114,8 @@ class CrankFilter {
   /// From the next sample on the encoder's zero is larger by that angle of the crank [rad]: the estimate restarts
   /// there.
   void moveZero(double angle) noexcept { zero_moves_ += angle; }
+  /// See ConstantErrors::doubtZero().
+  void doubtZero(bool doubted) noexcept { errors_.doubtZero(doubted); }
 
   const ShaftState& state() const noexcept { return now_.state; }
   /// Estimate at the last accepted sample, as the filter computes it.

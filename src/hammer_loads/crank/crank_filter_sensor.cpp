@@ -64,7 +64,7 @@ bool CrankFilter::findLag() noexcept {
   angle_lag_.take(more, speed_trust_.lagDeviation());
   angle_lag_.begin(now_.encoderSpeed());
   speed_trust_ = {};
-  errors_ = ConstantErrors(settings_.constant_deviations);
+  errors_ = ConstantErrors(settings_.constant_deviations, settings_.zero_std);
   considerSensor();
   forgetInertia();
   return true;
@@ -74,7 +74,7 @@ bool CrankFilter::findLag() noexcept {
 bool CrankFilter::applyZero() noexcept {
   if (zero_moves_ == 0.0) return false;
   encoder_.slip(std::exchange(zero_moves_, 0.0));
-  errors_ = ConstantErrors(settings_.constant_deviations);
+  errors_ = ConstantErrors(settings_.constant_deviations, settings_.zero_std);
   considerSensor();
   forgetInertia();
   return true;

@@ -41,6 +41,8 @@ class CrankFollower {
 
   /// CrankFilter::moveZero().
   void moveZero(double angle) noexcept { tracker_->moveZero(angle); }
+  /// CrankFilter::doubtZero().
+  void doubtZero(bool doubted) noexcept { tracker_->doubtZero(doubted); }
   double reading() const noexcept { return measured_.angle; }  ///< angle of the judged sample [rad]
   /// Returns true if angle or speed may be in another unit that is not recognised yet.
   bool suspectsUnit() const noexcept { return unit_check_.suspects(); }

@@ -1,5 +1,7 @@
 #include "hammer_loads/pipeline/filter_settings.h"
 
+#include <cmath>
+
 #include "hammer_loads/linkage/blow_inertia.h"
 
 namespace hammer_loads {
@@ -8,6 +10,7 @@ CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSet
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   CrankFilterSettings filter;
   filter.sensor = s.crank_sensor;
+  filter.zero_std = std::abs(s.crank_sensor.gain()) * s.crank_zero_std;
   filter.angle_resolution = s.crank_angle_resolution;
   filter.angle_noise = s.crank_angle_noise;
   filter.timing_noise = s.crank_timing_noise;

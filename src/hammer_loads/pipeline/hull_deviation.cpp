@@ -11,6 +11,8 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kStands = 0.05;  // [rad/s] at most
+
 // Differences to one side: 1e-6 of a slope by what bends in them, 1e-9 by rounding.
 constexpr double kAngleStep = 1e-6, kSpeedStep = 1e-5, kAccelerationStep = 1e-2;  // [rad], [rad/s], [rad/s2]
 // Numerical: kAngleStep, kSpeedStep, kAccelerationStep
@@ -193,12 +195,27 @@ Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
 
 double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
-  return std::hypot(angle_std, filter.rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
+  if (!filter.rodEvidence().gives()) return std::hypot(angle_std, errors.zeroSeen());
+  const double hidden = errors.zeroIsGiven() ? 0.0 : ConstantErrors::kRodHides;
+  return std::hypot(angle_std, std::hypot(errors.zeroLooks(), hidden));
 }
 
 bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noexcept {
   const CrankPosition& at = crank.position;
   return std::abs(at.angle.offset) < gate * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
+}
+
+/// While the zero is known badly a slow crank near the blow may have met the tool, or bounce on it. The filter of a rod
+/// knows its touches better than the zero.
+bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
+                  std::optional<bool> rod) noexcept {
+  const ConstantErrors& errors = filter.constantErrors();
+  if (rod && (*rod || errors.zeroIsShown())) return *rod;
+  if (!errors.zeroIsShown() && crank.position.isMirrored()) return true;
+  const double deviation = deviationFromBlow(filter, rod ? errors.zeroDeviation() : angle_std);
+  if (errors.zeroIsShown() && errors.zeroDeviation() < ConstantErrors::kCalibratedZero)
+    return isBesideBlow(crank, deviation);
+  return std::abs(crank.position.angle.offset) < gate::kUsual * deviation && std::abs(crank.speed) > kStands;
 }
 
 }  // namespace hammer_loads

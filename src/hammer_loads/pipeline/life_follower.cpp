@@ -58,7 +58,9 @@ life::LifePiece LifeFollower::take() {
 
 void LifeFollower::follow() noexcept {
   const SampleResult& result = pipeline_->result();
-  if (!result.refusal) {
+  const bool counts = pipeline_->zeroWatch().mayCount(pipeline_->crank().tracker());
+  if (!counts) last_.reset();
+  if (!result.refusal && counts) {
     const CrankStep& step = pipeline_->crank().step();
     const bool goes_on = last_ && step.known() && step.start() == *last_;
     if (goes_on && !result.uncertain && !uncertain_) {

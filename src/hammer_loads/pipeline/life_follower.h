@@ -17,7 +17,8 @@ namespace hammer_loads {
 
 /// Counts the loads of a pipeline's samples in time order: every channel at each sample whose loads are published, and
 /// the hull wrench between two such samples at its extremes and as close to both sides of a blow as it is known, if
-/// both samples agree. The pipeline is independent of it. Sequence of a run:
+/// both samples agree. No load is counted before the encoder's zero is known (ZeroWatch::mayCount()). The pipeline is
+/// independent of it. Sequence of a run:
 ///
 ///     const SampleResult& result = pipeline.crankSample(...);
 ///     if (follower.due()) use(follower.take());

@@ -16,8 +16,9 @@ namespace {
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
 constexpr double kPeakLasts = 60.0;                           // [s]
-constexpr double kUncertain = 5.0;  // times withhold_above: half of the peak, beyond it a load says nothing
-constexpr double kLeastPeak = 0.1;  // of that at constant speed: a hammer that idles is judged as one that works
+constexpr double kUncertain = 5.0;   // times withhold_above: half of the peak, beyond it a load says nothing
+constexpr double kInertiaOff = 0.9;  // logarithm of the drive inertia over the given: a zero far off makes more of it
+constexpr double kLeastPeak = 0.1;   // of that at constant speed: a hammer that idles is judged as one that works
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
 
@@ -190,6 +191,7 @@ void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
   if (taken == CrankFollower::Taken::kBegan) trust_.begin();
   trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
   crank_.moveZero(zero_.follow(crank_.tracker(), crank_.reading(), step, {hull_.gravity()}));
+  crank_.doubtZero(zero_.doubts(crank_.tracker()));
   if (taken == CrankFollower::Taken::kContinued) {
     for (const CrankStep::Passage& passage : crank_.step())
       if (passage.forward) trust_.passBlow(settled_);
@@ -212,7 +214,13 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
 /// A crank held at constant speed shows little of itself: its samples are known where no force's standard deviation is
 /// above five times withhold_above of the peak of the last minute, within the bounds of a turn at constant speed.
 bool Pipeline::isKnown() const noexcept {
-  if (crank_.tracker().driveInertia() > 0.0) return true;  // of a crank at work
+  // Readings that contradict the model do not show that a blow failed.
+  if (result_.crank.position.isMirrored() && result_.consistency > CrankTrust::kMost) return false;
+  const double inertia = crank_.tracker().driveInertia(), given = mechanism_.parameters().drive_inertia;
+  if (!crank_.tracker().constantErrors().zeroIsShown() && inertia > 0.0 &&
+      std::abs(std::log(inertia / given)) > kInertiaOff)
+    return false;
+  if (inertia > 0.0) return true;  // of a crank at work
   const double most = std::max(1.0, speedScale()) * peak_at_speed_;
   const double peak = turn_.peakForce() > 0.0 ? std::clamp(seen_peak_, kLeastPeak * most, most) : most;
   // An unknown force of the rod says nothing of the crank.

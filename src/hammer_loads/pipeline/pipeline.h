@@ -82,7 +82,8 @@ class Pipeline {
   void restart(bool revised) noexcept;
   void follow(CrankFollower::Taken taken) noexcept;
   std::optional<Refusal> whyWithheld() noexcept;
-  HullWrench contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
+  Eigen::Matrix3d contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
+  Eigen::Matrix3d zeroDoubt(const DriveReaction& drive) const noexcept;
   ElasticFollower::Beside weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
   void fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept;
   double speedScale() const noexcept;

@@ -100,7 +100,7 @@ double beyondRod(const Unknown& unknown, double amount) {
 }
 
 /// Constants whose error the innovations show, by their table. gives: the rod does.
-void warnOfConstants(const ConstantErrors& errors, const CrankSensor& sensor, bool gives,
+void warnOfConstants(const ConstantErrors& errors, const ZeroWatch::Stated& zero, const CrankSensor& sensor, bool gives,
                      std::vector<Warning>& warnings) {
   for (std::size_t i = 0; i < kUnknowns.size();) {
     const Unknown& first = kUnknowns[i];
@@ -110,7 +110,7 @@ void warnOfConstants(const ConstantErrors& errors, const CrankSensor& sensor, bo
       const auto at = static_cast<Eigen::Index>(i);
       amount = i == begin ? errors.estimate()[at] : std::hypot(amount, errors.estimate()[at]);
       deviation = std::max(deviation, errors.deviation()[at]);
-      if (at == ConstantErrors::kZero) deviation = std::hypot(deviation, errors.zeroNotLinear());
+      if (at == ConstantErrors::kZero) amount = zero.error, deviation = zero.deviation;
     }
     const double certain = gives ? beyondRod(first, amount) : std::abs(amount);
     const bool named = first.warning != nullptr && certain > std::max(first.notable, gate::kUsual * deviation);
@@ -122,17 +122,16 @@ void warnOfConstants(const ConstantErrors& errors, const CrankSensor& sensor, bo
 /// The zero that the readings show, in the sensor's own angle, and what to do.
 std::string zeroFarOff(const Pipeline& pipeline, const CrankFilter& filter) {
   const CrankSensor& sensor = pipeline.settings().crank_sensor;
-  const ConstantErrors& errors = filter.constantErrors();
-  const double off = (pipeline.zeroWatch().moved() + errors.estimate()[ConstantErrors::kZero]) / sensor.gain();
+  const ZeroWatch::Stated stated = pipeline.zeroWatch().stated(filter);
+  const double off = stated.error / sensor.gain(), deviation = stated.deviation / std::abs(sensor.gain());
   const double zero = sensor.place().zero, found = std::remainder(zero + off, kTwoPi);
   std::string action = "set it, or run calibrate";
   if (!pipeline.zeroWatch().isSettled())
-    return format("crank_zero_rad is off by about %.1f deg: loads are withheld while it is refined. Run calibrate.",
-                  off / kDegree);
+    return format(
+        "crank_zero_rad is off by about %.1f +- %.1f deg: loads are withheld while it is refined. Run calibrate.",
+        off / kDegree, deviation / kDegree);
   if (std::abs(zero) >= 1.0 && std::abs(std::remainder(zero * kDegree - found, kTwoPi)) < 0.1)
     action = format("%.4g degrees would fit", zero);
-  const double deviation =
-      std::hypot(errors.deviation()[ConstantErrors::kZero], errors.zeroNotLinear()) / std::abs(sensor.gain());
   return format("crank_zero_rad is off by %.2f +- %.2f deg (%.4f rad would fit): %s: %s.", off / kDegree,
                 deviation / kDegree, found, pipeline.zeroWatch().withholds() ? "loads are withheld" : "it is corrected",
                 action.c_str());
@@ -214,7 +213,8 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
   } else if (withheld > 0) {
     warnings.push_back({"inconsistent", agreesAgain(filter, withheld), false});
   }
-  warnOfConstants(filter.constantErrors(), pipeline.settings().crank_sensor, gives, warnings);
+  warnOfConstants(filter.constantErrors(), pipeline.zeroWatch().stated(filter), pipeline.settings().crank_sensor, gives,
+                  warnings);
 }
 
 /// Warns of a sensor error to which the filter's innovations point.

@@ -57,8 +57,9 @@ void WrenchSampler::sample(const LinksBeside& links, const SampleResult& result,
 bool WrenchSampler::isKnown(double time, const WrenchOutput& output, const SampleResult& result) const noexcept {
   if (kind_ == OutputKind::kMean) return true;
   if (output.stamp == result.stamp) return result.isPublished();
-  if (elastic_->ranOverStep()) return !elastic_->isBesideBlowAt(time);
-  return !isBesideBlow(output.crank, deviationFromBlow(*tracker_, output.deviation.angle));
+  const std::optional<bool> rod =
+      elastic_->ranOverStep() ? std::make_optional(elastic_->isBesideBlowAt(time)) : std::nullopt;
+  return !result.uncertain && !isBesideBlow(*tracker_, output.crank, output.deviation.angle, rod);
 }
 
 /// Stamp of the next output, if it is not after the sample.

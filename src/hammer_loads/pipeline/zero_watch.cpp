@@ -1,5 +1,6 @@
 #include "hammer_loads/pipeline/zero_watch.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hammer_loads {
@@ -10,16 +11,23 @@ constexpr double kSearchShows =
 constexpr double kSearchShowsAhead = 2.4 * kDegree;  // likewise, positive: up to 0.8 deg
 constexpr double kFilterAgrees = 0.8 * kDegree;
 constexpr double kAgrees = 1.5;   // consistency of readings and model
-constexpr double kOfStep = 0.12;  // of the way between samples: what is seen no better
+constexpr double kOfStep = 0.08;  // of the way between samples: what is seen no better
 constexpr double kDeviations = gate::kVeryRare;
 constexpr double kFilterShows =
     1.2 * kDegree;  // by the filter, positive: with a right zero it shows up to 0.5 deg, on a light hull 0.9 deg
+constexpr double kSearchErrs = 3.2 * kDegree,  // of the search, of readings at 100 Hz as well
+    kSearchErrsAhead = 1.5 * kDegree;
+constexpr double kSearchDeviation = 2.0 * kDegree;  // standard
+constexpr double kCountsAhead = 0.8 * kDegree;      // by the filter: a zero 3 deg off may look like 1 deg
+constexpr int kTurnsToSearch = 8;                   // of a machine whose times no zero explains
+constexpr int kTurnsToShow = 20;                    // readings and model that agree for so long outweigh the search
 constexpr double kRefined = 0.5 * kDegree;
 
 }  // namespace
 
-double ZeroWatch::move(double angle) noexcept {
+double ZeroWatch::move(double angle, double deviation) noexcept {
   moved_ += angle;
+  deviation_ = deviation;
   settled_ = false;
   search_.restart();
   return angle;
@@ -31,7 +39,7 @@ double ZeroWatch::follow(const CrankFilter& filter, double reading, double step,
   slips_ = filter.slips();
   // A turn without a tool has other times. A zero that is far off may look like one, but not without a contradiction.
   if (filter.state().position.isMirrored() && !(filter.consistency() > kAgrees)) search_.skipTurn();
-  search_.setWanted(!agrees(filter));
+  search_.setWanted(filter.constantErrors().turns() < kTurnsToSearch || !agrees(filter));
   const double half_count = encoder.isFiner() ? 0.0 : 0.5 * encoder.resolution();
   search_.add(encoder.place().angle(reading + half_count), step, hull);
   return toMove(filter);
@@ -42,6 +50,38 @@ bool ZeroWatch::agrees(const CrankFilter& filter) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];
   return errors.knows() && filter.consistency() < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
+}
+
+bool ZeroWatch::doubts(const CrankFilter& filter) const noexcept {
+  const ConstantErrors& errors = filter.constantErrors();
+  const bool agrees = filter.consistency() < kAgrees;
+  const auto& found = search_.found();
+  if (!found) return !agrees || errors.turns() < kTurnsToSearch;
+  if (agrees && errors.turns() > kTurnsToShow) return false;
+  const double more = found->error - errors.estimate()[ConstantErrors::kZero];
+  return more < -kSearchErrs || more > kSearchErrsAhead;
+}
+
+ZeroWatch::Stated ZeroWatch::stated(const CrankFilter& filter) const noexcept {
+  const ConstantErrors& errors = filter.constantErrors();
+  const auto& found = search_.found();
+  if (moved_ != 0.0 && !settled_) return {moved_, deviation_};
+  if (!errors.knows() || (found && doubts(filter))) return {moved_ + (found ? found->error : 0.0), kSearchDeviation};
+  const double shown = errors.estimate()[ConstantErrors::kZero];
+  Eigen::Vector4d deviations(errors.deviation()[ConstantErrors::kZero], errors.zeroNotLinear(), 0.0, 0.0);
+  if (filter.rodEvidence().gives()) deviations[2] = ConstantErrors::kRodHides;
+  // The linear estimate saturates: readings that it does not explain leave open what the search shows.
+  if (!(filter.consistency() < kAgrees)) deviations[3] = found ? found->error - shown : ConstantErrors::kUnknownZero;
+  return {moved_ + shown, deviations.norm()};
+}
+
+bool ZeroWatch::mayCount(const CrankFilter& filter) const noexcept {
+  const ConstantErrors& errors = filter.constantErrors();
+  if (errors.zeroIsGiven()) return true;
+  if (!errors.zeroIsShown() || errors.turns() < kTurnsToSearch) return false;
+  if (errors.estimate()[ConstantErrors::kZero] > kCountsAhead) return false;
+  // An elastic rod looks like a zero up to 3 deg off, and calibrate does not find the zero beside it.
+  return filter.rodEvidence().gives() || std::max(errors.zeroDeviation(), stated(filter).deviation) < kMost;
 }
 
 double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
@@ -55,15 +95,15 @@ double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
     if (found && !(left_ && found->error < 0.0) &&
         (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
         std::abs(found->error) > std::max(least, kDeviations * std::hypot(found->deviation, readings)))
-      return move(found->error);
+      return move(found->error, kSearchDeviation);
   }
   if (!errors.knows()) return 0.0;
   const bool is_off = moved_ != 0.0 ? std::abs(shown) > std::max(kRefined, gate::kUsual * deviation)
                                     : shown > std::max(kFilterShows, gate::kRare * deviation);
-  if (is_off) return move(shown);
+  if (is_off) return move(shown, stated(filter).deviation);
   if (moved_ < 0.0 && moved_ > -kRodLooks) {
     left_ = true;
-    return move(-moved_);
+    return move(-moved_, kRodLooks);
   }
   settled_ = true;
   return 0.0;

@@ -28,6 +28,16 @@ class ZeroWatch {
   bool withholds() const noexcept { return isOff() && (!settled_ || std::abs(moved_) > kMost); }
   /// The zero in force is another one than the parameter's.
   bool isOff() const noexcept { return std::abs(moved_) > kNone; }
+  /// The filter's estimate of the zero may be wrong: readings and model do not agree, nor does the search with it.
+  bool doubts(const CrankFilter& filter) const noexcept;
+  struct Stated {
+    double error{};      ///< error of the parameter [rad of the crank's angle]
+    double deviation{};  ///< standard [rad]
+  };
+  /// Error of the parameter as far as it is known by now: by the filter where the search does not contradict it.
+  Stated stated(const CrankFilter& filter) const noexcept;
+  /// The zero in force is known well enough for what cannot be taken back: load cycles.
+  bool mayCount(const CrankFilter& filter) const noexcept;
   bool isSettled() const noexcept { return settled_; }  ///< the filter agrees with the zero that was found
   /// By how much the zero in force is larger than the parameter's [rad of the crank's angle].
   double moved() const noexcept { return moved_; }
@@ -36,13 +46,13 @@ class ZeroWatch {
   static constexpr double kNone = 0.3 * kDegree;      ///< an error that was there and is gone leaves less
   static constexpr double kRodLooks = 1.6 * kDegree;  ///< largest apparent error of a correct zero, negative
 
-  double move(double angle) noexcept;
+  double move(double angle, double deviation) noexcept;
   static bool agrees(const CrankFilter& filter) noexcept;
   double toMove(const CrankFilter& filter) noexcept;
 
   ZeroSearch search_;
   int evaluations_{}, slips_{};
-  double moved_{};
+  double moved_{}, deviation_{};  ///< by how much the zero was moved, and its standard deviation then [rad]
   bool settled_{};
   bool left_{};  ///< a negative error found by the search is friction in the pins
 };

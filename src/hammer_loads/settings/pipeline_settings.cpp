@@ -94,6 +94,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.base.roll = reader.number("base_roll_rad", "rad", NumberRule::within(-1.0, 1.0));
   s.base.pitch = reader.number("base_pitch_rad", "rad", NumberRule::within(-1.0, 1.0));
   s.crank_sensor = readCrankSensor(reader);
+  s.crank_zero_std = reader.number("crank_zero_std_rad", "rad", NumberRule::within(0.0, 1.0));
   s.crank_latency = reader.number("crank_latency_s", "s", NumberRule::within(0.0, 1.0));
   s.crank_latency_std = reader.number("crank_latency_std_s", "s", NumberRule::within(0.0, 1.0));
   s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", NumberRule::within(0.0, 1.6));

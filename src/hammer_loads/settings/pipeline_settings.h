@@ -106,6 +106,7 @@ struct PipelineSettings {
   double gravity{};                 ///< [m/s2], >= 0
   BaseTilt base;                    ///< inclination of the ground that the machine stands on
   CrankSensor crank_sensor;         ///< mounting of the crank's sensor
+  double crank_zero_std{};          ///< standard deviation of its zero, before turns show it [rad of reading], >= 0
   double crank_latency{};           ///< header stamp less the instant of the measurement [s], >= 0
   double crank_latency_std{};       ///< standard deviation of the crank's latency [s], >= 0
   double crank_angle_resolution{};  ///< encoder count [rad], >= 0; 0: read off the readings
