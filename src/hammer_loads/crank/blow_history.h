@@ -11,8 +11,8 @@
 
 namespace hammer_loads {
 
-/// Mean and spread of the blows' factors, the last ten or so counting most. A machine whose blows are all alike needs
-/// no samples to know the next one; one whose blows differ keeps the doubt that it needs.
+/// Mean and variance of the blows' factors, weighted towards the last ten. If all blows of a machine are alike, the
+/// next one is known before any sample; otherwise the variance remains as large as the scatter.
 class BlowHistory {
  public:
   explicit BlowHistory(const BlowPrior& first) noexcept
@@ -21,7 +21,8 @@ class BlowHistory {
         variance_(kLength, first.deviation * first.deviation, kFirstCounts),
         by_error_(kLength, ConstantErrors::Row::Zero(), kFirstCounts) {}
 
-  /// factor of a blow, its variance and its derivative by the sensor's errors, by all samples since.
+  /// Takes the factor of a blow, its variance and its derivative by the sensor's errors, estimated from all samples
+  /// since.
   void add(double factor, double variance, const ConstantErrors::Row& by_error) noexcept {
     const double doubt = square(gate::kUsual) * variance;
     if (!(doubt < variance_.mean() || variance < square(kLeast))) return;  // nothing was learned of it
@@ -36,7 +37,7 @@ class BlowHistory {
   }
 
  private:
-  /// Blows; a wrong conclusion from the first few shows at once where the first guess counts little.
+  /// Weight of the first guess in blows; a small weight lets a wrong conclusion from the first few blows show at once.
   static constexpr double kFirstCounts = 0.1, kLength = 10.0 + kFirstCounts;
   static constexpr double kLeast = 0.01;  // deviation
   static constexpr double kMost = 0.3;

@@ -9,15 +9,15 @@
 
 namespace hammer_loads {
 
-/// A step begins where the last one ended, but for what its reading has corrected, and the deviation of its
-/// acceleration is asked there: one evaluation of the hammer's columns serves all three.
+/// The hammer's columns at the end of a step, at the beginning of the next and for the deviation of the acceleration
+/// are those of nearly the same place, so that one evaluation serves all three.
 class NearColumns {
  public:
   /// Columns at the place itself or at one beside it on the same branch.
   MachineColumns::OnShaft at(const ShaftModel& model, CrankAngle angle) const noexcept {
     return serves(angle) ? on_shaft_ : model.columns(angle);
   }
-  /// Columns at a place, which becomes the reference from now on.
+  /// Evaluates the columns at a place, which becomes the reference.
   const MachineColumns::OnShaft& moveTo(const ShaftModel& model, CrankAngle angle) noexcept {
     if (!serves(angle)) {
       on_shaft_ = model.columns(angle);
@@ -27,7 +27,7 @@ class NearColumns {
   }
 
  private:
-  /// [rad], within which a column changes by a hundredth of its largest value.
+  /// Angle within which a column changes by a hundredth of its largest value [rad].
   static constexpr double kBeside = 1e-3;
   bool serves(CrankAngle angle) const noexcept {
     return angle.side == angle_.side && std::abs(angle.offset - angle_.offset) < kBeside;

@@ -15,7 +15,7 @@ namespace hammer_loads {
 
 constexpr double kMostSurprise = 100.0;  ///< limit for one sample: a single outlier is no alarm
 
-/// Running mean of innovation^2 over its variance: 1 for a model that holds. Some 500 samples long.
+/// Running mean of innovation^2 over its variance, over some 500 samples: 1 for a correct model.
 class Consistency {
  public:
   void add(double squared_over_variance) noexcept {
@@ -25,14 +25,14 @@ class Consistency {
   }
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
-  /// The factor of variances in what the filter learns: never below 1.
+  /// Factor on variances in what the filter learns, at least 1.
   double growth() const noexcept { return samples_ < kEnough ? 1.0 : doubt(); }
-  /// Factor of published variances: samples that are not there yet count as those before the restart.
+  /// Factor on published variances. Missing samples of the mean have the value before the restart.
   double doubt() const noexcept {
     const double known = std::min(1.0, static_cast<double>(samples_) / kEnough);
     return std::max(1.0, known * mean_ + (1.0 - known) * before_);
   }
-  /// Restarts the mean for another estimate, which is as uncertain at first.
+  /// Restarts the mean for another estimate, whose initial uncertainty is the same.
   void restart() noexcept {
     before_ = doubt();
     samples_ = 0, mean_ = 0.0;
@@ -54,7 +54,7 @@ class StrikeConsistency {
     sum_ += std::min(squared_over_variance, kMostSurprise);
     ++samples_;
   }
-  /// The blow was passed.
+  /// Notes a passage of the blow.
   void endHalfTurn() noexcept {
     if (samples_ == 0) return;
     before_ = std::exchange(last_, sum_ / samples_);
@@ -71,9 +71,10 @@ class StrikeConsistency {
   double before_{std::numeric_limits<double>::quiet_NaN()}, last_{before_};
 };
 
-/// An elastic rod picks the rocker up just after the blow, where the linkage has no lever on it, and has rung out a
-/// quarter of a turn later. A sensor that is off, other masses or a soft coupling contradict the model elsewhere too:
-/// with 4096 counts at 1 kHz the means of innovation^2 over its variance there are
+/// Evidence of an elastic rod. Such a rod accelerates the rocker just after the blow, where the linkage has no lever on
+/// it, and its vibration has decayed a quarter of a turn later. A wrong sensor, wrong masses or a soft coupling
+/// contradict the model elsewhere as well. With 4096 counts at 1 kHz the means of innovation^2 over its variance at
+/// both places are
 ///
 ///     rods of 2e8 to 1e10 N/m     4.3 to 50 and 0.9 to 3      zero off by 2 deg, eccentric by 1.2   1.0 to 1.5 and 1.0
 ///     coupling of 50 Hz            9 to 12 and 3 to 7         clean, other masses, late tool        0.9 to 1.0 and 1.0
@@ -90,18 +91,19 @@ class RodEvidence {
     if (at.offset < kPickedUp) picked_up_.add(bounded);
     if (at.offset > kRungOut) later_.add(bounded);
   }
-  /// Beside the blow: an elastic rod has picked the rocker up; it has rung out [rad].
+  /// Angles from the blow at which an elastic rod has accelerated the rocker and at which its vibration has decayed
+  /// [rad].
   static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;
-  /// Standard deviation of a reading from which on it shows no rod [rad]: through noise beyond it the sensor's place is
-  /// taken for the rod's stiffness.
+  /// Standard deviation of a reading above which a rod cannot be detected [rad], since errors of the sensor's mounting
+  /// would be taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
   /// Mean just before the blow, where a rod in worn pins lets go of the rocker and the crank runs ahead (4 and more;
   /// elastic rods in tight pins 1.5 to 2), while the rod picks the rocker up, and when it has rung out [-].
   double runUp() const noexcept { return run_up_.mean(); }
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }
-  /// Parts that readings leave possible of the square of an expected vibration, and of the speed that a released rocker
-  /// lacks; reading: standard deviation of one [rad].
+  /// Upper bounds by the readings of the square of the expected vibration, and of the missing speed of a released
+  /// rocker, as parts of the expectation; reading: standard deviation of one [rad].
   double share(double reading) const noexcept { return shareOf(picked_up_, reading); }
   double letGoShare(double reading) const noexcept { return shareOf(run_up_, reading); }
   /// True if the blow is so violent that a rigid mechanism still loses the crank a quarter of a revolution later: rock

@@ -1,4 +1,4 @@
-/// State and covariance of the crank filter: what a prediction, a measurement and a blow do to them.
+/// State and covariance of the crank filter, with their prediction, update and jump at a blow.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct CrankWalks {
   SupplyLaw supply;
 };
 
-/// The prior of a blow: the factor on the crank's speed is drawn each time.
+/// Prior of a blow's factor on the crank's speed, which is independent for each blow.
 struct BlowPrior {
   double mean{1.0};    ///< [-], > 0
   double deviation{};  ///< [-]
@@ -43,14 +43,14 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   double factor{1.0};      ///< factor of the last blow
   double least_inertia{};  ///< bounds of the drive inertia [kg m2]
   double most_inertia{};   ///< upper bound of the drive inertia [kg m2]
-  bool tool_met{};         ///< before the dead centre: nothing strikes there any more
+  bool tool_met{};         ///< true if the tool was met before the dead centre, where nothing strikes any more
   bool struck_early{};     ///< the last blow's factor acted before the dead centre
   NearColumns near;        ///< columns of the hammer, where the state was last predicted
 
-  /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
+  /// Predicts by dt [s] > 0 with random walks; returns the number of blows. Stops at most_speed [rad/s].
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
               double dt) noexcept;
-  /// By a change of its variables. Slides the position; it may end beyond the blow.
+  /// Changes its variables. The position may end beyond the blow.
   void move(const Vector& change) noexcept;
   /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
   /// factor and the speed go together.
@@ -59,22 +59,22 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   /// of_constants: their variances where the measurement is to be weighed by them.
   void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
                const std::optional<ConstantErrors::Row>& of_constants = {}) noexcept;
-  /// The coming correction teaches nothing of the inertia.
+  /// Removes the correlation with the inertia, so that the next update does not change it.
   void forgetInertiaCoupling() noexcept;
-  /// Nothing is known of the angle beyond a variance [rad2] about the present one.
+  /// Resets the angle's variance [rad2] and its correlations.
   void forgetAngle(double variance) noexcept;
-  /// The position stands beyond the blow that it should have passed: passes it now.
+  /// Passes the blow late, with the position beyond it already.
   void passLate(const ShaftModel& model, const BlowPrior& prior) noexcept;
-  /// The tool was met some time within the last dt [s]: the speed is uncertain by `deviation` of itself.
+  /// Adds the uncertainty of a speed that the tool has changed within the last dt [s], relative `deviation`.
   void meetTool(double deviation, double dt) noexcept;
-  /// Just after a blow, struck some time within the last dt [s]: its factor is uncertain by as much as explains an
-  /// innovation of variance `total` of angle or speed. False: no factor explains it, all stays.
+  /// Inflates the variance of the factor of a blow within the last dt [s] until it explains an innovation of variance
+  /// `total` of angle or speed. Returns false, without a change, if no factor explains it.
   bool doubtBlow(Row row, double innovation, double total, double dt) noexcept;
   /// Variances of angle, speed and torque, times `by` where that is above 1.
   void widen(double by) noexcept;
-  /// Stands exactly at the blow.
+  /// Sets the position exactly at the blow.
   void standAtBlow() noexcept { state.position.angle.offset = 0.0; }
-  /// A blow's factor and its variance are drawn.
+  /// Draws a new factor of the blow: sets its prior mean and variance.
   void drawFactor(const BlowPrior& prior) noexcept;
   /// Prior of the next blow at its passage.
   BlowPrior priorOf(const BlowPrior& drawn) const noexcept;
@@ -86,8 +86,7 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   double encoderSpeed() const noexcept { return state.speed; }
   double encoderVariance(Row row) const noexcept { return covariance(row, row); }
   ConstantErrors::Row encoderByError(Row row) const noexcept { return by_constant.row(row); }
-  /// Factor of the last blow and the inertia that it acts on. growth: what noise is to be multiplied with; root:
-  /// ConstantErrors::root().
+  /// Factor of the last blow and the inertia on which it acts. growth: factor on noise; root: ConstantErrors::root().
   BlowFactor blowFactor(double growth, const ConstantErrors::Matrix& root) const noexcept;
 };
 

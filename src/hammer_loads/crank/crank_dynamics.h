@@ -54,7 +54,8 @@ double timeToBlow(const Function& offset_after, double start, double end, double
   return t;
 }
 
-/// Links, weight and motion of the hull as the shaft feels them; refers to the mechanism, which must outlive it.
+/// Reflected inertia of the links, and torques of weight and hull motion, on the shaft; refers to the mechanism, which
+/// must outlive it.
 class ShaftModel {
  public:
   ShaftModel(const Mechanism& mechanism, Level level)
@@ -71,7 +72,7 @@ class ShaftModel {
     load.hull_acceleration *= r;
     return load;
   }
-  /// Nothing of it is uncertain: no columns.
+  /// Returns true for an exact hammer, which has no columns.
   bool isExact() const noexcept { return columns_ == nullptr; }
   MachineColumns::OnShaft columns(CrankAngle angle) const noexcept {
     return isExact() ? MachineColumns::OnShaft(MachineColumns::OnShaft::Zero())
@@ -86,7 +87,7 @@ class ShaftModel {
   HullMotion hull_;
 };
 
-/// Everything that decides the crank's motion.
+/// State of the shaft.
 struct ShaftState {
   CrankPosition position;
   double speed{};          ///< w [rad/s]
@@ -114,10 +115,10 @@ using ShaftMatrix = Eigen::Matrix<double, 5, 5>;
 /// blow factor counts only where a blow is passed in between.
 using ShaftTransition = Eigen::Matrix<double, 2, 5>;
 
-/// The blow, where the crank turns forward through the dead centre.
+/// Treatment of a forward passage of the dead centre.
 struct Passing {
   double factor{1.0};  ///< crank speed after over before the blow [-], > 0
-  bool contact{true};  ///< false: no tool, the rocker goes on smoothly onto the mirrored branch
+  bool contact{true};  ///< false: no tool, the rocker passes smoothly onto the mirrored branch
 };
 
 /// Events of a step beside the motion.
@@ -126,16 +127,16 @@ struct Advance {
   int blows{};  ///< passed forward, with contact; back in time as above
 };
 
-/// Passes the blow where the state stands on the way before it, at offset 0 or a little past it: what would have
-/// happened had it been passed when it was reached (first order). Position and, but for the factor, speed are
-/// continuous, the acceleration jumps; a path that reaches the blow later by d(angle)/w has the old ones for this much
-/// longer (saltation). Turning backward the factor is 1; back in time it is undone.
+/// Passes the blow for a state on the branch before it, at offset 0 or slightly beyond: to first order the result is
+/// that of a passage at offset 0. The position is continuous, the speed changes by the factor, and the acceleration
+/// jumps; a path that reaches the blow later by d(angle)/w keeps the old acceleration for this time (saltation). The
+/// factor is 1 for a backward turn, and is undone for a step back in time.
 void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLoad& load,
               ShaftTransition& total) noexcept;
 
 /// Advances the state by dt [s] (negative: back in time) with constant torque and inertia, through the blow if it lies
 /// in between. `load` is the model's at the state's angle, before and after the call. A state on the mirrored branch
-/// goes on and leaves it smoothly.
+/// continues and leaves it smoothly.
 ///
 /// Integrates h = sqrt(Jc + J) w, half the square of which is the kinetic energy: its rate, the torques over
 /// sqrt(Jc + J), has no term with the transfer function's derivative, so its linearisation needs none of third order.

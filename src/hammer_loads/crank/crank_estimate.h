@@ -24,7 +24,8 @@ struct CrankEstimate {
   double acceleration{};  ///< [rad/s2]
 };
 
-/// Uncertainty of an estimate, by errors drawn for each sample and by constants, whose errors are equal in all samples.
+/// Uncertainty of an estimate, by errors that are independent between samples and by constants, whose errors are equal
+/// in all samples.
 struct CrankUncertainty {
   enum Row : Eigen::Index { kAngle, kSpeed, kAcceleration, kInertia };
 
@@ -42,7 +43,7 @@ struct CrankUncertainty {
   Eigen::Matrix3d covariance() const noexcept;
 };
 
-/// The crank at one place between two samples: by the way forward from the earlier one, by the way back from the later.
+/// The crank at one place between two samples: predicted forward from the earlier one and backward from the later one.
 struct CrankWays {
   CrankEstimate forward, back;
 };
@@ -62,9 +63,9 @@ struct BlowFactor {
 /// Result of processing a sample.
 enum class Tracking {
   kContinued,  ///< agrees with what came before
-  kRestarted,  ///< restarted at this sample: what lies between is not known
-  kRevised,    ///< goes on, but what came before was otherwise than thought: a turn without contact, or with it
-  kOutlier,    ///< contradicts what came before and was ignored; a second one like it restarts
+  kRestarted,  ///< restarted at this sample; the motion before it is not known
+  kRevised,    ///< continues with a revised contact: the last passage was no blow, or was one
+  kOutlier,    ///< contradicts the prediction and was ignored; a second one like it restarts
 };
 
 }  // namespace hammer_loads

@@ -38,7 +38,7 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   return sample;
 }
 
-/// (10) What stamps and speeds may be off: as it is given, and as it has shown itself.
+/// (10) Noise of stamps and speeds, given and identified.
 void CrankFilter::considerSensor() noexcept {
   const double ahead =
       std::hypot(angle_lag_.deviation(), speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0);
@@ -55,8 +55,8 @@ void CrankFilter::considerSensor() noexcept {
   consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());
 }
 
-/// (2) Angles that are behind the speeds: from now on that is taken off the readings. Earlier results on the sensor and
-/// its speeds belong to other readings.
+/// (2) Subtracts a lag of the angles behind the speeds from the readings from now on, and discards earlier results on
+/// the sensor and its speeds.
 bool CrankFilter::findLag() noexcept {
   const double more = -speed_trust_.lag();
   if (HAMMER_LOADS_ABLATE(angle_lag) || !speed_trust_.lags() || !(angle_lag_.isThere() || more > kLagTakenOff))
@@ -88,9 +88,9 @@ double CrankFilter::takeOffLag(const CrankBelief& last, double dt, bool struck, 
   return behind;
 }
 
-/// Speeds that lag or are out of scale are not taken up. Before that is known, a filter that has to begin anew where
-/// stamps jitter goes by its angles alone until it is: pulled by such speeds it would do so again and again, and never
-/// come to judge them.
+/// Returns true if the speed is used. Speeds with a lag or a wrong scale are not. Until this is known, a filter that
+/// has restarted with jittering stamps uses its angles alone, because such speeds would cause further restarts and
+/// prevent their judgement.
 bool CrankFilter::takesSpeeds() noexcept {
   speeds_wait_ = speeds_wait_ && !speed_trust_.knows();
   if (HAMMER_LOADS_ABLATE(speed_trust)) return true;
@@ -128,7 +128,7 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
   if (!innovation.exceeds(gate::kImpossible))
     now_.correct(Belief::kSpeed, innovation.value, innovation.variance, innovation.by_error, sample.of_speed);
   if (HAMMER_LOADS_ABLATE(speed_noise) || restart_load_ > kBeganOfLate)
-    return;  // angles that make no sense say nothing of speeds
+    return;  // impossible angles give no information on speeds
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - known), floor);
 }
@@ -142,8 +142,8 @@ void CrankFilter::predictTo(SampleStep& to, double dt) noexcept {
   to.innovation = to.sample.ofAngle(now_);
 }
 
-/// (5) A reading that is impossible after the time between the stamps, but fits after some intervals more or less, has
-/// lost samples before it.
+/// (5) Detects lost samples before a reading that is impossible for the time between the stamps, but agrees with a time
+/// that differs by some intervals.
 void CrankFilter::followLostTime(SampleStep& to) noexcept {
   if (HAMMER_LOADS_ABLATE(lost_samples) || !to.innovation.exceeds(gate::kImpossible)) return;
   const double stamped = to.dt;
@@ -183,7 +183,7 @@ bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& 
          !rival_.isOpen() && nearest > kNotSlip;
 }
 
-/// (5) A slip that has shown itself is taken off the reading.
+/// (5) Subtracts a detected slip from the reading.
 EncoderSlip::Step CrankFilter::followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept {
   // From the largest one way to the largest the other way: half its change times the square of the time.
   const double by_torque = square(dt) * settings_.initial_torque_std / now_.state.drive_inertia;

@@ -1,4 +1,4 @@
-/// From an encoder's reading to the angle: its counts, its slips on the shaft, its lag.
+/// Conversion of an encoder's reading to the angle: counts, slips on the shaft, lag.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 namespace hammer_loads {
 
 /// An encoder counts down to the last whole count, so a reading means the middle of its count. The count is read off
-/// the readings: the largest whole part of a turn of which all their differences are multiples. Until enough of them
-/// have come the given count holds, else 2 pi/4096. Readings finer than 2 pi/65536 come from a sensor without counts:
-/// they are taken as they are, with the variance of the count assumed before, as their noise is not stated.
+/// the readings: the largest whole part of a turn of which all their differences are multiples. Until there are enough
+/// readings, the count is the given one or 2 pi/4096. Readings finer than 2 pi/65536 are those of a sensor without
+/// counts: they are used directly, with the variance of the count assumed before, as their noise is not stated.
 class Encoder {
  public:
   /// given: count [rad]; 0: to be read off.
@@ -54,9 +54,9 @@ class Encoder {
   /// Count in force [rad of the encoder]; with a finer sensor the one assumed.
   double resolution() const noexcept { return isKnown() && !isFiner() ? count_ : assumed_; }
   bool isFiner() const noexcept { return finer_readings_ >= kEnough; }
-  /// Enough readings have come to know the count.
+  /// Returns true after enough readings to know the count.
   bool isKnown() const noexcept { return agreeing_ >= kEnoughToKnow; }
-  /// The readings show another count than the one given, or none.
+  /// Returns true if the readings contradict the given count.
   bool contradictsGiven() const noexcept {
     return given_ && (isFiner() || (isKnown() && std::abs(count_ / assumed_ - 1.0) > kMultipleTolerance));
   }
@@ -94,9 +94,9 @@ class Encoder {
     }
   }
 
-  /// A count that is known is not given up for a damaged reading. Two that fit each other are of a sensor that was
-  /// moved or of a finer count: it must be read off again. Several that fit nothing are of another sensor than was
-  /// thought.
+  /// Keeps a known count in spite of a damaged reading. Two readings that agree with each other are those of a sensor
+  /// that was moved or has a finer count, which is then identified again. Several readings that agree with nothing are
+  /// those of another sensor.
   bool isStray(double reading) noexcept {
     const double difference = strays_ > 0 ? between(reading, stray_) : 0.0;
     if (strays_ > 0 && difference < kSame) return true;
@@ -134,11 +134,11 @@ class Encoder {
   int finer_readings_{};
 };
 
-/// A crank has inertia: from one reading to the next no torque moves it by more than some milliradians, and what moves
-/// it goes on. A reading that is suddenly further off, and whose next one is off by the same, is of a sensor that
-/// moved; the step itself says by how much, to the count. Stamps must not jitter by as much (a clock that was set looks
-/// alike, but makes its step longer or shorter), and the blow must not be near. A model that is surprised in every
-/// turn is wrong otherwise: some turns without must have gone before.
+/// Detection of a slip. The crank's inertia limits its change between two readings to some milliradians, which
+/// continues. If a reading is suddenly further off and the next one by the same amount, the sensor has moved; the step
+/// states by how much, to the count. The stamps must not jitter by as much (a clock that was set has the same effect,
+/// but changes the length of its step), and the blow must not be near. Large innovations in every turn have another
+/// cause; some turns without one are required before.
 class EncoderSlip {
  public:
   enum class Step { kNone, kPerhaps, kSlipped };
@@ -149,12 +149,12 @@ class EncoderSlip {
 
   /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
   /// in a step of usual length; longer: in what this one lasts beyond that [rad]. possible: place and samples before
-  /// allow it. kPerhaps: the sample is not to be taken; only the next one says, whose step then begins at the same one.
+  /// allow it. kPerhaps: the sample must not be used; the next one decides, and its step begins at the same sample.
   Step follow(double innovation, double total, double by_torque, double way, double longer, bool possible) noexcept {
     const double seen = std::exchange(seen_, 0.0), before = std::exchange(before_, innovation);
     if (seen != 0.0) {
       const bool stays = std::abs(innovation - seen) < kSame * std::abs(seen);
-      before_ = 0.0;  // the sample is another one once the encoder has moved
+      before_ = 0.0;  // the sample changes once the encoder has moved
       if (!stays || std::abs(longer - way) > kOfClock * std::abs(innovation)) return Step::kNone;
       ++count_;
       turns_since_ = 0;
@@ -177,10 +177,10 @@ class EncoderSlip {
   double deviation() const noexcept { return deviation_; }  ///< standard deviation of last() [rad]
 
  private:
-  /// The last one is some turns old at most: a step back belongs to it.
+  /// Returns true if the last slip is at most some turns old, so that a step back belongs to it.
   bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < look_back::kTurnsToKnow; }
 
-  static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
+  static constexpr double kSame = 0.4;  // relative; a crank that was pushed is off by twice as much in the next sample
   static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
   double before_{};                        ///< innovation of the sample before [rad]
   double seen_{};                          ///< innovation that may be a slip [rad]; else 0
@@ -201,7 +201,7 @@ class AngleLag {
     lag_ = std::max(0.0, lag_ + more);
     deviation_ = deviation;
   }
-  /// The readings restart, at an even speed [rad/s].
+  /// Restarts the readings at an even speed [rad/s].
   void begin(double speed) noexcept { behind_ = lag_ * speed; }
   /// After a step of dt [s] > 0 from one speed to another [rad/s], how far the reading is behind [rad].
   double behind(double from, double to, double dt) const noexcept {
@@ -209,7 +209,7 @@ class AngleLag {
     const double bent = lag_ * (to - from) / dt;
     return lag_ * (to - bent) + std::exp(-dt / lag_) * (behind_ - lag_ * (from - bent));
   }
-  /// The reading at the end of the last step was used.
+  /// Notes that the reading at the end of the last step was used.
   void go(double behind) noexcept { behind_ = behind; }
 
  private:

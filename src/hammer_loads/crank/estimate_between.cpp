@@ -20,8 +20,8 @@ void move(double apart, const CrankPosition& back, CrankPosition& position) noex
   }
 }
 
-/// Speed of a path on the side of the blow that counts, where the two paths pass it at different instants. A crank that
-/// turns back strikes nothing there.
+/// Speed of a path on the relevant side of the blow, where the two paths pass it at different instants. A crank that
+/// turns back makes no blow.
 double speedOn(const CrankAngle& angle, const ShaftState& way, double factor, bool forward) noexcept {
   const double speed = way.speed;
   if (way.position.angle.side == angle.side || std::abs(angle.offset) > 1.0 || !(speed > 0.0) || !forward) return speed;

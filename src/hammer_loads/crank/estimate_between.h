@@ -25,9 +25,9 @@ struct BetweenSamples {
   double most_speed{};  ///< from which on an estimate has diverged [rad/s]
 };
 
-/// The way forward from the earlier sample and the way back from the later one, each weighted near its own end. Between
-/// samples that no machine makes either may run away; it is left out then. dt after the earlier one, less than the step
-/// [s].
+/// Weighted mean of the prediction forward from the earlier sample and backward from the later one, each with more
+/// weight near its own end. A prediction that diverges, between impossible samples, is left out. dt after the earlier
+/// one, less than the step [s].
 CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;
 
 /// Crank by both paths, each with its own speed and torque, at the place between them. None where one has diverged.

@@ -19,12 +19,13 @@ struct RodMotion {
   double place{};                         ///< psi at which the tool is met [rad]: its contact's depth is part of it
 };
 
-/// A rigid mechanism knows the crank before the blow; from some 15 ms before it until half a turn later the rod's
-/// spring counts. The filter begins with what the crank's filter knows there. Stiffness, damping and restitution are
-/// learned from blow to blow: what the crank's readings show of the vibration is little in one blow and enough in ten.
+/// The crank before the blow is estimated with a rigid mechanism; the rod's spring matters from some 15 ms before it
+/// until half a turn later. The filter begins there with the belief of the crank's filter. Stiffness, damping and
+/// restitution are identified from blow to blow: the readings contain little information on the vibration of one blow,
+/// but enough on that of ten.
 ///
-/// An extended Kalman filter, linearised by differences: of each independent error (a column of the covariance's root)
-/// a machine that is off by it moves beside the estimate.
+/// Extended Kalman filter, linearised by differences: for each independent error (a column of the covariance's root) a
+/// perturbed machine is integrated beside the estimate.
 class RodFilter {
  public:
   enum Row : Eigen::Index {
@@ -48,11 +49,11 @@ class RodFilter {
   /// Refers to the mechanism, which must outlive it. A value that its RodSpring leaves at 0 begins at a first guess.
   RodFilter(const Mechanism& mechanism, Pins pins) noexcept;
 
-  /// From the crank's filter before a blow.
+  /// Begins with the belief of the crank's filter before a blow.
   void begin(const CrankFilter& crank, Gravity gravity) noexcept;
-  /// By dt [s] > 0; supply, walks: as of the crank's filter.
+  /// Predicts by dt [s] > 0; supply, walks: those of the crank's filter.
   void move(double dt, const CrankWalks& walks, Gravity gravity) noexcept;
-  /// Takes a sample of the crank. False: it contradicts the model.
+  /// Updates by a sample of the crank. Returns false if it contradicts the model.
   bool take(const WeighedSample& sample) noexcept;
   bool isRunning() const noexcept { return running_; }
   /// Nothing is learned.
@@ -61,7 +62,7 @@ class RodFilter {
   void learn() noexcept;
   /// Logarithm of the likelihood of the samples since the beginning, but for a constant.
   double fit() const noexcept { return fit_; }
-  /// The last blow's readings agreed: what it says of the rod is worth publishing.
+  /// Returns true if the readings of the last blow agreed, so that the rod's estimate may be published.
   bool isProven() const noexcept { return proven_; }
 
   const RodMotion& motion() const noexcept { return motion_; }

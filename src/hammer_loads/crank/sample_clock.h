@@ -5,7 +5,7 @@ namespace hammer_loads {
 
 /// Knowledge of the time before a sample that is one of equal intervals.
 struct SampleClock {
-  double interval{};        ///< [s]; 0: not known, or the intervals are not equal
+  double interval{};        ///< [s]; 0 if not known or not constant
   double suspected_loss{};  ///< time by which the sample's stamp is late, in whole intervals [s]; it may only be late
   bool may_have_lost{};     ///< the stamp allows for lost samples before it
 };

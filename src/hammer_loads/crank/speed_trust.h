@@ -12,23 +12,22 @@
 
 namespace hammer_loads {
 
-/// A drive filters its speeds. Such an error is no noise: where stamps jitter the angles give little information in a
-/// sample, and speeds that are late pull the estimate with them. A speed is therefore compared with the estimate that
-/// does not contain it:
+/// A drive filters its speeds, whose errors are then correlated. Where stamps jitter, a single angle gives little
+/// information, and late speeds would bias the estimate. A speed is therefore compared with the estimate that does not
+/// contain it:
 ///
 ///     measured = (1 + scale) y + noise,  lag y' = speed - y,
 ///
-/// and where the estimate has taken up speeds before, less what their lag and scale have made of it. Both by least
-/// squares (Gauss and Newton, a step a turn) over some turns, their priors among them. The residuals of a revolution
-/// have a variance and an autocorrelation rho from one sample to the next; n such errors carry as much information as n
-/// (1 - rho)/(1 + rho) independent ones. Speeds are weighted by the uncertainty of lag and scale (GaussianBelief,
-/// unknowns.h) until that is less than matters; where one shows they serve the start alone. (Not for ever: a model that
-/// errs is put right by them.)
+/// less the effect of lag and scale of earlier speeds on the estimate. Lag and scale are estimated by least squares
+/// (Gauss-Newton, one step per turn) over some turns, with their priors. The residuals of a revolution have a variance
+/// and an autocorrelation rho from one sample to the next; n such errors carry as much information as n (1 - rho)/(1 +
+/// rho) independent ones. Speeds are weighted by the uncertainty of lag and scale (GaussianBelief, unknowns.h) until it
+/// is negligible. If lag or scale is significant, speeds are used at the start only.
 class SpeedTrust {
  public:
   /// Restarts after a discontinuity.
   void restart() noexcept { begun_ = false; }
-  /// A speed that was measured, and what the estimate has without it.
+  /// A measured speed, and the estimate without it.
   struct Witness {
     double measured{};      ///< [rad/s]
     double speed{};         ///< [rad/s]
@@ -38,7 +37,7 @@ class SpeedTrust {
     double jump{};          ///< jump of the speed by a blow since the sample before [rad/s]
     double variance{1.0};   ///< variance of the difference of both speeds, > 0 [rad2/s2]
   };
-  /// By how much a lag of kLag would make the speed smaller now, over kLag [rad/s2]; dt, acceleration, jump: as below.
+  /// Reduction of the present speed by a lag of kLag, over kLag [rad/s2]; dt, acceleration, jump: as below.
   double lateBy(double dt, double acceleration, double jump) const noexcept;
   /// dt [s], > 0, after the sample before.
   void follow(double dt, const Witness& now) noexcept;

@@ -13,9 +13,9 @@
 
 namespace hammer_loads {
 
-/// A pump of constant flow feeds the motor through oil and hoses that give: where the crank leads a uniform rotation,
-/// it has taken more oil than came, and the torque falls by this much per lead. The rest of the torque is a random
-/// walk.
+/// A pump of constant flow feeds the motor through compliant oil and hoses: if the crank leads a uniform rotation, it
+/// has consumed more oil than was supplied, and the torque decreases in proportion to the lead. The rest of the torque
+/// is a random walk.
 struct SupplyLaw {
   double stiffness{};   ///< [N m/rad]
   double mean_speed{};  ///< mean speed of the uniform rotation [rad/s]; 0: not known, nothing leads
@@ -25,13 +25,13 @@ struct SupplyLaw {
   double lead(double turned, double dt) const noexcept { return mean_speed > 0.0 ? turned - mean_speed * dt : 0.0; }
 };
 
-/// The law, with the mean speed of the last turn and a stiffness that is learned; and what torque it has.
+/// Identification of the law: mean speed of the last turn, stiffness, and mean square of the torque.
 class LearnedSupply {
  public:
   /// unit: largest stiffness [N m/rad], > 0.
   explicit LearnedSupply(double unit) noexcept : usual_(kTurns, square(unit), 1.0) { law_.unit = unit; }
   const SupplyLaw& law() const noexcept { return law_; }
-  /// The time before is not known.
+  /// Notes that the time before is not known.
   void restart() noexcept {
     law_.mean_speed = 0.0;
     turn_time_ = std::numeric_limits<double>::quiet_NaN();
@@ -65,10 +65,11 @@ class LearnedSupply {
   double turn_time_{std::numeric_limits<double>::quiet_NaN()};  ///< since from_ [s]; NaN: not seen from there
 };
 
-/// The torque's random walk is given for rough supplies. Exact samples hardly ask for it. Stamps that jitter are
-/// averaged over many samples, and their noise passes for torque where the walk is too large: successive innovations
-/// then change their sign too often. Where it is too small they keep it. Each product of an innovation and the fading
-/// sum of those before it therefore moves the walk a little. The given one holds while stamps are exact.
+/// Adaptation of the torque's random walk, which is given for rough supplies and has little influence with exact
+/// samples. Jittering stamps must be averaged over many samples; if the walk is too large, their noise is taken for
+/// torque, and successive innovations change their sign too often. If it is too small, they keep their sign. Each
+/// product of an innovation and the fading sum of those before it therefore adjusts the walk slightly. The given walk
+/// is used while stamps are exact.
 class SupplyRoughness {
  public:
   /// innovation of variance `total`, of which the stamp's jitter has the part `jitter`.

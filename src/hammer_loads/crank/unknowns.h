@@ -1,5 +1,4 @@
-/// Constants of crank sensor and drive that are not known exactly: one row each, and a row is all that the filter
-/// needs.
+/// Table of the uncertain constants of crank sensor and drive, one row each, which contains all that the filter needs.
 #pragma once
 
 #include <array>
@@ -26,22 +25,22 @@ constexpr double roughSine(double x) noexcept {
 }
 constexpr double roughCosine(double x) noexcept { return roughSine(0.25 * kTwoPi - (x < 0.0 ? -x : x)); }
 
-/// The error p of one constant: what is known of it, and how it enters.
+/// The error p of one constant: its prior, and its effect on readings and torque.
 struct Unknown {
   enum class Use {
-    kSeen,        ///< shows in the innovations; not corrected, but named and counted in the deviations
-    kTakenUp,     ///< shows there as well, by itself; its owner corrects the constant
-    kConsidered,  ///< is as large as its prior says, whatever the innovations are
+    kSeen,        ///< estimated from the innovations; not corrected, but reported and included in the deviations
+    kTakenUp,     ///< estimated likewise, separately; its owner corrects the constant
+    kConsidered,  ///< considered with its prior, not estimated
   };
   const char* name;  ///< name of its warning; adjacent rows of one name are one amount, root of their squares
   const char* key;   ///< key in the parameter file
   Use use;
-  double prior;                                        ///< standard deviation where nothing else is said
+  double prior;                                        ///< default standard deviation
   double unmodelled;                                   ///< standard deviation that a clean machine shows: kSeen
   double (*of_angle)(const ReadingPlace&);             ///< d(read angle)/dp
   double (*of_speed)(const ReadingPlace&);             ///< d(read speed)/dp
   double (*of_torque)(const SupplyLaw&, double lead);  ///< d(the filter's torque after a step less before it)/dp
-  double notable;                                      ///< from there on a warning names it
+  double notable;                                      ///< threshold of the warning
   std::string (*warning)(double amount, double deviation);
   bool of_reading{};  ///< true if its key is a reading's: the amount there is that of the crank's angle over the
                       ///< sensor's gain
@@ -70,10 +69,10 @@ inline std::string ofEccentricity(double amount, double deviation) {
 
 }  // namespace unknown
 
-/// Table of the constants; those that are seen come first. Readings of the sensor's place: angle + b0 + b1 sin(angle) +
-/// b2 (cos(angle) - 1) [rad], so that b0 alone shows where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of
-/// these; from 0.3 and 0.5 deg on the wrench is some 0.9 % worse. The speed rows have the errors of a drive that
-/// filters: with a quarter of them the first second of a lag of 10 ms costs twice what it may.
+/// Table of the constants; those of kSeen are first. Readings of the sensor's place: angle + b0 + b1 sin(angle) + b2
+/// (cos(angle) - 1) [rad], so that b0 alone shows where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of
+/// these; from 0.3 and 0.5 deg on the wrench is some 0.9 % worse. The priors of the speed rows are those of a drive
+/// that filters; with a quarter of them the error in the first second of a lag of 10 ms would be twice the allowed one.
 inline constexpr std::array<Unknown, 7> kUnknowns{{
     {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
      unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero, true},

@@ -1,4 +1,4 @@
-/// A sample as the filter takes it: of the crank, with the noise that it has.
+/// A sample converted to the crank, with its noise.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct Innovation {
 
   double ratio() const noexcept { return value * value / total; }
   bool exceeds(double deviations) const noexcept { return hammer_loads::exceeds(value, total, deviations); }
-  /// But for a constant.
+  /// Logarithm of the likelihood, without a constant.
   double logLikelihood() const noexcept { return -0.5 * (ratio() + std::log(total)); }
 };
 
@@ -29,7 +29,7 @@ struct WeighedSample {
   double angle_variance{};      ///< variance of count and noise [rad2]
   double timing_variance{};     ///< variance of the stamp [s2]
   double speed_variance{};      ///< variance of the speed's noise [rad2/s2]
-  /// Variances of the constants that a speed is weighed by; none: they count as right.
+  /// Variances of the constants that reduce the weight of a speed; empty: none.
   std::optional<ConstantErrors::Row> of_speed{};
 
   /// Variance of the angle about that at the stamp [rad2].
@@ -51,7 +51,7 @@ inline Innovation WeighedSample::ofAngle(const CrankBelief& belief) const noexce
           ConstantErrors::ofAngle({offset, belief.encoderSpeed(), 0.0})};
 }
 
-/// An error of the stamp counts by the acceleration.
+/// An error of the stamp changes the speed by the acceleration.
 inline Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept {
   const ShaftState& state = belief.state;
   const ShaftLoad load = model(state.position.angle);

@@ -18,8 +18,8 @@ namespace hammer_loads {
 /// and the error of the zero (Gauss-Newton), starting from each of 48 places of the turn. The quarter of a turn after
 /// the blow is left out: an elastic connecting rod vibrates there, and restitution and blank firing act there.
 ///
-/// The result is independent of the filter and of measured speeds. It is right within some 2 deg: the supply is not
-/// linear, and lengths that are 0.3 mm off move it by up to 1.6 deg. The filter refines it.
+/// The result is independent of the filter and of measured speeds. It is accurate to some 2 deg, since the supply is
+/// not linear and errors of the lengths of 0.3 mm shift it by up to 1.6 deg. The filter refines it.
 class ZeroSearch {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
@@ -30,17 +30,17 @@ class ZeroSearch {
   void add(double angle, double step, const HullMotion& hull) noexcept;
   /// Sets whether the fit is computed where it is due; the times are gathered all the same.
   void setWanted(bool wanted) noexcept { wanted_ = wanted; }
-  /// The present turn does not count: its times are not those of a blow.
+  /// Discards the present turn, whose times are not those of a blow.
   void skipTurn() noexcept { skips_ = true; }
-  /// The encoder sits elsewhere from now on; turns are collected again.
+  /// Restarts the collection of turns after the encoder has moved.
   void restart() noexcept;
   struct Found {
     double error{};      ///< error of the zero in force: the crank's angle by it at the blow [rad], in (-pi, pi]
     double deviation{};  ///< standard deviation by the scatter of the times alone [rad]
   };
-  /// Nothing before three turns, and where no place of the blow explains the times, as at constant speed.
+  /// Empty before three turns, and if no place of the blow explains the times, as at constant speed.
   const std::optional<Found>& found() const noexcept { return found_; }
-  /// Mean way of the crank from sample to sample [rad].
+  /// Mean rotation of the crank between samples [rad].
   double stepAngle() const noexcept { return turn_time_ > 0.0 ? kTwoPi * step_ / turn_time_ : kTwoPi; }
   int evaluations() const noexcept { return evaluations_; }  ///< number of fits so far
 

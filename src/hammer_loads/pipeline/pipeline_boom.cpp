@@ -1,4 +1,4 @@
-// The crank's motion as it drives hull and boom, and what the boom shows of how the machine is used.
+// Effect of the crank's motion on hull and boom, and misuse by the boom's sensors.
 #include <cmath>
 
 #include "hammer_loads/pipeline/pipeline.h"
@@ -19,7 +19,7 @@ bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, 
 
 double Pipeline::stampNoise() const noexcept { return crank_.tracker().timingNoise(); }
 
-/// By the sensor's zero, as the filter sees it. speed: of the crank at the blow [rad/s].
+/// Lead of the crank's angle by the zero error that the filter sees. speed: of the crank at the blow [rad/s].
 CrankLead Pipeline::crankLead(double speed) const noexcept {
   if (!(speed > 0.0)) return {};
   const ConstantErrors& errors = crank_.tracker().constantErrors();
@@ -48,7 +48,7 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
   }
 }
 
-/// The boom does not rest because a sample gives nothing.
+/// Advances the boom over a sample without a result.
 void Pipeline::swingOn(const WrenchHistory& step) noexcept {
   if (boom_follows_) {
     boom_->swing(result_.stamp, step);
@@ -59,7 +59,8 @@ void Pipeline::swingOn(const WrenchHistory& step) noexcept {
   hullMovedAtBlow();
 }
 
-/// Vibration by the IMU where it knows, else by the boom's model; with what the operator does, which no IMU sees.
+/// Hull velocity at the blow: vibration by the IMU or else by the boom's model, plus the operator's motion, which the
+/// IMU does not show.
 void Pipeline::hullMovedAtBlow() noexcept {
   if (!turn_.blowWaits()) return;
   std::optional<TipVelocity> speed = hull_.speedAtBlow();
