@@ -2,7 +2,10 @@
 // 0.1 ms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/session_player.h"
@@ -59,6 +62,40 @@ TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
       EXPECT_NEAR(found.value, right, 2.0 * found.deviation) << slope;
       EXPECT_LT(life::equivalentLoad(life::rangesAndMeans(sparse), slope, 1.0, {}).value, 0.92 * right) << slope;
     }
+  }
+}
+
+/// What a blow leaves open, a vibration and unknown forces, is not in the deviation of a load in front of it.
+TEST(ElasticRanges, ALoadInFrontOfABlowIsMoreCertainThanThoseBehindIt) {
+  const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.25, 0.0}, 890));
+  for (const Level level : {Level::kLinkage, Level::kElastic}) {
+    SCOPED_TRACE(nameOf(level));
+    PipelineSettings settings = test::shippedDrawing().pipeline;
+    settings.level = level;
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    LifeFollower follower(player.pipeline, {});
+    std::vector<std::pair<StampNs, double>> samples;  // own deviations of Fx [N]
+    int turns = 0;
+    player.playTo(9.0, [&](double time, const SampleResult& result) {
+      follower.follow();
+      if (result.isPublished())
+        samples.emplace_back(result.stamp,
+                             life::LoadError::of(result.deviation.wrench.force_x, result.deviation.common.force_x).own);
+      for (std::size_t i = 0; i < result.turn_ends && time > 5.0; ++i) {
+        const life::TurnLoads* loads = follower.turnLoads(result.ends[i]);
+        const auto behind = std::lower_bound(samples.begin(), samples.end(), std::pair(result.ends[i].stamp, 0.0));
+        constexpr int kSamples = 5;
+        ASSERT_NE(loads, nullptr);
+        ASSERT_GT(std::distance(behind, samples.end()), kSamples);
+        // The extreme is between the last sample and the blow.
+        if (behind == samples.begin() || loads->minimum_instant[0] < std::prev(behind)->first) continue;
+        double largest = 0.0;
+        for (auto sample = behind; sample != behind + kSamples; ++sample) largest = std::max(largest, sample->second);
+        EXPECT_LT(loads->of_minimum[0].own, 0.5 * largest) << time;
+        ++turns;
+      }
+    });
+    EXPECT_GT(turns, 3);
   }
 }
 

@@ -115,6 +115,7 @@ void ElasticFollower::judge() noexcept {
   const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
   evidence_ += kEvidenceGain * (gain - evidence_);
   best_ = evidence_ > (best_ == nullptr ? odds::kLikely : 0.0) ? &rod : nullptr;
+  if (rod.isProven()) restitution_ = rod.motion().restitution;
 }
 
 CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {

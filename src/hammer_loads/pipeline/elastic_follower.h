@@ -31,6 +31,10 @@ class ElasticFollower {
   /// The last blow was none of two bodies on a tool near the dead centre, however the rod may be: nothing explains what
   /// it did to the crank.
   bool isLost() const noexcept { return lost_; }
+  /// Restitution by the last blow that a spring explained [-]; none where a rigid rod explains the recent blows better.
+  std::optional<double> restitution() const noexcept {
+    return best_ != nullptr ? std::make_optional(restitution_) : std::nullopt;
+  }
   bool isWanted() const noexcept { return wanted_; }  ///< level elastic, and a spring may be there
   /// The spring is followed around each blow; elsewhere the machine is that of level linkage.
   bool isUsed() const noexcept { return best_ != nullptr && best_->isProven(); }
@@ -131,6 +135,7 @@ class ElasticFollower {
   double evidence_{};          ///< mean over some blows of the rod's fit less that of the rigid mechanism
   double rigid_fit_{};         ///< fit of the rigid mechanism at this blow
   const RodFilter* best_{};    ///< null: rigid
+  double restitution_{};       ///< restitution()
   std::int64_t blow_{};        ///< CrankPosition::blow
   double late_{};              ///< standard deviation of what all stamps are off alike [s]
   RunningMean<> squares_;      ///< mean square of x'' since the blow [rad2/s4]

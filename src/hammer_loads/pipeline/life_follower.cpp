@@ -116,7 +116,7 @@ void LifeFollower::countBetween(StampNs stamp) noexcept {
 }
 
 /// Load between samples with an elastic rod: the extremes of its path, if the path reaches the second sample within the
-/// deviations published at both.
+/// deviations published at both. A load just before a blow has the deviation of the sample there.
 void LifeFollower::followRing(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const ElasticFollower& rod = pipeline_->elastic();
@@ -125,6 +125,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
   std::array<double, kHullChannels> expected;
   wrenchValues(rod.onItsWay(step.length(), drive, result.hull.motion).wrench, expected.data());
   const auto count = static_cast<int>(std::ceil(step.length() / kRingStep));
+  const bool strikes = rod.filter().blowOfStep().has_value();
   const CrankStep::Passage* passage = step.begin();
   const auto endTurnsUntil = [&](double time) {
     for (; passage != step.end() && passage->time <= time; ++passage)
@@ -134,13 +135,16 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
     const double time = step.length() * i / count;
     endTurnsUntil(time);
     if (rod.isBesideBlowAt(time)) continue;
-    wrenchValues(rod.onItsWay(time, drive, result.hull.motion).wrench, between_.data());
+    const ElasticFollower::Instant there = rod.onItsWay(time, drive, result.hull.motion);
+    wrenchValues(there.wrench, between_.data());
+    const bool in_front = strikes && there.bodies.angle.side == Side::kBeforeBlow;
     for (std::size_t k = 0; k < kHullChannels; ++k) {
       const auto [least, greatest] = std::minmax(values_[k], end.value[k]);
       if (!(std::abs(expected[k] - end.value[k]) <= ownOfBoth(k, end)))
         between_[k] = std::clamp(between_[k], least, greatest);
-      deviations_there_[k] = std::max(deviations_[k], end.deviation[k]);
-      common_there_[k] = std::max(common_[k], end.common[k]);
+      const double last = strikes ? 0.0 : deviations_[k], last_common = strikes ? 0.0 : common_[k];
+      deviations_there_[k] = in_front ? deviations_[k] : std::max(last, end.deviation[k]);
+      common_there_[k] = in_front ? common_[k] : std::max(last_common, end.common[k]);
     }
     countBetween(step.stampAt(time));
   }

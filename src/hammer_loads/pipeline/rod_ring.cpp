@@ -21,7 +21,8 @@ constexpr double kRestitutionDoubt = 0.05;  // error by an elastic rod: 0.03 to 
 // Prior: kRestitutionDoubt
 constexpr double kMeanRestitution = 0.5,
                  kAnyRestitution = 0.29;  // mean and deviation of a restitution uniform from 0 to 1
-// Prior: kMeanRestitution, kAnyRestitution
+constexpr double kOtherBlow = 0.1;        // of a restitution from blow to blow
+// Prior: kMeanRestitution, kAnyRestitution, kOtherBlow
 constexpr double kPart = 1e-2;       // [rad], as kLongest
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
 // Numerical: kLongest, kPart, kBallistic
@@ -94,7 +95,8 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   const double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0);
   const double rocker = -restitution * at.u_before * speed_before;  // rocker's speed as it leaves the tool
   const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
-  const double doubt = std::hypot(measured, doubtOf(restitution)) * at.u_before * speed_before;
+  const double by_rod = lost_ && explained_ ? std::hypot(kOtherBlow, restitution - *explained_) : doubtOf(restitution);
+  const double doubt = std::hypot(measured, by_rod) * at.u_before * speed_before;
   const double missing = rocker - at.u_after * blow.mean * speed_before;
   struck_ = std::hypot(missing, doubt);
   begin(std::copysign(struck_, missing));
@@ -200,11 +202,12 @@ void RodRing::follow(const CrankStep& step, const CrankFilter& tracker) noexcept
   drive(step, crank);
 }
 
-void RodRing::take(const CrankFilter& filter, bool lost) noexcept {
+void RodRing::take(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept {
   const RodEvidence& evidence = filter.rodEvidence();
   share_ = std::sqrt(evidence.share(filter.readingDeviation()));
   let_go_ = std::sqrt(evidence.letGoShare(filter.readingDeviation()));
   lost_ = lost || evidence.isLost();
+  explained_ = restitution;
 }
 
 double RodRing::doubtOf(double restitution) const noexcept {

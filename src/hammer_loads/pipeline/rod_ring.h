@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/linkage/rod_spring.h"
@@ -36,8 +37,10 @@ class RodRing {
   void restart(const CrankFilter& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankFilter& tracker) noexcept;
-  /// The filter that has followed the readings: they may show that no rod vibrates. lost: ElasticFollower::isLost().
-  void take(const CrankFilter& filter, bool lost) noexcept;
+  /// The filter has followed the readings, which may show that no rod vibrates. lost, restitution: isLost() and
+  /// restitution() of ElasticFollower. A blow that nothing explains has any restitution, but a vibration as large as by
+  /// that of the blows that a spring explained.
+  void take(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept;
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].
   Eigen::Matrix3d covariance(const LinkMotion& links, double crank) const noexcept;
@@ -76,9 +79,10 @@ class RodRing {
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
   double acceleration_{}, struck_{}, share_{1.0}, let_go_{1.0};
-  double driven_{};   ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
-  double lacking_{};  ///< at the last blow, of the crank's speed [rad/s]
-  bool lost_{};       ///< nothing explains what blows did to the crank
+  double driven_{};                  ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
+  double lacking_{};                 ///< at the last blow, of the crank's speed [rad/s]
+  bool lost_{};                      ///< nothing explains what blows did to the crank
+  std::optional<double> explained_;  ///< restitution of the blows that a spring explains [-]
 };
 
 /// Wrench on the hull of a rocker's angular acceleration [rad/s2]; for a speed [rad/s] its momentum [N s, N m s].

@@ -31,8 +31,10 @@ UnknownForce::UnknownForce(const Mechanism& mechanism) noexcept : mechanism_(&me
   stiffness_ = prior.rod.stiffness;
 }
 
-void UnknownForce::follow(double step, bool struck) noexcept {
-  if (struck) last_ = now_, now_ = {};
+void UnknownForce::follow(double step, bool passed, bool waits) noexcept {
+  passed_ = passed_ || passed;
+  const bool struck = passed_ && !waits;
+  if (struck) last_ = now_, now_ = {}, passed_ = false;
   since_ = struck ? 0.0 : since_ + step;
   held_ *= std::exp(-step / kHeld);
 }

@@ -31,8 +31,9 @@ class UnknownForce {
   /// Zero for a rod that is rigid and tight by the hammer file. Refers to the mechanism, which must outlive it.
   explicit UnknownForce(const Mechanism& mechanism) noexcept;
 
-  /// Over a step [s]; struck: it passed a blow.
-  void follow(double step, bool struck) noexcept;
+  /// Over a step [s]; passed: the crank passed a blow in it. waits: the spring that is followed has not met the tool
+  /// yet, and the blow begins when it has.
+  void follow(double step, bool passed, bool waits = false) noexcept;
   /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;
   /// Errors of the load: squares by source, and the covariance of all sources, whose diagonal is their sum.
@@ -68,6 +69,7 @@ class UnknownForce {
   double stiffness_{};                                  ///< k [N/m]
   Greatest now_, last_;                                 ///< since the last blow; in the revolution before it
   double held_{}, since_{1.0};                          ///< N, held [N]; s [s]
+  bool passed_{};                                       ///< a blow that has not begun
 };
 
 }  // namespace hammer_loads

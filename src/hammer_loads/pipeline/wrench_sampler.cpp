@@ -42,7 +42,7 @@ void WrenchSampler::sample(const LinksBeside& links, const SampleResult& result,
                            std::vector<WrenchOutput>& outputs) noexcept {
   added_up_to_ = 0.0;
   drive_ = driveReaction(*model_, tracker_->driveInertia());
-  followHull(result.hull.motion);
+  followStep(result);
   if (!begun_ && !begin(result)) return;
   StampNs stamp{};
   while (isDue(result.stamp, stamp)) {
@@ -93,10 +93,12 @@ void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
   added_up_to_ = time;
 }
 
-/// Follows the hull over the step that the sample ends.
-void WrenchSampler::followHull(const HullMotion& hull) noexcept {
+/// Follows the hull, and what the deviations have beside the crank's, over the step that the sample ends.
+void WrenchSampler::followStep(const SampleResult& result) noexcept {
+  beside_before_ = beside_;
+  beside_ = result.beside;
   hull_.from = hull_.to;
-  hull_.to = hull;
+  hull_.to = result.hull.motion;
   hull_.length = step_->length();
   hull_.blow.reset();
   for (const CrankStep::Passage& passage : *step_)
@@ -155,7 +157,9 @@ HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUn
   LoadColumns unused;
   HullDeviation of = hullDeviation(*hammer_, *model_, step_->driveInertia(), crank, there, hull, doubt, unused);
   addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of);
-  addCovariance(result.beside, of);
+  // A blow changes what rod and unknown forces leave open: in front of it the sample before counts.
+  const bool before_blow = hull_.blow && crank.position.angle.side == Side::kBeforeBlow;
+  addCovariance(before_blow ? beside_before_ : beside_, of);
   return of;
 }
 

@@ -42,7 +42,7 @@ class WrenchSampler {
   LoadImpulse motionTo(double time) noexcept;
   void addUpTo(double time, const SampleResult& result) noexcept;
   void setInstant(double time, const HullMotion& hull, WrenchOutput& output) const noexcept;
-  void followHull(const HullMotion& hull) noexcept;
+  void followStep(const SampleResult& result) noexcept;
   void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const SampleResult& result,
                  WrenchOutput& output) noexcept;
 
@@ -60,8 +60,10 @@ class WrenchSampler {
   StampNs origin_{};       ///< origin of the grid
   std::uint64_t index_{};  ///< index of the next output on the grid
   StampNs last_output_{};
-  double added_up_to_{};                             ///< part of the step whose impulse is in impulse_ [s]
-  HullPath hull_;                                    ///< over the step to the sample
+  double added_up_to_{};  ///< part of the step whose impulse is in impulse_ [s]
+  HullPath hull_;         ///< over the step to the sample
+  /// SampleResult::beside at the sample and at the one before.
+  Eigen::Matrix3d beside_{Eigen::Matrix3d::Zero()}, beside_before_{Eigen::Matrix3d::Zero()};
   DriveReaction drive_;                              ///< at the sample
   LoadImpulse impulse_;                              ///< since the last output
   LoadColumns columns_{LoadColumns::Zero()};         ///< at the last sample
