@@ -14,7 +14,7 @@ namespace {
 constexpr int kFirstTurns = 4;   // the drive inertia is learned first
 constexpr int kTurnsToKnow = 6;  // nothing is concluded before
 constexpr double kUnmodelledCounts =
-    0.5;  // what a clean machine shows, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
+    0.5;  // apparent error of a clean machine by an encoder's coarseness: 0.2 to 0.4 deg with 1024 counts
 constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well, before a warning
 constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a supply that follows the crank's
                                                // speed looks more like b, at 50 Hz twice as much, and
@@ -102,9 +102,9 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
     if (excess > 0.0) share = std::max(share, excess / square(estimate_[i]));
   }
   moment_ = 1.0 / square(unmodelled) * growth * covariance + certain * certain.transpose();
-  // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
+  // A certain error counts in full; an uncertain one adds little.
   moment_.diagonal() += share * share * doubt;
-  // A crank that turns at constant speed shows nothing of its zero: it counts as given.
+  // A crank at constant speed gives no information on its zero, for which the given deviation is used.
   if (growth * covariance(kZero, kZero) > square(kNotSeen * prior_[kZero]))
     moment_(kZero, kZero) = square(std::min(kGiven, zero_given_));
   moment_(kZero, kZero) += stepped_ + square(zeroNotLinear());

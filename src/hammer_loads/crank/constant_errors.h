@@ -1,4 +1,4 @@
-/// Constants that are not known exactly: what they do to the filter, and what its innovations say of the sensor's.
+/// Uncertain constants: their effect on the filter, and the estimate of the sensor's constants from the innovations.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,14 +11,14 @@
 
 namespace hammer_loads {
 
-/// Errors b of the constants of kUnknowns, in their order, and behind them those of the hammer, each in units of its
-/// standard deviation (MachineColumn): these are considered, not looked for. The filter knows beside its state what
-/// each of them does to it. An innovation is then its derivative by b times b, and noise: weighted least squares over
-/// some minutes.
+/// Errors b of the constants of kUnknowns, in their order, followed by those of the hammer, each in units of its
+/// standard deviation (MachineColumn), which are considered but not estimated. The filter carries the derivative of its
+/// state by each of them. An innovation is its derivative by b times b plus noise: weighted least squares over some
+/// minutes.
 ///
-/// What the law leaves of a supply's torque looks a little like the sensor's place: with the shipped machine by 0.1 to
-/// 0.2 deg, with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that. The
-/// supply's error is therefore estimated as if the sensor's place were right: together they can hardly be separated.
+/// The residual torque of a supply has an effect similar to that of the sensor's mounting: 0.1 to 0.2 deg with the
+/// shipped machine, 0.4 deg with jitter or 1024 counts, some three standard deviations. deviation() contains it. The
+/// supply's error is therefore estimated as if the sensor's mounting were right, since the two can hardly be separated.
 class ConstantErrors {
  public:
   static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();
@@ -60,23 +60,23 @@ class ConstantErrors {
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 
-  /// Standard deviation of a constant that is considered, known better now.
+  /// Sets the improved standard deviation of a considered constant.
   void consider(int constant, double deviation) noexcept;
   /// Present standard deviation of a considered constant.
   double considered(int constant) const noexcept { return prior_[constant]; }
-  /// The encoder's zero has been moved by what is known with this variance [rad2].
+  /// Notes that the encoder's zero was moved by an amount with this variance [rad2].
   void stepZero(double variance) noexcept;
-  /// The supply's stiffness has been changed by this much [SupplyLaw::unit].
+  /// Notes a change of the supply's stiffness [SupplyLaw::unit].
   void takeSupply(double change) noexcept;
   /// 0 before some turns. deviation: of the sensor's place alone.
   const Vector& estimate() const noexcept { return estimate_; }
   const Vector& deviation() const noexcept { return deviation_; }
-  /// Error of the sensor's zero as the turns so far show it, as if the hammer were right [rad]; 0 where a clean machine
-  /// may show as much. It is there from the first turn on, before estimate().
+  /// Error of the sensor's zero by the turns so far, for a correct hammer [rad]; 0 if it does not exceed that of a
+  /// clean machine. It is available from the first turn on, before estimate().
   double zeroSeen() const noexcept { return zero_is_seen_ ? zero_looks_ : 0.0; }
-  /// zeroSeen() whether or not a clean machine may show as much: an elastic rod shows it.
+  /// zeroSeen() without the threshold of a clean machine: an elastic rod has such an error.
   double zeroLooks() const noexcept { return zero_looks_; }
-  /// Enough turns have been seen for estimate() and deviation().
+  /// Returns true after enough turns for estimate() and deviation().
   bool knows() const noexcept;
   int turns() const noexcept { return turns_; }
   /// The turns have shown the zero, or it was given well enough. Until then moment() contains it as it was given: in
@@ -88,10 +88,10 @@ class ConstantErrors {
   /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
   /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().
   double zeroNotLinear() const noexcept { return kNotLinear * estimate_[kZero] * estimate_[kZero]; }
-  /// Standard deviation of the dead centre's place in the encoder's readings [rad]. It contains what a clean machine
-  /// may show of a zero that is right.
+  /// Standard deviation of the dead centre's place in the encoder's readings [rad]. It includes the apparent error of a
+  /// correct zero on a clean machine.
   double zeroDeviation() const noexcept;
-  /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
+  /// Second moment of b by the innovations: contribution of an uncorrected b to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }
   /// L with L L^T = moment(): its columns are errors that are independent of each other.
   const Matrix& root() const noexcept { return root_; }

@@ -61,8 +61,8 @@ void CrankFilter::start(const CrankSample& reading) noexcept {
   anchor(sample);
 }
 
-/// Takes angle and speed from the sample alone; the torque is in doubt, the inertia stays as identified. The whole
-/// turns are those nearest to now_.
+/// Restarts angle and speed by the sample alone; the torque's variance is reset, the identified inertia is kept. The
+/// number of turns is the one nearest to now_.
 void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   ShaftState& s = now_.state;
   const double inertia_variance = now_.covariance(Belief::kInertia, Belief::kInertia);
@@ -123,17 +123,16 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
   now_.correct(Belief::kAngle, innovation.value, innovation.variance, innovation.by_error);
 }
 
-/// (5) Following it would throw speed and torque far off: 0.3 rad at 1 kHz gave a thousand times the peak force. A
-/// crank at constant speed, which the model takes for a heavy one, stays below a kick of 0.35 from 100 Hz on; a slow
-/// one may be stopped dead.
+/// (5) Returns true if following the reading would change speed and torque too much: 0.3 rad at 1 kHz gave a thousand
+/// times the peak force. A crank at constant speed, which the model takes for a heavy one, remains below a kick of 0.35
+/// from 100 Hz on; a slow one may stop at once.
 bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const noexcept {
   const double most = std::max(kKick * std::abs(now_.state.speed), kLearnSpeed) * dt;
   return std::abs(innovation.value) > EncoderSlip::kMost ||
          (std::abs(innovation.value) > most && innovation.exceeds(gate::kImpossible));
 }
 
-/// Restarts at this sample, before which nothing is known any more. A speed that was kept from there and is
-/// contradicted again is wrong itself.
+/// Restarts at this sample. A speed that was kept from before a restart and is contradicted again is wrong itself.
 Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
   restart_load_ += 1.0;
   speeds_wait_ = speeds_wait_ || (has_speed_ && sample.isUnsureOfTime(now_.state.speed));
@@ -143,7 +142,7 @@ Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
   return Tracking::kRestarted;
 }
 
-/// The sample is as if it had not come, but that the next one may confirm it and that a rod may have made it.
+/// Ignores the sample, but notes it for confirmation by the next one and as evidence of a rod.
 Tracking CrankFilter::ignore(const CrankBelief& last, const Innovation& innovation) noexcept {
   rod_evidence_.add(now_.state.position.angle, innovation.ratio());
   now_ = last;
@@ -151,7 +150,8 @@ Tracking CrankFilter::ignore(const CrankBelief& last, const Innovation& innovati
   return Tracking::kOutlier;
 }
 
-/// (5) One such sample is ignored, a second one believed. Nothing: it is taken as any other, with the angle unknown.
+/// (5) Handles a contradiction: one such sample is ignored, a second one restarts. Empty if the sample is used as any
+/// other, with the angle unknown.
 std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                                 const WeighedSample& sample) noexcept {
   const double most = kKick * std::abs(now_.state.speed) * dt + kKick * std::abs(outlier_);
@@ -213,8 +213,8 @@ void CrankFilter::takeLoad() noexcept {
   hull_moved_ = false;
 }
 
-/// Inflates the speed's variance where a rod's vibration would bias the filter, which has no rod; it smooths smaller
-/// ones. A reading that it then follows is as good a sign of a rod as one that contradicts it.
+/// Inflates the speed's variance where a rod's vibration would bias the filter, which has no rod; smaller vibrations
+/// are smoothed. A reading that is then followed is the same evidence of a rod as one that contradicts the prediction.
 void CrankFilter::considerRod(double angle, double speed) noexcept {
   double& of_speed = now_.covariance(Belief::kSpeed, Belief::kSpeed);
   if (HAMMER_LOADS_ABLATE(rod_considered) || !exceeds(speed, of_speed, gate::kImpossible)) return;
@@ -224,7 +224,7 @@ void CrankFilter::considerRod(double angle, double speed) noexcept {
   rod_ = {angle, speed};
 }
 
-/// An innovation as if no rod had been considered: what a rigid mechanism expects of the reading.
+/// Innovation for a rigid mechanism, without the variance by a rod.
 Innovation CrankFilter::withoutRod(double dt, Innovation innovation) const noexcept {
   innovation.total = std::max(innovation.variance, innovation.total - square(rod_.angle) - square(dt * rod_.speed));
   return innovation;
@@ -244,7 +244,7 @@ std::optional<CrankWays> CrankFilter::waysBetween(double dt) const noexcept {
   return hammer_loads::waysBetween(lastStep(), std::min(dt, step_));
 }
 
-/// The way forward from the sample before may strike earlier than the way between both, with a blow not yet known.
+/// The forward prediction may reach the blow earlier than the path between both samples, with a factor not known yet.
 CrankUncertainty CrankFilter::uncertaintyBetween(double dt, double torque_part) const noexcept {
   if (dt >= step_) return uncertainty(torque_part);
   CrankBelief belief = before();

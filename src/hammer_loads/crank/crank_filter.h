@@ -1,4 +1,4 @@
-/// Kalman filter on the mechanism: from noisy crank samples to angle, speed, acceleration, torque and drive inertia.
+/// Kalman filter on the mechanism: estimates angle, speed, acceleration, torque and drive inertia from crank samples.
 #pragma once
 
 #include <array>
@@ -50,45 +50,46 @@ struct CrankFilterSettings {
 /// the stamps within some hundred samples, and where they jitter the torque's walk; what the blows do within ten of
 /// them; how the torque follows the crank within a turn, within some ten turns.
 ///
-/// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
-/// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
-/// row that agrees with it is believed, and restarts the filter. Near the blow it is none: the tool may be met some
+/// An angle that contradicts the prediction inflates the filter's covariance, so that a supply that differs from a slow
+/// random walk is followed with less smoothing instead of being refused. An outlier is ignored once; a second one in a
+/// row that agrees with it restarts the filter. Near the blow there are no outliers, since the tool may be met some
 /// degrees early or take most of the speed.
 class CrankFilter {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
   CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings);
 
-  /// Weight and motion of the hull at the coming sample. The step up to it is predicted with the mean of this and the
+  /// Sets weight and motion of the hull at the next sample. The step to it is predicted with the mean of this and the
   /// last sample's.
   void setHullMotion(const HullMotion& hull) noexcept;
-  /// Sets the clock of the coming sample: a reading that is whole intervals ahead has lost samples before it.
+  /// Sets the clock of the next sample: if a reading is ahead by whole intervals, samples were lost before it.
   void setClock(const SampleClock& clock) noexcept { clock_ = clock; }
-  /// Standard deviation of a shift that all stamps have in common [s]: no reading shows it.
+  /// Sets the standard deviation of a common shift of all stamps [s], which the readings do not show.
   void considerLatency(double deviation) noexcept { stamps_off_ = deviation; }
-  /// An elastic connecting rod has the crank beside the estimate by that [rad], [rad/s]: as much of it is not known.
+  /// Sets the displacement of the crank from the estimate by an elastic connecting rod [rad], [rad/s], which is added
+  /// to the uncertainty.
   void considerRod(double angle, double speed) noexcept;
 
-  /// Starts at a sample; what was learned about the machine is kept.
+  /// Starts at a sample; the identified constants of the machine are kept.
   void start(const CrankSample& sample) noexcept;
-  /// Takes the next sample, dt > 0 [s] after the last accepted one. No allocation.
+  /// Updates by the next sample, dt > 0 [s] after the last accepted one. No allocation.
   Tracking update(double dt, const CrankSample& sample) noexcept;
   /// Estimate at the last accepted sample.
   CrankEstimate estimate() const noexcept { return estimateOf(load(), now_.state); }
   /// Estimate dt [s] after the last but one accepted sample, 0 <= dt <= step between the last two. Continuous in dt
   /// but for the acceleration at a blow; equals estimate() at the end. Only after kContinued.
   CrankEstimate between(double dt) const noexcept;
-  /// Estimates at between(dt) by either sample alone: the estimate is neither of them where they contradict each other.
-  /// Nothing where one of the ways runs away.
+  /// Estimates at between(dt) by either sample alone; where they contradict each other, the estimate differs from both.
+  /// Empty if one of the predictions diverges.
   std::optional<CrankWays> waysBetween(double dt) const noexcept;
   /// Uncertainty of between(dt). torque_part: part of the torque's deviation that counts, see
   /// PipelineSettings::torque_std_part.
   CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept;
   /// Uncertainty at the last accepted sample.
   CrankUncertainty uncertainty(double torque_part) const noexcept { return uncertaintyOf(now_, load(), torque_part); }
-  /// False while the speed is still unknown (first sample without one).
+  /// Returns false while the speed is not known (first sample without one).
   bool hasSpeed() const noexcept { return has_speed_; }
-  /// False where no drive gives the torque that the estimate needs: degrees instead of radians, for instance.
+  /// Returns false if the estimate requires an impossible torque, as with degrees instead of radians.
   bool isPlausible() const noexcept;
   /// Factor of the last blow on the crank's speed, by all samples since.
   BlowFactor blowFactor() const noexcept;
@@ -96,23 +97,23 @@ class CrankFilter {
   bool isDoubtful() const noexcept { return rival_.isDoubtful(); }
   /// Probability of the other branch: no blow where the estimate has one, or a blow where it has none.
   double otherBranch() const noexcept { return rival_.probability(); }
-  /// The last reading itself shows on which side of the blow it was taken: an encoder's edge, an exact stamp.
+  /// Returns true if the last reading itself determines the side of the blow, by an encoder's edge and an exact stamp.
   bool readingShowsSide() const noexcept { return read_side_.has_value(); }
   /// One count of the angle sensor [rad], as far as known.
   double angleResolution() const noexcept { return encoder_.resolution(); }
-  /// Jc: inertia that turns with the crank beside the links, as far as known [kg m2].
-  /// 0 of a crank that is held at constant speed: what holds it takes the drive's reaction, which is not known.
+  /// Jc: estimated inertia that turns with the crank, without the links [kg m2].
+  /// Inertia for the drive's reaction; 0 for a crank that is held at constant speed, whose holding torque is not known.
   double driveInertia() const noexcept {
     return now_.state.drive_inertia < kHeld * first_guess_ ? now_.state.drive_inertia : 0.0;
   }
   /// Time of the last step beyond its stamps, by lost samples [s]; < 0: one that was counted there was lost later.
   double lostTime() const noexcept { return lost_time_; }
-  /// The last reading excludes that the step took an interval more or less.
+  /// Returns true if the last reading excludes that the step was longer or shorter by an interval.
   bool countsIntervals() const noexcept { return counts_intervals_; }
-  /// Steps of the encoder on its shaft that were found since the beginning.
+  /// Number of slips of the encoder on its shaft since the beginning.
   int slips() const noexcept { return slip_.count(); }
-  /// From the next sample on the encoder's zero is larger by that angle of the crank [rad]: the estimate restarts
-  /// there.
+  /// Increases the encoder's zero by this angle of the crank [rad] from the next sample on, where the estimate
+  /// restarts.
   void moveZero(double angle) noexcept { zero_moves_ += angle; }
   /// See ConstantErrors::doubtZero().
   void doubtZero(bool doubted) noexcept { errors_.doubtZero(doubted); }
@@ -147,8 +148,8 @@ class CrankFilter {
   /// Check of measured speeds, which decides whether they are used.
   const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
   double timingNoise() const noexcept { return timing_.deviation(); }  ///< identified noise of stamps [s]
-  /// Enough samples have come, and they fit the model: until then a wrong unit may not show. A crank in degrees, which
-  /// is followed as well as may be, gives a consistency of 8 to 40.
+  /// Returns true after enough samples that agree with the model; until then a wrong unit may be undetected. A crank in
+  /// degrees has a consistency of 8 to 40.
   bool isProven() const noexcept { return consistency() < mismatch::kContradicts; }
   /// Mean of innovation^2 over its variance of the last some 500 samples: near 1 where readings and model agree; NaN
   /// before 200.
@@ -167,7 +168,7 @@ class CrankFilter {
   /// Returns true if it restarted so often that the model does not fit: contradictions are then followed with a low
   /// weight instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
-  /// Innovations stay far larger than the model explains, whatever the drive inertia.
+  /// Returns true if the innovations remain far larger than expected for any drive inertia.
   bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
 
  private:
@@ -178,7 +179,7 @@ class CrankFilter {
   static constexpr double kSteps = 20.0;  ///< in their mean
   // Numerical: kSteps
 
-  /// To a sample, and what that shows.
+  /// Prediction to a sample, and its innovation.
   struct SampleStep {
     const CrankBelief& last;  ///< at the one before
     WeighedSample sample;
@@ -282,7 +283,7 @@ class CrankFilter {
   SampleClock clock_;                 ///< clock of the coming sample
   bool counts_intervals_{};           ///< see countsIntervals()
   double lost_time_{};                ///< time of the last step beyond that by its stamps [s]
-  double stamps_off_{};               ///< standard deviation of what all stamps are off alike [s]
+  double stamps_off_{};               ///< standard deviation of the common shift of all stamps [s]
   SpeedTrust speed_trust_;
   AngleLag angle_lag_;
   double zero_moves_{};                         ///< moveZero() since the last sample [rad]
@@ -290,10 +291,10 @@ class CrankFilter {
   std::optional<Side> read_side_;               ///< side of the blow that the last reading shows
   double outlier_{};                            ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
-  double surprises_{};     ///< such innovations of late
-  double restart_load_{};  ///< beginnings since long, forgotten within some 2 s
-  double doubt_load_{};    ///< times that the inertia was doubted, forgotten within some 30 s
-  bool speeds_wait_{};     ///< to be judged, and are not taken up
+  double surprises_{};     ///< number of such innovations, decaying
+  double restart_load_{};  ///< number of restarts, decaying within 2 s
+  double doubt_load_{};    ///< number of times that the inertia was doubted, decaying within 30 s
+  bool speeds_wait_{};     ///< speeds are judged, but not used yet
   bool has_speed_{};
 };
 

@@ -1,4 +1,4 @@
-// Filter at the blow: a tool that is met, the side of a sample, a revolution without contact.
+// Filter at the blow: early contact with the tool, side of a sample, revolutions without contact.
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +24,8 @@ bool CrankFilter::isAtTool(double dt) const noexcept {
   return isNearTool(now_.state, dt) && now_.state.speed > kCreeping && !mirrored_;
 }
 
-/// (4) A crank that is suddenly slower near the dead centre: the tool. True where the belief has taken it up.
+/// (4) Detects early contact with the tool by a crank that is suddenly slower near the dead centre. Returns true if the
+/// belief has included it.
 bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
   if (HAMMER_LOADS_ABLATE(tool_met) || !before || !(angle.value < 0.0) || !isAtTool(dt)) return false;
@@ -41,7 +42,7 @@ bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSam
   return true;
 }
 
-/// (4) A crank that is slower or faster just after the blow than was expected: a blow unlike those before.
+/// (4) Detects an unusual blow by a crank that is slower or faster than expected just after it.
 bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
   const bool after = now_.state.position.angle.side == Side::kAfterBlow && sample.angle > 0.0;
   if (HAMMER_LOADS_ABLATE(other_blow) || !after || !isAtTool(dt)) return false;
@@ -56,7 +57,7 @@ bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const Weigh
   return by_angle && now_.doubtBlow(Belief::kAngle, angle.value, angle.total, dt);
 }
 
-/// (7) There was no blow yet within this step, though one was predicted.
+/// (7) Undoes a predicted blow that has not occurred within this step.
 void CrankFilter::takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept {
   rival_.drop();
   now_ = last;
@@ -95,8 +96,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
   }
 }
 
-/// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
-/// exact.
+/// Side of the blow by the count, which is certain if an edge of the count is at the blow and the stamp is exact.
 std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
   if (HAMMER_LOADS_ABLATE(encoder_edge) || encoder_.isFiner() || settings_.angle_noise > 0.0 || angle_lag_.isThere())
     return std::nullopt;
@@ -128,14 +128,14 @@ void CrankFilter::respectCount(const CrankBelief& last, double dt, bool struck, 
   now_.tool_met = true;  // its factor is in the speed already
 }
 
-/// A belief is about to pass the blow with contact; the second hypothesis goes on without. A crank that rests there
-/// passes nothing.
+/// Begins the second hypothesis, without contact, before the belief passes the blow with contact. A crank that rests
+/// there does not pass it.
 void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
   if (!HAMMER_LOADS_ABLATE(contact_rival) && !mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed)
     rival_.begin(belief);
 }
 
-/// (9) What the estimate cannot explain, the second hypothesis can.
+/// (9) Switches to the second hypothesis if it explains a sample that the estimate does not.
 bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept {
   if (!rival_.isOpen()) return false;
   CrankBelief rival = rival_.belief();
@@ -143,8 +143,9 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
   return !sample.ofAngle(rival).exceeds(gate::kRare);
 }
 
-/// (9) Half a turn on a wrong branch, and no sample contradicts it: the torque makes up for what the blow did to the
-/// crank, or did not. Where the supply never has such a torque, the other branch is looked at, with one that it has.
+/// (9) Examines the other branch half a turn after a blow. On a wrong branch no sample need contradict the estimate,
+/// because the estimated torque compensates the blow. If the supply never has such a torque, the other branch is tried
+/// with a usual one.
 void CrankFilter::doubtContact() noexcept {
   if (HAMMER_LOADS_ABLATE(contact_by_torque) || !(now_.state.position.angle.offset > kRingOver)) return;
   supply_.feel(now_.state.torque);

@@ -1,5 +1,4 @@
-// A sample: what is predicted, where the sensor was, whether it fits, what is learned of the machine from it and once a
-// turn, and what of that is forgotten again.
+// Update by a sample: prediction, sensor, gate, identification of the machine by sample and by turn, and its reset.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -46,8 +45,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   return take(to, reading.angle);
 }
 
-/// Time that the stamps lost, steps of an encoder. The update ends with a slip that the next sample must confirm, or
-/// with an invalid prediction.
+/// Handles lost samples and slips of the encoder. The update ends here for a slip that the next sample must confirm,
+/// and for an invalid prediction.
 std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
   followLostTime(to);
   const double way = now_.encoderSpeed() * clock_.interval;
@@ -67,8 +66,8 @@ std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
   return begin(to.sample);
 }
 
-/// Judges whether the sample fits; else whether another contact, another blow or a foreign sample is the cause, which
-/// ends the update.
+/// Gates the sample; if it contradicts the prediction, decides whether another contact, an unusual blow or an outlier
+/// is the cause, which ends the update.
 std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
   WeighedSample& sample = to.sample;
   Innovation& innovation = to.innovation;
@@ -117,7 +116,7 @@ Tracking CrankFilter::take(const SampleStep& to, double reading) noexcept {
   return revised ? Tracking::kRevised : Tracking::kContinued;
 }
 
-/// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
+/// (10) Learns once a turn, half a turn after the blow, when all samples that determine it are known.
 void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   supply_.pass(dt);
   const CrankPosition &from = last.state.position, &to = now_.state.position;
@@ -157,7 +156,8 @@ void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept
     errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.encoderByError(Belief::kAngle));
 }
 
-/// (10) A machine that is not explained for seconds may have been learned wrong while the stamps' jitter was not known.
+/// (10) Resets the identified machine if it has contradicted the readings for seconds, as it may have been identified
+/// before the stamps' jitter was known.
 void CrankFilter::doubtInertia(double dt) noexcept {
   unlearn_after_ -= dt;
   if (HAMMER_LOADS_ABLATE(doubt_inertia) || !(consistency_.growth() > mismatch::kUnexplained) || unlearn_after_ > 0.0)
@@ -167,7 +167,7 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   forgetInertia();
 }
 
-/// (10) What was learned of the machine was of other readings.
+/// (10) Discards what was identified from other readings.
 void CrankFilter::forgetInertia() noexcept {
   now_.state.drive_inertia = first_guess_;
   now_.by_constant.row(Belief::kInertia).setZero();

@@ -12,19 +12,19 @@
 
 namespace hammer_loads {
 
-/// A sensor's own clock, seen through the stamps that its samples got on their way: a line by sequence number, its
-/// offset and interval by least squares of all samples so far, then of the last some 4000 (expanding, then fading
-/// memory). Delays that do not depend on the sequence average out; a constant one cannot be seen. The last of several
-/// samples with one stamp counts, as it waited least. Lost samples are counted by whole intervals: a test of likelihood
-/// between none and one lost, as fast as the stamps' scatter allows.
+/// Estimate of a sensor's own clock from the stamps of its samples: a line by sequence number, whose offset and
+/// interval are found by least squares over all samples so far, later over the last 4000 (expanding, then fading
+/// memory). Delays that do not depend on the sequence average out; a constant one is not observable. The last of
+/// several samples with one stamp is used, as it waited least. Lost samples are counted by whole intervals: a test of
+/// likelihood between none and one lost, as fast as the stamps' scatter allows.
 class SteadyClockFit {
  public:
   void begin(std::int64_t stamp) noexcept;
-  /// The next sample's stamp [ns]; its instant on the line so far [ns].
+  /// Takes the next sample's stamp [ns]; returns its instant on the line so far [ns].
   std::int64_t add(std::int64_t stamp) noexcept;
-  /// Samples were lost before the last one: it and the coming ones are this number of intervals later.
+  /// Notes lost samples before the last one: it and the following ones are later by this number of intervals.
   void skip(double intervals) noexcept;
-  /// The last stamp is where it must be without a loss before it, though one would show.
+  /// Returns true if the last stamp agrees with no loss before it and would show a loss.
   bool contradictsLoss() const noexcept;
   /// Takes whether the readings show that none was lost before the last sample. While they do, stamps that wander by
   /// whole intervals do not move the line.
@@ -129,7 +129,7 @@ enum class CrankStamps {
 /// sample gets an instant between its neighbours; where many do and the sensor evidently samples at equal intervals,
 /// all get the line through the stamps so far. Only the first sample of each burst counts until the line is known, six
 /// bursts on. A burst at rest without speeds looks like duplicates: the line begins anew with the first burst that
-/// moves. Causal; instants strictly increase until a restart.
+/// moves. It uses no later samples; instants strictly increase until a restart.
 class StampSequence {
  public:
   enum class Kind {
@@ -169,11 +169,11 @@ class StampSequence {
   void confirm(bool counted) noexcept { fit_.confirm(counted); }
   /// Step of which header stamps are whole multiples though the samples are not taken so [s]; 0: none.
   double rounding() const noexcept { return rounding_.step(); }
-  /// The last sample's instant was not after the one before, as the line has gone back: it got one just after that.
+  /// Returns true if the last sample's instant on the line was not after the one before, and was set just after it.
   bool isCrowded() const noexcept { return is_crowded_; }
-  /// Stamps are being refitted by sequence.
+  /// Returns true while stamps are refitted by sequence.
   bool isSteady() const noexcept { return steady_; }
-  /// Stamps that repeated or changed places since the start.
+  /// Number of stamps that repeated or changed places since the start.
   std::uint64_t irregular() const noexcept { return irregular_; }
   const SteadyClockFit& fit() const noexcept { return fit_; }
 

@@ -81,7 +81,7 @@ const SampleResult& Pipeline::refuse(Refusal refusal) noexcept {
   return result_;
 }
 
-/// The crank has taken the sample, the outputs have not: they go on from the next one.
+/// Ends a sample that the crank has used and the outputs have not, which continue from the next one.
 const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
   const bool believed = refusal == Refusal::kUnsettled && crank_.step().known();
   swingOn(believed ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
@@ -131,7 +131,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   return result_;
 }
 
-/// Everything that goes on from sample to sample.
+/// Advances everything that continues from sample to sample.
 void Pipeline::follow(CrankFollower::Taken taken) noexcept {
   result_.stamp = crank_.stamp();  // readings may show that samples were lost
   result_.crank = crank_.estimate();
@@ -157,7 +157,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
   }
 }
 
-/// Nothing: the sample may be published as far as the estimate goes.
+/// Reason against publishing; empty if the estimate allows it.
 std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   settled_ = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
   if (const auto distrust = trust_.refusal()) return distrust;
@@ -223,7 +223,7 @@ bool Pipeline::isKnown() const noexcept {
   if (inertia > 0.0) return true;  // of a crank at work
   const double most = std::max(1.0, speedScale()) * peak_at_speed_;
   const double peak = turn_.peakForce() > 0.0 ? std::clamp(seen_peak_, kLeastPeak * most, most) : most;
-  // An unknown force of the rod says nothing of the crank.
+  // An unknown force of the rod gives no information on the crank.
   const Eigen::Vector3d squares = vectorOf(result_.deviation.wrench).cwiseAbs2() - result_.unknown.rowwise().sum();
   return squares.head<2>().maxCoeff() <= square(kUncertain * settings_.withhold_above * peak);
 }
@@ -233,7 +233,7 @@ void Pipeline::followPeak() noexcept {
   seen_peak_ = std::max({seen_peak_, std::abs(result_.wrench.force_x), std::abs(result_.wrench.force_z)});
 }
 
-/// revised: the blow that is being measured stays; whether it was one shows later.
+/// revised: the pending blow is kept; whether it was one is decided later.
 void Pipeline::restart(bool revised) noexcept {
   if (!revised) turn_.finishBlow(result_);
   turn_.restart();

@@ -1,4 +1,5 @@
-/// Pipeline from samples to loads: the only place where the parts meet. No ROS, no clock: time is the header stamps'.
+/// Pipeline from samples to loads, which connects all parts. It is independent of ROS and clocks: time is that of the
+/// header stamps.
 #pragma once
 
 #include <optional>
@@ -51,7 +52,7 @@ class Pipeline {
   /// Processes a crank sample. The result is valid until the next call. No allocation.
   const SampleResult& crankSample(StampNs header, const CrankSample& measured) noexcept;
 
-  /// Ends the run: a blow that is still being measured is among the result's ends, as far as it is known by now.
+  /// Ends the run: a blow that is still being measured becomes one of the result's ends, with the present estimate.
   const SampleResult& end() noexcept;
 
   const SampleResult& result() const noexcept { return result_; }  ///< result of the last sample
@@ -119,7 +120,7 @@ class Pipeline {
   double nominal_force_;  ///< peak of Fz at turn_rate_Hz and constant speed [N]; see isPlausible()
   double seen_peak_{};    ///< largest force seen, see isKnown() [N]
   double peak_at_speed_;  ///< largest component of the force there [N]
-  bool settled_{};        ///< the last sample's estimate is good enough to be published, whatever the crank is trusted
+  bool settled_{};        ///< the last sample's estimate is accurate enough to be published, independent of CrankTrust
   bool boom_follows_{};   ///< the boom has had every step since the last restart
   SampleCounts counts_;
   SampleResult result_;

@@ -37,7 +37,7 @@ double ZeroWatch::follow(const CrankFilter& filter, double reading, double step,
   const Encoder& encoder = filter.encoder();
   if (filter.slips() != slips_) search_.restart(), left_ = false;
   slips_ = filter.slips();
-  // A turn without a tool has other times. A zero that is far off may look like one, but not without a contradiction.
+  // A turn without a tool has other times. A zero that is far off may imitate such a turn, but contradicts the model.
   if (filter.state().position.isMirrored() && !(filter.consistency() > kAgrees)) search_.skipTurn();
   search_.setWanted(filter.constantErrors().turns() < kTurnsToSearch || !agrees(filter));
   const double half_count = encoder.isFiner() ? 0.0 : 0.5 * encoder.resolution();
@@ -45,7 +45,8 @@ double ZeroWatch::follow(const CrankFilter& filter, double reading, double step,
   return toMove(filter);
 }
 
-/// A filter that explains the readings and shows no error is right: a turn without a tool misleads the search.
+/// A filter that agrees with the readings and shows no error takes precedence, since a turn without a tool misleads the
+/// search.
 bool ZeroWatch::agrees(const CrankFilter& filter) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];

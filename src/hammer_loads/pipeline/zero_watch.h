@@ -8,13 +8,14 @@
 
 namespace hammer_loads {
 
-/// Compares two judges of the zero once a turn: ZeroSearch sees the whole turn within some 2 deg; the filter's own
-/// estimate is good to 0.3 deg, but only of small errors. Where either of them shows an error that matters, the
-/// filter's zero is moved there and refined until the filter agrees. Nothing is published meanwhile, nor of a zero that
-/// is off by more than kMost: the parameter has to be set right.
+/// Compares two estimates of the zero once a turn: ZeroSearch covers the whole turn with an error of some 2 deg; the
+/// filter's own estimate is accurate to 0.3 deg, but only for small errors. If either of them shows a significant
+/// error, the filter's zero is moved there and refined until the filter agrees. Nothing is published meanwhile, nor for
+/// an error beyond kMost, where the parameter has to be corrected.
 ///
-/// A small negative error is left to the deviations: an elastic connecting rod looks like one of up to 1.6 deg. Where
-/// its pins rub the search shows more, which the filter refines to that: it is taken back.
+/// A small negative error is covered by the deviations, since an elastic connecting rod causes an apparent one of up to
+/// 1.6 deg. With friction in the pins the search shows a larger one, which the filter refines to the former; the move
+/// is then undone.
 class ZeroWatch {
  public:
   static constexpr double kMost = 2.0 * kDegree;  ///< larger errors are not published [rad]
@@ -26,7 +27,7 @@ class ZeroWatch {
   double follow(const CrankFilter& filter, double reading, double step, const HullMotion& hull) noexcept;
 
   bool withholds() const noexcept { return isOff() && (!settled_ || std::abs(moved_) > kMost); }
-  /// The zero in force is another one than the parameter's.
+  /// Returns true if the zero in force differs from the parameter's.
   bool isOff() const noexcept { return std::abs(moved_) > kNone; }
   /// The filter's estimate of the zero may be wrong: readings and model do not agree, nor does the search with it.
   bool doubts(const CrankFilter& filter) const noexcept;
