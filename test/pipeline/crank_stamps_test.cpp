@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "hammer_loads/bench/session_run.h"
+#include "hammer_loads/pipeline/warnings.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
@@ -141,6 +144,55 @@ TEST(CrankLatency, IsCoveredByItsDeviation) {
   };
   EXPECT_LT(covered("{crank_latency_std_s: 0, withhold_above: 10}"), 0.75);
   EXPECT_GT(covered("{crank_latency_std_s: 0.005, withhold_above: 10}"), 0.88);
+}
+
+/// A controller samples in its task of 4 ms, averages two readings and sends at another rate; its clock is not exactly
+/// that of the stamps. The constant part of their age shows in no reading.
+TEST(CrankTask, IsNamedAndCovered) {
+  const Settings settings = test::settingsWith("{}");
+  for (const double task : {3e-3, 4.0002e-3}) {
+    for (const int mean : {1, 2}) {
+      SCOPED_TRACE(testing::Message() << task << " s, mean of " << mean);
+      simulation::MachineSettings machine = eightSeconds();
+      machine.duration = 12.0;
+      machine.crank.rate = 100.0;
+      machine.crank.latency = 0.4e-3;
+      machine.crank.task_period = task;
+      machine.crank.task_mean = mean;
+      const simulation::Session session = simulation::recordSession(machine);
+      test::Player player(settings, false, session);
+      player.playTo(12.0, [](double, const SampleResult&) {});
+      const std::vector<Warning> warnings = warningsOf(player.pipeline);
+      const auto isTask = [](const Warning& warning) { return std::string(warning.key) == "task"; };
+      const auto named = std::find_if(warnings.begin(), warnings.end(), isTask);
+      ASSERT_NE(named, warnings.end());
+      EXPECT_NE(named->text.find(task < 3.5e-3 ? "3 ms" : "4 ms"), std::string::npos);
+      EXPECT_LE(named->text.size(), 140u);
+      const accuracy::SessionRun run =
+          accuracy::runSession(session, machine.start_stamp, settings.mechanism, settings.pipeline);
+      const accuracy::SessionErrors errors = accuracy::judgeAtStamps(run, session, machine, 0.0);
+      EXPECT_GT(std::min({errors.covered_x, errors.covered_z, errors.covered_torque}), 0.88);
+    }
+  }
+}
+
+/// One stamp in a hundred is late by some milliseconds, in order: the angle shows that its sample is not, and from a
+/// few of them on all samples get the instants of equal intervals.
+TEST(CrankLateStamps, AreRefittedThoughInOrder) {
+  simulation::MachineSettings machine = eightSeconds();
+  machine.crank.rate = 200.0;
+  machine.crank.driver = {0.0, 0.01, 4e-3};
+  const simulation::Session session = simulation::recordSession(machine);
+  test::Player player(test::settingsWith("{}"), false, session);
+  std::size_t i = 0;
+  double worst = 0.0;
+  player.playTo(8.0, [&](double, const SampleResult& result) {
+    const double instant = session.taken[i++];
+    if (instant < 5.0 || result.refusal) return;
+    worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
+  });
+  EXPECT_TRUE(player.pipeline.crank().stamps().isSteady());
+  EXPECT_LT(worst, 5e-4) << " [s]";
 }
 
 /// Where samples are taken at equal intervals a reading ahead shows lost ones, but a rod that rings moves a crank by as

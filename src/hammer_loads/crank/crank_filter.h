@@ -138,6 +138,8 @@ class CrankFilter {
   const Encoder& encoder() const noexcept { return encoder_; }
   /// The last one taken, as it was weighed.
   const WeighedSample& sample() const noexcept { return sample_; }
+  /// Time after its stamp at which the prediction reaches the last angle [s].
+  double instantOff() const noexcept { return instant_off_; }
   /// Logarithm of the likelihood of its angle before it was taken, but for a constant.
   double angleFit() const noexcept { return angle_fit_; }
   double speedNoise() const noexcept {
@@ -256,6 +258,7 @@ class CrankFilter {
   Encoder encoder_;
   WeighedSample sample_;
   double angle_fit_{};
+  double instant_off_{};  ///< see instantOff()
   struct {
     double angle{}, speed{};  ///< [rad], [rad/s]
   } rod_;                     ///< considerRod() since the last sample

@@ -23,7 +23,7 @@ constexpr double kForgetDoubts = 30.0;  // [s]
 Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   CrankBelief& last = earlier_[1 - before_];
   last = now_;
-  lost_time_ = 0.0;
+  lost_time_ = instant_off_ = 0.0;
   counts_intervals_ = false;
   restart_load_ *= std::max(0.0, 1.0 - dt / look_back::kTenTurns);
   doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
@@ -36,6 +36,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   to.behind = takeOffLag(last, dt, struck, to.read, to.sample);
   if (begins) return begin(to.sample);
   to.innovation = to.sample.ofAngle(now_);
+  instant_off_ = std::abs(now_.state.speed) > kLearnSpeed ? to.innovation.value / now_.state.speed : 0.0;
   if (has_speed_)
     if (const auto result = followSensor(to)) return *result;
   witness_.reset();
@@ -74,7 +75,7 @@ std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
   const double ratio = innovation.ratio();
   if (!takesSpeeds()) sample.speed.reset();
   fit_ = innovation.logLikelihood();
-  if (!HAMMER_LOADS_ABLATE(jitter)) timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
+  if (!HAMMER_LOADS_ABLATE(jitter)) timing_.learn(innovation.value, innovation.total, now_.state.speed, to.dt);  // (3)
   sample.timing_variance = timing_.variance();
   const bool without_contact = ratio > square(kToolSeen) && rivalExplains(to.dt, sample);
   if (without_contact) return std::nullopt;

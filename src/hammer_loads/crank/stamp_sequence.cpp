@@ -28,6 +28,7 @@ constexpr double kOneStamp = 0.3;           // of it that a single stamp contrib
 constexpr double kLeastIndependence = 0.2;
 constexpr double kNoLoss = 3.0;         // logarithm of the odds that none was lost: 20 to 1
 constexpr double kLeastScatter = 0.15;  // of the interval: a run's beginning is not known better
+constexpr double kBent = 0.2;           // of the line's memory: what is linear
 constexpr double kGrown = 2.0;          // scatter about the line over that of white jitter with such steps
 
 // Limits of the sequence.
@@ -55,6 +56,11 @@ bool SteadyClockFit::explains() const noexcept {
   return runs_ >= kWarm && interval_ > 0.0 && end_square_ <= square(kGrown) * 0.5 * step_square_;
 }
 
+double SteadyClockFit::lateness() const noexcept {
+  const bool is_late = runs_ >= kWarm && mean_length_ < kAlone && exceeds(residual_, end_square_, kGap);
+  return is_late ? std::max(0.0, residual_) : 0.0;
+}
+
 bool SteadyClockFit::contradictsLoss() const noexcept {
   return interval_ / end_square_ * (0.5 * interval_ - residual_) > kNoLoss;
 }
@@ -76,8 +82,7 @@ void SteadyClockFit::endRun() noexcept {
   const double n = remembered_ = std::min(remembered_ + 1.0, kMemorySamples / mean_length_);
   double used = end;
   if (runs_ >= kWarm) {
-    const double most = kClip * std::max(std::sqrt(end_square_), kExact * interval_);
-    used = std::clamp(used, -most, most);
+    used = std::clamp(used, -mostUsed(), mostUsed());
   }
   instant_ += used * 2.0 * (2.0 * n - 1.0) / (n * (n + 1.0));
   interval_ = std::max(0.0, interval_ + used / run_length_ * 6.0 / (n * (n + 1.0)));
@@ -88,6 +93,11 @@ void SteadyClockFit::endRun() noexcept {
   end_mean_ += gain * (used - end_mean_);
   if (mean_length_ < kAlone && exceeds(end_mean_, end_square_ / (kScatterSamples * independence()), gate::kImpossible))
     remembered_ = std::min(remembered_, kScatterSamples);  // samples that were lost unseen have bent the line
+}
+
+/// Residual as which one that is further off counts [ns].
+double SteadyClockFit::mostUsed() const noexcept {
+  return kClip * std::max(std::sqrt(end_square_), kExact * interval_);
 }
 
 /// The line, by [ns].
@@ -124,24 +134,18 @@ void SteadyClockFit::gatherEvidence(double off, double scatter, double step) noe
   gained_.add(by(-off), off);
 }
 
-/// By how much the line moves, as it was off by whole intervals [ns].
-double SteadyClockFit::correctCount(double off, double scatter) noexcept {
-  const double now = std::nearbyint(off / interval_);
-  double by = 0.0;
-  if (mean_length_ >= kAlone) {
-    if (off > kGap * scatter + 2.0 * interval_)
-      by = now * interval_;
-    else if (lost_.logarithm > kEvidence)
-      by = std::max(1.0, now) * interval_;
-    else if (gained_.logarithm > kEvidence)
-      by = std::min(-1.0, now) * interval_;
-  } else if (lost_.logarithm > kEvidence) {
-    by = std::max(1.0, std::nearbyint(lost_.mean / interval_)) * interval_;
-  } else if (gained_.logarithm > kEvidence) {
-    by = std::min(-1.0, std::nearbyint(gained_.mean / interval_)) * interval_;
-  }
-  if (by == 0.0) return 0.0;
-  move(by);
+/// By how much the line moves, as it was off by whole intervals [ns]. The stamps since then have already moved it by
+/// a part of that, and bent it.
+double SteadyClockFit::correctCount() noexcept {
+  const bool is_lost = lost_.logarithm > kEvidence;
+  if (!is_lost && !(gained_.logarithm > kEvidence)) return 0.0;
+  const Evidence& evidence = is_lost ? lost_ : gained_;
+  const double whole = std::nearbyint(evidence.mean / interval_);
+  const double by = (is_lost ? std::max(1.0, whole) : std::min(-1.0, whole)) * interval_;
+  const double part = std::min(kBent, (evidence.stamps - 1) / remembered_), most = mostUsed();
+  const double used = std::clamp(evidence.mean, -most, most);
+  move(by - 4.0 * part * used);
+  interval_ = std::max(0.0, interval_ - 6.0 * part * used / (remembered_ * mean_length_));
   lost_ = gained_ = {};
   return by;
 }
@@ -156,7 +160,7 @@ void SteadyClockFit::watchLost(double residual, double step) noexcept {
   if (runs_ >= kWarm && interval_ > 0.0) {
     const double scatter = std::max(std::sqrt(start_variance_), kLeastScatter * interval_);
     gatherEvidence(off, scatter, step);
-    off -= correctCount(off, scatter);
+    off -= correctCount();
     suspected_ = std::max(0.0, std::nearbyint(off / interval_));
     off = std::clamp(off, -kClip * scatter, kClip * scatter);
   }

@@ -32,6 +32,8 @@ class SteadyClockFit {
   /// Number of lost samples that would explain the lateness of the last stamp; a stamp that is merely late looks alike.
   double suspected() const noexcept { return suspected_; }
   double interval() const noexcept { return interval_; }  ///< [ns]
+  /// Time by which the last stamp is later than the scatter makes it [ns]; else 0.
+  double lateness() const noexcept;
   /// Root mean square of the stamps about the line [ns].
   double scatter() const noexcept { return std::sqrt(end_square_); }
   int runs() const noexcept { return runs_; }  ///< stamps after the first one
@@ -43,6 +45,7 @@ class SteadyClockFit {
 
  private:
   double scatterGain() const noexcept;
+  double mostUsed() const noexcept;
   void endRun() noexcept;
   void move(double by) noexcept;
   void watchLost(double residual, double step) noexcept;
@@ -72,7 +75,7 @@ class SteadyClockFit {
   };
   double independence() const noexcept;
   void gatherEvidence(double off, double scatter, double step) noexcept;
-  double correctCount(double off, double scatter) noexcept;
+  double correctCount() noexcept;
   Evidence lost_, gained_;
   double suspected_{};      ///< lost samples by which the last stamp alone is late
   double remembered_{1.0};  ///< runs in the line's memory
@@ -165,6 +168,10 @@ class StampSequence {
     const double interval = 1e-9 * fit_.interval();
     return {interval, interval * fit_.suspected(), !fit_.contradictsLoss()};
   }
+  /// Time by which a header stamp that counts is later than others are [s]; else 0.
+  double lateness() const noexcept { return steady_ ? 0.0 : 1e-9 * fit_.lateness(); }
+  /// The readings show that the last stamp is late and its sample is not: it counts as two irregular ones.
+  void countLate() noexcept { irregularity_ += 2.0; }
   /// See SteadyClockFit.
   void confirm(bool counted) noexcept { fit_.confirm(counted); }
   /// Step of which header stamps are whole multiples though the samples are not taken so [s]; 0: none.

@@ -19,15 +19,16 @@ class TimingNoise {
   /// first_guess: standard deviation [s], >= 0.
   explicit TimingNoise(double first_guess = 0.0) noexcept : variance_(first_guess * first_guess) {}
 
-  /// innovation [rad] of variance `total`, the jitter's part included; speed w [rad/s].
-  void learn(double innovation, double total, double speed) noexcept {
+  /// innovation [rad] of variance `total`, the jitter's part included; speed w [rad/s]; step [s] since
+  /// the sample before.
+  void learn(double innovation, double total, double speed, double step = 0.0) noexcept {
     const double change = innovation - last_;
     last_ = innovation;
     const double squared_speed = speed * speed, lever = squared_speed / total;
     const double visible = std::max(kVisible, variance_);
     if (!(squared_speed * visible > total - squared_speed * variance())) return;  // too slow to show it
     if (samples_++ == 0) information_ = lever * lever;
-    const double gain = std::max(kGain, 1.0 / (samples_ + kFirstCounts));
+    const double gain = std::max(kGain, 1.0 / (samples_ + (step > kSparse ? kFirstOfSparse : kFirstCounts)));
     information_ += gain * (lever * lever - information_);
     const double clipped =
         std::min(0.5 * change * change / total, square(samples_ < kLearning ? gate::kUsual : gate::kRare));
@@ -47,9 +48,11 @@ class TimingNoise {
   static constexpr double kGain = 1.0 / look_back::kReadings;
   static constexpr int kLearning =
       60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
-  static constexpr double kFirstCounts = 50.0;  // samples that the first guess stands for
-  static constexpr double kVisible = 9e-8;      // [s2]: a sample that could not see 0.3 ms is not asked
-  static constexpr double kLargest = 0.02;      // [s]: more is no jitter
+  static constexpr double kFirstCounts = 50.0;    // samples that the first guess stands for
+  static constexpr double kFirstOfSparse = 10.0;  // likewise: at 100 Hz the filter would restart until then
+  static constexpr double kSparse = 0.008;        // [s]
+  static constexpr double kVisible = 9e-8;        // [s2]: a sample that could not see 0.3 ms is not asked
+  static constexpr double kLargest = 0.02;        // [s]: more is no jitter
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};

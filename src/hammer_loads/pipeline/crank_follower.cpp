@@ -12,6 +12,8 @@ namespace {
 constexpr int kSettlingSamples = 5;  // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = gate::kRare;       // deviations of the predicted error
 constexpr double kFrozenCounts = 5;                      // a crank that turned further gives another angle
+constexpr double kTaskShows = 2e-4;                      // [s] of jitter: the ages of a task of 2 ms have 0.5 ms
+constexpr double kSameLateness = 0.3;                    // of the lateness
 constexpr double kFrozenDeviations = gate::kImpossible;  // deviations of a sensor's noise
 
 /// resolution: of the angle sensor [rad].
@@ -85,6 +87,7 @@ std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& m
   measured_ = measured;
   checkUnit(header, measured);
   verdict_ = gate_.judge(stamp_, measured);
+  if (gate_.angleIsFrozen()) task_.repeat(stamp_);
   return verdict_.refusal ? verdict_.refusal : otherUnit();
 }
 
@@ -92,7 +95,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   const CrankSample sample{measured_.angle, verdict_.speed_is_dead ? std::nullopt : measured_.speed};
   tracker_->setHullMotion(hull);
   tracker_->setClock(sequence_.clock());
-  tracker_->considerLatency(0.5 * sequence_.rounding());
+  tracker_->considerLatency(stampsOff());
   if (verdict_.order == CrankSampleGate::Order::kFirst) {
     tracker_->start(sample);
     restart();
@@ -100,6 +103,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
     return Taken::kBegan;
   }
   const Tracking tracking = tracker_->update(verdict_.step, sample);
+  followStamp();
   sequence_.confirm(tracker_->countsIntervals());
   followLostTime();
   if (tracking == Tracking::kOutlier) return Taken::kRefused;
@@ -111,6 +115,20 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   estimate_ = tracker_->estimate();
   step_.take(*gate_.last(), verdict_.step, last_position_);
   return Taken::kContinued;
+}
+
+/// Counts a late stamp whose angle was read in time, as the angle is behind by the stamp's lateness.
+void CrankFollower::followStamp() noexcept {
+  const double late = sequence_.lateness(), off = tracker_->instantOff();
+  if (late > 0.0 && std::abs(off + late) < kSameLateness * late) sequence_.countLate();
+  if (turns()) task_.add(stamp_, tracker_->timingNoise() > kTaskShows ? tracker_->instantOff() : 0.0);
+}
+
+/// Standard deviation of the common shift of all stamps [s]. A reading by a controller's task is half a period old on
+/// average and may be a mean of several readings; a given latency contains both.
+double CrankFollower::stampsOff() const noexcept {
+  const double age = latency_ > 0 ? task_.period() / std::sqrt(12.0) : task_.period();
+  return std::hypot(0.5 * sequence_.rounding(), age);
 }
 
 /// True if the readings determine the length of the step better than jittering stamps do.

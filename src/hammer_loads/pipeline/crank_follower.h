@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "hammer_loads/crank/controller_task.h"
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/hammer/hammer_model.h"
@@ -57,6 +58,7 @@ class CrankFollower {
   const CrankStep& step() const noexcept { return step_; }
   const CrankFilter& tracker() const noexcept { return *tracker_; }
   const StampSequence& stamps() const noexcept { return sequence_; }
+  const ControllerTask& task() const noexcept { return task_; }
   CrankUnit unit() const noexcept { return unit_check_.unit(); }
   /// Stamp of the sample at which the encoder slipped last [ns]; none if it did not.
   const std::optional<StampNs>& slipped() const noexcept { return slipped_; }
@@ -71,6 +73,8 @@ class CrankFollower {
   std::optional<Refusal> otherUnit() const noexcept;
   void restart() noexcept;
   void followLostTime() noexcept;
+  void followStamp() noexcept;
+  double stampsOff() const noexcept;
 
   const HullModel* model_;
   PipelineSettings settings_;
@@ -79,6 +83,7 @@ class CrankFollower {
   CrankSample last_raw_;                   ///< last sample, accepted or not
   StampNs latency_;                        ///< latency of the header stamps
   StampSequence sequence_;
+  ControllerTask task_;
   std::unique_ptr<CrankFilter> tracker_;
   CrankSampleGate gate_;
   CrankStep step_;

@@ -79,7 +79,13 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
                                "(crank_stamps). State a delay as crank_latency_s.",
                                1e-6 * crank.stamps().fit().scatter()),
                         true});
-  const double count = filter.encoder().resolution() / std::sqrt(12.0);
+  const double count = filter.encoder().resolution() / std::sqrt(12.0), period = crank.task().period();
+  if (period > 0.0)
+    return warnings.push_back({"task",
+                               format("crank angles come from a controller's task of %.3g ms: old, averaged or "
+                                      "repeated. The deviations contain it. Stamp in the task.",
+                                      1e3 * period),
+                               true});
   if (filter.timingNoise() > std::max(kJitter, 0.5 * count / speed_at_work))
     warnings.push_back({"jitter",
                         format("crank stamps jitter by %.2g ms, which widens the deviations. Stamp at the instant of "
