@@ -36,18 +36,18 @@ TEST(RodEvidence, IsTheExcessJustAfterTheBlow) {
 /// What contradicts a rigid mechanism before the blow and after it are two questions.
 TEST(RodEvidence, KnowsARockerThatIsLetGoByTheRunUp) {
   RodEvidence worn;
-  EXPECT_EQ(worn.letGoShare(kFine), 1.0);  // too few
+  EXPECT_EQ(worn.releasedShare(kFine), 1.0);  // too few
   for (int turn = 0; turn < 50; ++turn)
     for (int degree = -60; degree < 0; degree += 3)
       worn.add({degree * kDegree, Side::kBeforeBlow}, degree > -30 ? 4.3 : 0.9);
   EXPECT_NEAR(worn.runUp(), 4.3, 1e-9);
-  EXPECT_EQ(worn.letGoShare(kFine), 1.0);
+  EXPECT_EQ(worn.releasedShare(kFine), 1.0);
   RodEvidence tight;
   for (int i = 0; i < 400; ++i) {
     tight.add({-10.0 * kDegree, Side::kBeforeBlow}, 0.95);
     tight.add({10.0 * kDegree, Side::kAfterBlow}, 4.3);
   }
-  EXPECT_LT(tight.letGoShare(kFine), 0.06);
+  EXPECT_LT(tight.releasedShare(kFine), 0.06);
   EXPECT_EQ(tight.share(kFine), 1.0);
 }
 

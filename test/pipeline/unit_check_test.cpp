@@ -33,9 +33,9 @@ Verdict judge(const simulation::Session& session, const Sensor& sensor, UnitChec
     if (sensor.speed && r.speed) speed = *r.speed * sensor.speed_unit;
     check.add(1e-9 * static_cast<double>(r.stamp - last), r.angle * sensor.angle_unit, speed);
     last = r.stamp;
-    if (check.looksWrong() && !verdict.ever) verdict = {true, false, i};
+    if (check.isOtherUnit() && !verdict.ever) verdict = {true, false, i};
   }
-  verdict.last = check.looksWrong();
+  verdict.last = check.isOtherUnit();
   return verdict;
 }
 
@@ -105,7 +105,7 @@ TEST(UnitCheck, ConcludesNothingFromGarbage) {
   for (int i = 0; i < 100000; ++i) {
     const double garbage[] = {any(random), std::nan(""), INFINITY, 1e308, -1e308, 5e-324};
     check.add(1e-6 * any(random), garbage[random() % 6], random() % 2 ? std::make_optional(any(random)) : std::nullopt);
-    ASSERT_FALSE(check.looksWrong()) << i;
+    ASSERT_FALSE(check.isOtherUnit()) << i;
   }
 }
 

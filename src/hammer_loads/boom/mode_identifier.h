@@ -242,12 +242,12 @@ class ModeIdentifier {
   void correct(const VibrationReading& reading, const State& row, double difference, const Predicted& predicted,
                const StateList& kept) noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
-  void takeBack(const StateList& kept, double moved, double S, const State& gain_S) noexcept;
+  void restoreKept(const StateList& kept, double moved, double S, const State& gain_S) noexcept;
   /// Change of all states if one of them moves by an amount.
   State movedWith(int state, double by) const noexcept {
     return by / covariance_(state, state) * covariance_.col(state);
   }
-  void takeAsBearing(double step) noexcept;
+  void limitPull(double step) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
   void unlearn(double part) noexcept;

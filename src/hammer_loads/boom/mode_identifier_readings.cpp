@@ -142,7 +142,7 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
     take(readings + first, std::min(together, count - first));
   }
   correctHose(state_ - known);
-  if (clock == Clock::kImu) takeAsBearing(since_imu);
+  if (clock == Clock::kImu) limitPull(since_imu);
   if (learns_ && !explains_) forgetOil();
   if (!state_.segment(begin(), states()).allFinite()) return startAnew();
   if (learns_) useOil();
@@ -152,7 +152,7 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
 /// Corrects a rock force that pulls. Rock only pushes: a pull that exceeds its deviation and lasts longer than a force
 /// error stems from offsets and from the pose. If the pressures lag more than clocks do, it stems from the attenuation
 /// by a hose.
-void ModeIdentifier::takeAsBearing(double step) noexcept {
+void ModeIdentifier::limitPull(double step) noexcept {
   if (!follows_contact_ || pressureLag() > kDelayDeviation) return;
   const double pulls = -contactDeviation() - state_[kContact];
   if (!(pulls > 0.0)) return;
@@ -232,7 +232,7 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
   if (!(S > 0.0)) return;
   state_.segment(begin(), states()) += difference / S * inUse(gain_S);
   subtractSquare(block(), inUse(gain_S), S);
-  takeBack(kept, difference / S, S, gain_S);
+  restoreKept(kept, difference / S, S, gain_S);
 }
 
 /// True while the errors of the accelerations may stem from an oil that is not identified yet or from late stamps.
@@ -274,7 +274,7 @@ StateList ModeIdentifier::keptStates() const noexcept {
 
 /// Reverts the correction of these states. The other states are corrected with these taken as uncertain as before
 /// (Schmidt-Kalman filter).
-void ModeIdentifier::takeBack(const StateList& kept, double moved, double S, const State& gain_S) noexcept {
+void ModeIdentifier::restoreKept(const StateList& kept, double moved, double S, const State& gain_S) noexcept {
   for (int i : kept) {
     state_[i] -= moved * gain_S[i];
     for (int j : kept) covariance_(i, j) += gain_S[i] * gain_S[j] / S;

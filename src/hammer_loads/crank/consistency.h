@@ -105,7 +105,7 @@ class RodEvidence {
   /// Upper bounds by the readings of the square of the expected vibration, and of the missing speed of a released
   /// rocker, as parts of the expectation; reading: standard deviation of one [rad].
   double share(double reading) const noexcept { return shareOf(picked_up_, reading); }
-  double letGoShare(double reading) const noexcept { return shareOf(run_up_, reading); }
+  double releasedShare(double reading) const noexcept { return shareOf(run_up_, reading); }
   /// True if the blow is so violent that a rigid mechanism still loses the crank a quarter of a revolution later: rock
   /// that throws the rocker back (8 to 20 then). The blow that it identifies is wrong.
   bool isLost() const noexcept { return later_.count() > kEnough && later() > mismatch::kUnexplained; }

@@ -79,7 +79,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   takeLoad();
   now_.tool_met = false;
   mirrored_ = false;
-  rival_.drop();
+  hypothesis_.drop();
   strike_consistency_.abandon();
   now_.factor = settings_.blow_factor;
   ShaftMatrix& p = now_.covariance;
@@ -138,7 +138,7 @@ Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
   speeds_wait_ = speeds_wait_ || (has_speed_ && sample.isUnsureOfTime(now_.state.speed));
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
   anchor(sample);
-  if (now_.state.speed > kLearnSpeed) rival_.beginAnew(now_);
+  if (now_.state.speed > kLearnSpeed) hypothesis_.beginAnew(now_);
   return Tracking::kRestarted;
 }
 
@@ -172,8 +172,8 @@ std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double 
 /// (6) to (9). last: the belief at the sample before; struck: the prediction passed a blow.
 bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const Innovation& innovation,
                           const WeighedSample& sample, double reading) noexcept {
-  if (struck) meetRival(last);
-  const bool contested = rival_.isThere();
+  if (struck) beginHypothesis(last);
+  const bool contested = hypothesis_.isThere();
   if (std::abs(now_.state.speed) < kLearnSpeed) now_.forgetInertiaCoupling();
   correctAngle(innovation);
   settleSide(last, dt, sample, struck);
@@ -189,12 +189,12 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   if (sample.speed) correctSpeed(sample, dt, struck);
   if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed
   now_.boundFactor();
-  if (contested && rival_.isThere()) {
-    predict(dt, mirrored_, rival_.belief());
-    rival_.follow(sample, model_, fit_, consistency_.growth(), mostSpeed());
+  if (contested && hypothesis_.isThere()) {
+    predict(dt, mirrored_, hypothesis_.belief());
+    hypothesis_.follow(sample, model_, fit_, consistency_.growth(), mostSpeed());
   }
   doubtContact();
-  return rival_.isThere() && rival_.choose(now_, mirrored_);
+  return hypothesis_.isThere() && hypothesis_.choose(now_, mirrored_);
 }
 
 Eigen::Matrix3d CrankUncertainty::covariance() const noexcept {

@@ -7,7 +7,7 @@
 
 #include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
-#include "hammer_loads/crank/contact_rival.h"
+#include "hammer_loads/crank/contact_hypothesis.h"
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_estimate.h"
@@ -94,9 +94,9 @@ class CrankFilter {
   /// Factor of the last blow on the crank's speed, by all samples since.
   BlowFactor blowFactor() const noexcept;
   /// Returns true while it is uncertain whether the last passage was a blow: the estimate may be on the wrong branch.
-  bool isDoubtful() const noexcept { return rival_.isDoubtful(); }
+  bool isDoubtful() const noexcept { return hypothesis_.isDoubtful(); }
   /// Probability of the other branch: no blow where the estimate has one, or a blow where it has none.
-  double otherBranch() const noexcept { return rival_.probability(); }
+  double otherBranch() const noexcept { return hypothesis_.probability(); }
   /// Returns true if the last reading itself determines the side of the blow, by an encoder's edge and an exact stamp.
   bool readingShowsSide() const noexcept { return read_side_.has_value(); }
   /// One count of the angle sensor [rad], as far as known.
@@ -226,7 +226,7 @@ class CrankFilter {
   std::optional<Side> readSide(double reading) const noexcept;
   void respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
                     double reading) noexcept;
-  void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
+  void undoBlow(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
   void considerSensor() noexcept;
   bool findLag() noexcept;
   bool applyZero() noexcept;
@@ -235,8 +235,8 @@ class CrankFilter {
   double speedJump(bool struck) const noexcept;
   void judgeSpeed(double dt, bool struck) noexcept;
   void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;
-  void meetRival(const CrankBelief& belief) noexcept;
-  bool rivalExplains(double dt, const WeighedSample& sample) noexcept;
+  void beginHypothesis(const CrankBelief& belief) noexcept;
+  bool hypothesisExplains(double dt, const WeighedSample& sample) noexcept;
   void doubtContact() noexcept;
   void learnFrom(const Innovation& innovation, double ratio) noexcept;
   void rememberBlow(const CrankBelief& last, double dt) noexcept;
@@ -277,7 +277,7 @@ class CrankFilter {
   std::size_t before_{};                ///< place of the former
   ShaftLoad before_load_;               ///< there, with before_hull_
   double step_{};                       ///< between these two [s]
-  ContactRival rival_;                  ///< hypothesis with contact where now_ has none, or the other way round
+  ContactHypothesis hypothesis_;        ///< hypothesis with contact where now_ has none, or the other way round
   bool mirrored_{};                     ///< now_ had no contact and is on the mirrored branch
   double fit_{};                        ///< logarithm of the last sample's likelihood by now_
   double speed_variance_;               ///< identified variance of measured speeds [rad2/s2]

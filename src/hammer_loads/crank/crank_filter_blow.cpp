@@ -58,8 +58,8 @@ bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const Weigh
 }
 
 /// (7) Undoes a predicted blow that has not occurred within this step.
-void CrankFilter::takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept {
-  rival_.drop();
+void CrankFilter::undoBlow(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept {
+  hypothesis_.drop();
   now_ = last;
   predict(dt, false, now_);
   Innovation again = sample.ofAngle(now_);
@@ -80,13 +80,13 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
   if (!now_.state.position.isMirrored()) return;
   if (angle.side == Side::kBeforeBlow) {
     if (now_.state.speed > 0.0) {
-      meetRival(now_);
+      beginHypothesis(now_);
       return now_.passLate(step_model_, blows_.prior());
     }
     angle.side = Side::kAfterBlow;
     return;
   }
-  if (struck) return takeBack(last, dt, sample);
+  if (struck) return undoBlow(last, dt, sample);
   const double doubt =
       kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
   if (angle.offset > -doubt && now_.state.speed > -1.0) {
@@ -118,29 +118,29 @@ void CrankFilter::respectCount(const CrankBelief& last, double dt, bool struck, 
   if (!read_side_ || mirrored_ || std::abs(angle.offset) > near) return;
   if (std::abs(encoder_.edges(reading).low) > near) return;
   if (*read_side_ == Side::kAfterBlow && angle.side == Side::kBeforeBlow) {
-    meetRival(now_);
+    beginHypothesis(now_);
     angle.offset = 0.0;
     now_.passLate(step_model_, blows_.prior());
   }
   if (*read_side_ == Side::kAfterBlow || angle.side == Side::kBeforeBlow) return;
-  if (struck) return takeBack(last, dt, sample);
+  if (struck) return undoBlow(last, dt, sample);
   angle = {0.0, Side::kBeforeBlow};
   now_.tool_met = true;  // its factor is in the speed already
 }
 
 /// Begins the second hypothesis, without contact, before the belief passes the blow with contact. A crank that rests
 /// there does not pass it.
-void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
-  if (!HAMMER_LOADS_ABLATE(contact_rival) && !mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed)
-    rival_.begin(belief);
+void CrankFilter::beginHypothesis(const CrankBelief& belief) noexcept {
+  if (!HAMMER_LOADS_ABLATE(contact_hypothesis) && !mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed)
+    hypothesis_.begin(belief);
 }
 
 /// (9) Switches to the second hypothesis if it explains a sample that the estimate does not.
-bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept {
-  if (!rival_.isOpen()) return false;
-  CrankBelief rival = rival_.belief();
-  predict(dt, mirrored_, rival);
-  return !sample.ofAngle(rival).exceeds(gate::kRare);
+bool CrankFilter::hypothesisExplains(double dt, const WeighedSample& sample) noexcept {
+  if (!hypothesis_.isOpen()) return false;
+  CrankBelief other = hypothesis_.belief();
+  predict(dt, mirrored_, other);
+  return !sample.ofAngle(other).exceeds(gate::kRare);
 }
 
 /// (9) Examines the other branch half a turn after a blow. On a wrong branch no sample need contradict the estimate,
@@ -149,14 +149,14 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
 void CrankFilter::doubtContact() noexcept {
   if (HAMMER_LOADS_ABLATE(contact_by_torque) || !(now_.state.position.angle.offset > kRingOver)) return;
   supply_.feel(now_.state.torque);
-  if (rival_.isThere()) return;
+  if (hypothesis_.isThere()) return;
   const double doubt = consistency_.doubt();
   const double variance = supply_.usual() + doubt * now_.covariance(Belief::kTorque, Belief::kTorque);
   if (doubt > mismatch::kContradicts || !exceeds(now_.state.torque, variance, gate::kImpossible)) return;
   CrankBelief other = now_;
   other.state.torque = 0.0;
   other.draw(Belief::kTorque, supply_.usual());
-  rival_.ask(other);
+  hypothesis_.ask(other);
 }
 
 }  // namespace hammer_loads

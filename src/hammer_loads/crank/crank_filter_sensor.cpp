@@ -180,7 +180,7 @@ bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& 
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
   return !HAMMER_LOADS_ABLATE(slip) && lost_time_ == 0.0 && !mayBeRod(innovation) && at_work && !mirrored_ &&
-         !rival_.isOpen() && nearest > kNotSlip;
+         !hypothesis_.isOpen() && nearest > kNotSlip;
 }
 
 /// (5) Subtracts a detected slip from the reading.

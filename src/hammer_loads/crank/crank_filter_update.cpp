@@ -77,7 +77,7 @@ std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
   fit_ = innovation.logLikelihood();
   if (!HAMMER_LOADS_ABLATE(jitter)) timing_.learn(innovation.value, innovation.total, now_.state.speed, to.dt);  // (3)
   sample.timing_variance = timing_.variance();
-  const bool without_contact = ratio > square(kToolSeen) && rivalExplains(to.dt, sample);
+  const bool without_contact = ratio > square(kToolSeen) && hypothesisExplains(to.dt, sample);
   if (without_contact) return std::nullopt;
   if (meetsTool(to.dt, innovation, sample) || meetsOtherBlow(to.dt, innovation, sample))
     innovation = sample.ofAngle(now_);                    // (4)

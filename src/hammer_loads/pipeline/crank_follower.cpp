@@ -45,7 +45,7 @@ void CrankFollower::checkUnit(StampNs stamp, const CrankSample& measured) noexce
 }
 
 std::optional<Refusal> CrankFollower::otherUnit() const noexcept {
-  if (!unit_check_.looksWrong()) return std::nullopt;
+  if (!unit_check_.isOtherUnit()) return std::nullopt;
   if (isOfAngle(unit_check_.unit())) return Refusal::kAngleUnit;
   return unit_check_.unit() == CrankUnit::kDegrees ? Refusal::kDegrees : Refusal::kSpeedUnit;
 }

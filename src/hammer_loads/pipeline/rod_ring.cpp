@@ -175,7 +175,7 @@ void RodRing::drive(const CrankStep& step, const CrankEstimate& crank) noexcept 
   driven_ = std::max(driven_, -crank.speed * (links.rocker.u - free / at.offset));
 }
 
-void RodRing::letGo(const CrankStep::Passage& passage) noexcept {
+void RodRing::release(const CrankStep::Passage& passage) noexcept {
   const double u_before = motion(model_->mechanism().linkage(), {0.0, Side::kBeforeBlow}).u;
   lacking_ = driven_ > 0.0 ? std::max(0.0, passage.speed_before + driven_ / u_before) : 0.0;
   driven_ = 0.0;
@@ -184,7 +184,7 @@ void RodRing::letGo(const CrankStep::Passage& passage) noexcept {
 void RodRing::pass(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {
   if (passage.forward) approaches_ = false;
   if (!passage.strikes) return;
-  letGo(passage);
+  release(passage);
   strike(passage.speed_before, blow);
 }
 
@@ -205,7 +205,7 @@ void RodRing::follow(const CrankStep& step, const CrankFilter& tracker) noexcept
 void RodRing::take(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept {
   const RodEvidence& evidence = filter.rodEvidence();
   share_ = std::sqrt(evidence.share(filter.readingDeviation()));
-  let_go_ = std::sqrt(evidence.letGoShare(filter.readingDeviation()));
+  released_ = std::sqrt(evidence.releasedShare(filter.readingDeviation()));
   lost_ = lost || evidence.isLost();
   explained_ = restitution;
 }
@@ -215,7 +215,7 @@ double RodRing::doubtOf(double restitution) const noexcept {
 }
 
 double RodRing::restitutionDoubt(double restitution) const noexcept {
-  return gives_ ? std::max(share_, let_go_) * doubtOf(restitution) : 0.0;
+  return gives_ ? std::max(share_, released_) * doubtOf(restitution) : 0.0;
 }
 
 double RodRing::speed() const noexcept {

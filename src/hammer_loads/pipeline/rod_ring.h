@@ -52,7 +52,7 @@ class RodRing {
   /// rocker as fast as this one struck [rad/s]. A rocker at the side of its joint clearance is slower than the linkage
   /// predicts, the more so the nearer the dead centre. Nothing brakes it within the joint clearance: it strikes with
   /// the most it was driven at.
-  double lackingSpeed() const noexcept { return let_go_ * lacking_; }
+  double lackingSpeed() const noexcept { return released_ * lacking_; }
   /// Part of the rocker's speed that the last blow left for the rod to take up [rad/s].
   double struck() const noexcept { return gives_ ? share_ * struck_ : 0.0; }
   /// Root mean square of the rocker's angular speed relative to the rigid links' [rad/s].
@@ -68,7 +68,7 @@ class RodRing {
   void approach(const CrankAngle& at) noexcept;
   void drive(const CrankStep& step, const CrankEstimate& crank) noexcept;
   double doubtOf(double restitution) const noexcept;
-  void letGo(const CrankStep::Passage& passage) noexcept;
+  void release(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;
   bool gives_, moves_{};           ///< moves: from the run-up on, which may turn out to be a blank firing
@@ -78,7 +78,7 @@ class RodRing {
   };
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
-  double acceleration_{}, struck_{}, share_{1.0}, let_go_{1.0};
+  double acceleration_{}, struck_{}, share_{1.0}, released_{1.0};
   double driven_{};                  ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
   double lacking_{};                 ///< at the last blow, of the crank's speed [rad/s]
   bool lost_{};                      ///< nothing explains what blows did to the crank

@@ -101,7 +101,7 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
   const bool too_fast = std::abs(rate) > max_speed_;
   if (too_fast && std::abs(rate) > kDegrees * max_speed_) return;  // no crank in degrees either
   slow_time_ = too_fast ? 0.0 : slow_time_ + dt;
-  if (looksWrong() && !too_fast && slow_time_ < look_back::kTenTurns) return;  // a hammer that stops is slow, too
+  if (isOtherUnit() && !too_fast && slow_time_ < look_back::kTenTurns) return;  // a hammer that stops is slow, too
   vote(bound_votes_, too_fast ? CrankUnit::kDegrees : CrankUnit::kRadians);
 }
 

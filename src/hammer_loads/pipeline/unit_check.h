@@ -64,7 +64,7 @@ class UnitCheck {
   /// Sample dt after the one before it [s]; dt <= 0, a long pause and values that are not finite begin a new stretch.
   void add(double dt, double angle, std::optional<double> speed) noexcept;
   CrankUnit unit() const noexcept { return recognised_; }
-  bool looksWrong() const noexcept { return recognised_ != CrankUnit::kRadians; }
+  bool isOtherUnit() const noexcept { return recognised_ != CrankUnit::kRadians; }
   /// The last stretches speak for another unit, but not enough of them yet.
   bool suspects() const noexcept {
     return speed_votes_ >= kSuspicious || bound_votes_ >= kSuspicious || cycle_votes_ >= kSuspicious;

@@ -165,7 +165,7 @@ class HammerOnBoom {
   void acceptElastic(const State& next);
   State stepped(const State& s, double dt) const;
   double timeToDeadCentre(double dt) const;
-  void letGo();
+  void release();
   void passDeadCentre();
   void blow();
 

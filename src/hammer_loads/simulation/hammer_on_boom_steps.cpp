@@ -72,7 +72,7 @@ void HammerOnBoom::advanceTo(double time) {
     return;
   }
   while (now_.time < time) {
-    letGo();
+    release();
     followOperator();
     const double left = time - now_.time;
     double dt = std::min(step_, left);
@@ -97,7 +97,7 @@ void HammerOnBoom::advanceTo(double time) {
 }
 
 /// Once per instant: a torque that falls through zero lets go of the crank and stops it at once.
-void HammerOnBoom::letGo() {
+void HammerOnBoom::release() {
   if (!now_.resting || released_ >= now_.time) return;
   State free = now_;
   free.resting = false;

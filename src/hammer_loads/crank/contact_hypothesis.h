@@ -13,7 +13,7 @@ namespace hammer_loads {
 /// mirrored branch and returns a turn later. Both beliefs are updated by the same samples until one is far more likely.
 /// Near the dead centre an elastic rod may make the correct one unlikely; it is suspended there and examined again
 /// after it.
-class ContactRival {
+class ContactHypothesis {
  public:
   /// belief: about to pass the blow with contact.
   void begin(const CrankBelief& belief) noexcept;

@@ -1,4 +1,4 @@
-#include "hammer_loads/crank/contact_rival.h"
+#include "hammer_loads/crank/contact_hypothesis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,20 +16,20 @@ constexpr double kMostFit = 8.0;   // as above that one sample may add: it may b
 
 }  // namespace
 
-void ContactRival::begin(const CrankBelief& belief) noexcept {
+void ContactHypothesis::begin(const CrankBelief& belief) noexcept {
   belief_ = belief;
   evidence_ = std::log(turns_without_ / turns_with_);
   aside_ = false;
 }
 
-void ContactRival::beginAnew(const CrankBelief& estimate) noexcept {
+void ContactHypothesis::beginAnew(const CrankBelief& estimate) noexcept {
   begin(estimate);
   Side& side = belief_->state.position.angle.side;
   side = opposite(side);
 }
 
-void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
-                          double most_speed) noexcept {
+void ContactHypothesis::follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
+                               double most_speed) noexcept {
   CrankBelief& belief = *belief_;
   const Innovation angle = sample.ofAngle(belief);
   double own_fit = angle.logLikelihood();
@@ -45,7 +45,7 @@ void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, 
   if (!belief.isSound(most_speed)) drop();
 }
 
-bool ContactRival::choose(CrankBelief& estimate, bool& mirrored) noexcept {
+bool ContactHypothesis::choose(CrankBelief& estimate, bool& mirrored) noexcept {
   aside_ = aside_ || evidence_ == -kDecided;
   if (aside_ && !mirrored && std::abs(estimate.state.position.angle.offset) < RodEvidence::kPickedUp) return false;
   const bool change = evidence_ > kChange;
