@@ -257,8 +257,8 @@ std::optional<StrokeTable> readStrokeTable(const std::string& csv, std::string& 
     }
     const std::optional<double> stroke = decimalNumber(cells[0]), angle = decimalNumber(cells.back());
     if (cells.size() != 2 || !stroke || !angle || std::abs(*stroke) > 100.0 || std::abs(*angle) > 7.0) {
-      problem = format("line %zu: %.40s, must be two numbers: a stroke up to 100 m, an angle up to 7 rad", number,
-                       line.c_str());
+      constexpr char kRule[] = "line %zu: %.40s, must be two numbers: a stroke up to 100 m, an angle up to 7 rad";
+      problem = format(kRule, number, line.c_str());
       return {};
     }
     table.stroke.push_back(*stroke), table.angle.push_back(*angle);

@@ -27,7 +27,7 @@ class ConstantErrors {
                        kSpeedScale = indexOfUnknown("speed scale");
   static constexpr double kUnknownZero = 0.09;     ///< [rad]: a coupling slips by up to 10 deg
   static constexpr double kCalibratedZero = 0.02;  ///< [rad]: a zero of a smaller standard deviation needs no proof
-  /// Standard deviation of estimate() where an elastic connecting rod looks like part of the zero's error [rad].
+  /// Standard deviation of estimate() by an elastic connecting rod, which imitates an error of the zero [rad].
   static constexpr double kRodHides = 0.01;
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< errors of the table alone
@@ -79,11 +79,11 @@ class ConstantErrors {
   /// Returns true after enough turns for estimate() and deviation().
   bool knows() const noexcept;
   int turns() const noexcept { return turns_; }
-  /// The turns have shown the zero, or it was given well enough. Until then moment() contains it as it was given: in
-  /// the first turns the estimate of a zero that is 8 deg off may pass through 0.
+  /// Returns true if the turns have shown the zero, or if its given deviation is small. Until then moment() contains
+  /// the given deviation, since the estimate of a zero that is 8 deg off may pass through 0 in the first turns.
   bool zeroIsShown() const noexcept { return zeroIsGiven() || (knows() && !zero_is_doubted_); }
   bool zeroIsGiven() const noexcept { return zero_given_ < kCalibratedZero; }
-  /// Another judge does not agree with estimate().
+  /// Sets whether the search over the whole turn contradicts estimate().
   void doubtZero(bool doubted) noexcept { zero_is_doubted_ = doubted; }
   /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
   /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().

@@ -18,17 +18,18 @@ namespace hammer_loads {
 /// Readings that a controller takes in a task of period T and sends at another rate are as old as its last task. The
 /// instants at which they were taken are the stamps corrected by the innovations over the speed. They lie on a grid of
 /// T, on which the stamps do not lie; jitter has no grid. The statistic is that of Rayleigh's test, the length of the
-/// mean of exp(2 pi i instant/T) over some 200 samples: 1 on the grid, some 0.06 elsewhere. Equal intervals of sampling
-/// lie on each grid that divides them, and so do the readings of a controller with such a task: their age is constant,
-/// and no reading shows it.
+/// mean of exp(2 pi i instant/T) over some 200 samples: 1 on the grid, some 0.06 elsewhere. Stamps at equal intervals
+/// lie on each grid that divides the interval. A task of such a period is therefore not recognised: the age of its
+/// readings is constant.
 class ControllerTask {
  public:
-  /// A reading with its stamp [ns]. off: innovation of its angle over the speed [s]; 0 where the stamps do not jitter.
+  /// Adds a reading with its stamp [ns]. off: innovation of its angle over the speed [s]; 0 where the stamps do not
+  /// jitter.
   void add(std::int64_t stamp, double off) noexcept {
     repeats_.add(0.0);
     if (takeStep(stamp) && off != 0.0) findGrid(stamp, off);
   }
-  /// The reading before has come again with this stamp [ns], though the crank has turned.
+  /// Adds a repetition of the last reading with this stamp [ns], although the crank has turned.
   void repeat(std::int64_t stamp) noexcept {
     repeats_.add(1.0);
     takeStep(stamp);
@@ -41,7 +42,7 @@ class ControllerTask {
   }
 
  private:
-  /// Mean interval, of which jitter takes as much as it adds. False after a gap.
+  /// Adds an interval to their mean, in which jitter cancels. Returns false after a gap.
   bool takeStep(std::int64_t stamp) noexcept {
     const double step = 1e-9 * static_cast<double>(stamp - std::exchange(last_, stamp));
     if (!(std::abs(step) < kLongest)) return false;

@@ -121,13 +121,11 @@ class CrankFilter {
   const ShaftState& state() const noexcept { return now_.state; }
   /// Estimate at the last accepted sample, as the filter computes it.
   const CrankBelief& belief() const noexcept { return now_; }
-  /// Prior of the next blow.
-  BlowPrior blowPrior() const noexcept { return blows_.prior(); }
   /// Random walks of the next step.
   CrankWalks walks() const noexcept {
     return {roughness_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk, supply_.law()};
   }
-  /// Law of the supply, as learned.
+  /// Identified law of the supply.
   const SupplyLaw& supplyLaw() const noexcept { return supply_.law(); }
   double mostSpeed() const noexcept;  ///< from which on an estimate has diverged [rad/s]
   /// Factor by which variances are multiplied before they are published.
@@ -136,15 +134,14 @@ class CrankFilter {
   /// filter computes it; what it publishes is multiplied by the consistency where that is above 1.
   const ShaftMatrix& covariance() const noexcept { return now_.covariance; }
   const Encoder& encoder() const noexcept { return encoder_; }
-  /// The last one taken, as it was weighed.
+  /// The last accepted sample with its noise.
   const WeighedSample& sample() const noexcept { return sample_; }
   /// Time after its stamp at which the prediction reaches the last angle [s].
   double instantOff() const noexcept { return instant_off_; }
-  /// Logarithm of the likelihood of its angle before it was taken, but for a constant.
+  /// Logarithm of the likelihood of its angle before the update, without a constant.
   double angleFit() const noexcept { return angle_fit_; }
-  double speedNoise() const noexcept {
-    return std::sqrt(speed_variance_);
-  }  ///< identified noise of measured speeds [rad/s]
+  /// Identified noise of measured speeds [rad/s].
+  double speedNoise() const noexcept { return std::sqrt(speed_variance_); }
   /// Part of the angles' lag that is subtracted from the readings.
   const AngleLag& angleLag() const noexcept { return angle_lag_; }
   /// Check of measured speeds, which decides whether they are used.

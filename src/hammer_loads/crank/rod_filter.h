@@ -25,7 +25,7 @@ struct RodMotion {
 /// but enough on that of ten.
 ///
 /// Extended Kalman filter, linearised by differences: for each independent error (a column of the covariance's root) a
-/// perturbed machine is integrated beside the estimate.
+/// perturbed machine is integrated in parallel.
 class RodFilter {
  public:
   enum Row : Eigen::Index {

@@ -28,7 +28,7 @@ constexpr double kOneStamp = 0.3;           // of it that a single stamp contrib
 constexpr double kLeastIndependence = 0.2;
 constexpr double kNoLoss = 3.0;         // logarithm of the odds that none was lost: 20 to 1
 constexpr double kLeastScatter = 0.15;  // of the interval: a run's beginning is not known better
-constexpr double kBent = 0.2;           // of the line's memory: what is linear
+constexpr double kBent = 0.2;           // of the line's memory, for which the correction is linear
 constexpr double kGrown = 2.0;          // scatter about the line over that of white jitter with such steps
 
 // Limits of the sequence.
@@ -73,17 +73,14 @@ void SteadyClockFit::confirm(bool counted) noexcept {
   unsure_stamps_ = counted ? std::max(0, unsure_stamps_ - 1) : kUnsure;
 }
 
-/// The line takes up the run that has ended, by its last sample.
+/// Updates the line by the run that has ended, with its last sample.
 void SteadyClockFit::endRun() noexcept {
   const double end = residual_, step = end - end_residual_;
   end_residual_ = end;
   if (++runs_ == 1) return;  // the first one is the line's beginning
   mean_length_ += (run_length_ - mean_length_) / std::min<double>(runs_, kScatterSamples);
   const double n = remembered_ = std::min(remembered_ + 1.0, kMemorySamples / mean_length_);
-  double used = end;
-  if (runs_ >= kWarm) {
-    used = std::clamp(used, -mostUsed(), mostUsed());
-  }
+  const double used = runs_ >= kWarm ? std::clamp(end, -mostUsed(), mostUsed()) : end;
   instant_ += used * 2.0 * (2.0 * n - 1.0) / (n * (n + 1.0));
   interval_ = std::max(0.0, interval_ + used / run_length_ * 6.0 / (n * (n + 1.0)));
   if (runs_ < kFirst) return;
@@ -95,32 +92,33 @@ void SteadyClockFit::endRun() noexcept {
     remembered_ = std::min(remembered_, kScatterSamples);  // samples that were lost unseen have bent the line
 }
 
-/// Residual as which one that is further off counts [ns].
+/// Bound to which residuals are clipped [ns].
 double SteadyClockFit::mostUsed() const noexcept {
   return kClip * std::max(std::sqrt(end_square_), kExact * interval_);
 }
 
-/// The line, by [ns].
+/// Moves the line [ns].
 void SteadyClockFit::move(double by) noexcept {
   instant_ += by;
   residual_ -= by;
   end_residual_ -= by;
 }
 
-/// The readings show a loss: what the stamps say of another one before it stays.
+/// Applies a loss that the readings show; the evidence of the stamps for another one is kept.
 void SteadyClockFit::skip(double intervals) noexcept {
   move(intervals * interval_);
   if (mean_length_ >= kAlone) lost_ = gained_ = {};
 }
 
-/// Stamps that are late alike, one after the other, say less than independent ones.
+/// Weight of a stamp: correlated lateness of successive stamps is less information than independent lateness.
 double SteadyClockFit::independence() const noexcept {
   const double alike = end_square_ > 0.0 ? std::clamp(1.0 - 0.5 * step_square_ / end_square_, 0.0, 1.0) : 0.0;
   return std::max(kLeastIndependence, (1.0 - alike) / (1.0 + alike));  // a loss makes them alike as well
 }
 
-/// off: lateness of a stamp; step: from the one before. A stamp that follows a late one at once was held up by it and
-/// says nothing more of lost samples. One stamp that repeats is enough, as the last sample of each waited least.
+/// off: lateness of a stamp; step: from the previous one. A stamp that follows a late one at once was delayed by it and
+/// gives no information on lost samples. A single stamp suffices if stamps repeat, as the last sample of each waited
+/// least.
 void SteadyClockFit::gatherEvidence(double off, double scatter, double step) noexcept {
   const bool repeats = mean_length_ >= kAlone;
   const bool held_up = is_late_ && step < 0.5 * interval_ && !repeats;
@@ -134,8 +132,8 @@ void SteadyClockFit::gatherEvidence(double off, double scatter, double step) noe
   gained_.add(by(-off), off);
 }
 
-/// By how much the line moves, as it was off by whole intervals [ns]. The stamps since then have already moved it by
-/// a part of that, and bent it.
+/// Corrects a count that is off by whole intervals; returns the move of the line [ns]. The stamps since the miscount
+/// have already moved and tilted the line by a part of it, which is subtracted.
 double SteadyClockFit::correctCount() noexcept {
   const bool is_lost = lost_.logarithm > kEvidence;
   if (!is_lost && !(gained_.logarithm > kEvidence)) return 0.0;

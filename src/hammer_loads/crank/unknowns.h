@@ -29,7 +29,7 @@ constexpr double roughCosine(double x) noexcept { return roughSine(0.25 * kTwoPi
 struct Unknown {
   enum class Use {
     kSeen,        ///< estimated from the innovations; not corrected, but reported and included in the deviations
-    kTakenUp,     ///< estimated likewise, separately; its owner corrects the constant
+    kTakenUp,     ///< estimated from the innovations, separately; its owner corrects the constant
     kConsidered,  ///< considered with its prior, not estimated
   };
   const char* name;  ///< name of its warning; adjacent rows of one name are one amount, root of their squares

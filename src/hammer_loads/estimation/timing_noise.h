@@ -49,12 +49,13 @@ class TimingNoise {
   static constexpr double kGain = 1.0 / look_back::kReadings;
   static constexpr int kLearning =
       60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
-  static constexpr double kFirstCounts = 50.0;    // samples that the first guess stands for
-  static constexpr double kFirstOfSparse = 10.0;  // likewise: at 100 Hz the filter would restart until then
-  static constexpr double kSparse = 0.008;        // [s]
-  static constexpr double kSparsest = 0.015;      // [s]: at 50 Hz too few samples see a clean sensor's jitter
-  static constexpr double kVisible = 9e-8;        // [s2]: a sample that could not see 0.3 ms is not asked
-  static constexpr double kLargest = 0.02;        // [s]: more is no jitter
+  static constexpr double kFirstCounts = 50.0;  // samples that the first guess stands for
+  static constexpr double kFirstOfSparse =
+      10.0;  // samples of the first guess at sparse samples, as the filter at 100 Hz would restart until then
+  static constexpr double kSparse = 0.008;    // [s]
+  static constexpr double kSparsest = 0.015;  // [s]: at 50 Hz too few samples see a clean sensor's jitter
+  static constexpr double kVisible = 9e-8;    // [s2]: a sample that could not see 0.3 ms is not asked
+  static constexpr double kLargest = 0.02;    // [s]: more is no jitter
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};

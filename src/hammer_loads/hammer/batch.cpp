@@ -14,7 +14,7 @@
 #define HAMMER_LOADS_CLONES
 #endif
 
-/// Tells the compiler that the arrays of the next loop do not overlap (batch.h).
+/// Instructs the compiler that the arrays of the next loop do not overlap (batch.h).
 #if defined(__clang__)
 #define HAMMER_LOADS_NO_ALIAS _Pragma("clang loop vectorize(assume_safety)")
 #elif defined(__GNUC__)

@@ -38,12 +38,12 @@ class CrankTrust {
   /// Notes a gap or a jump back in time, over which the crank's motion is not known.
   void begin() noexcept {
     reading_.reset();
-    unbelieved_ = 0;
+    unpublished_ = 0;
   }
-  /// Notes a forward passage of the blow. believed: the estimate just before it was good enough to be published. A
+  /// Notes a forward passage of the blow. published: the estimate just before it was accurate enough to be published. A
   /// crank that rocks at the dead centre gives no information.
-  void passBlow(bool believed) noexcept {
-    if (hasRunUp()) unbelieved_ = believed ? 0 : std::min(unbelieved_ + 1, kUnbelieved);
+  void passBlow(bool published) noexcept {
+    if (hasRunUp()) unpublished_ = published ? 0 : std::min(unpublished_ + 1, kUnpublished);
   }
 
   bool turnsBackward() const noexcept { return backward_; }
@@ -51,7 +51,7 @@ class CrankTrust {
   bool hasRunUp() const noexcept { return forward_ > kRunUp; }
   bool isInconsistent() const noexcept { return inconsistent_ || isLost(); }
   /// Returns true if the estimate before the blow was not good enough in several successive turns.
-  bool isLost() const noexcept { return unbelieved_ == kUnbelieved; }
+  bool isLost() const noexcept { return unpublished_ == kUnpublished; }
   std::optional<Refusal> refusal() const noexcept {
     if (backward_) return Refusal::kBackward;
     return isInconsistent() ? std::make_optional(Refusal::kInconsistent) : std::nullopt;
@@ -60,7 +60,7 @@ class CrankTrust {
  private:
   /// Number of successive strokes. With a correct model one in a hundred is not accepted, after lost samples; with a
   /// zero 30 deg off on a machine with an elastic rod, or on a machine without a tool, nine of ten are not.
-  static constexpr int kUnbelieved = 2;
+  static constexpr int kUnpublished = 2;
   static constexpr double kRunUp = 1.0;  ///< [rad]: more than the noise of readings, less than the motion at a blow
   /// Judges the direction of rotation. A stopping hammer that falls back on its tool turns backward by less than half a
   /// turn, since the rocker cannot pass the dead centre backward.
@@ -79,7 +79,7 @@ class CrankTrust {
   std::optional<double> reading_;  ///< the last one [rad]
   double forward_{}, back_{};      ///< rotation forward since the furthest point backward [rad]
   bool backward_{}, inconsistent_{};
-  int unbelieved_{};  ///< strokes in a row of which the estimate was not good enough to be published
+  int unpublished_{};  ///< strokes in a row of which the estimate was not good enough to be published
 };
 
 }  // namespace hammer_loads

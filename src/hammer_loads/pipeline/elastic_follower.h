@@ -28,10 +28,9 @@ class ElasticFollower {
   void follow(const CrankFollower& crank, Gravity gravity) noexcept {
     if (wanted_) followRods(crank, gravity);
   }
-  /// The last blow was none of two bodies on a tool near the dead centre, however the rod may be: nothing explains what
-  /// it did to the crank.
+  /// True if no rod explains the effect of the last blow on the crank by two bodies and a tool near the dead centre.
   bool isLost() const noexcept { return lost_; }
-  /// Restitution by the last blow that a spring explained [-]; none where a rigid rod explains the recent blows better.
+  /// Restitution of the last blow that a spring explained [-]; empty if a rigid rod explains the recent blows better.
   std::optional<double> restitution() const noexcept {
     return best_ != nullptr ? std::make_optional(restitution_) : std::nullopt;
   }

@@ -205,8 +205,8 @@ bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noe
   return std::abs(at.angle.offset) < gate * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
 }
 
-/// While the zero is known badly a slow crank near the blow may have met the tool, or bounce on it. The filter of a rod
-/// knows its touches better than the zero.
+/// Before the zero is shown a slow crank near the blow may have met the tool, or bounce on it. An elastic rod's filter
+/// determines the contacts better than the zero does.
 bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
                   std::optional<bool> rod) noexcept {
   const ConstantErrors& errors = filter.constantErrors();

@@ -95,9 +95,10 @@ double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept;
 /// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored
 /// branch nowhere. deviation: of the crank from the blow [rad]; NaN: not known. gate: so many of them.
 bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate = gate::kUsual) noexcept;
-/// Returns true likewise for an angle with a standard deviation [rad], with the zero as far as it is known. rod: answer
-/// of the elastic rod that is followed; nothing: the rod is rigid. A blow without a tool before the zero is known is
-/// none for certain: a zero that is off looks alike.
+/// Returns true if the crank is too close to the blow for its side to be known, with the uncertainty of the zero
+/// included. angle_std: standard deviation of the angle [rad]. rod: answer of the elastic rod's filter; empty: the rod
+/// is rigid. Before the zero is shown the mirrored branch counts as close, since a wrong zero imitates a blow without a
+/// tool.
 bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
                   std::optional<bool> rod) noexcept;
 

@@ -16,9 +16,10 @@ namespace {
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
 constexpr double kPeakLasts = 60.0;                           // [s]
-constexpr double kUncertain = 5.0;   // times withhold_above: half of the peak, beyond it a load says nothing
-constexpr double kInertiaOff = 0.9;  // logarithm of the drive inertia over the given: a zero far off makes more of it
-constexpr double kLeastPeak = 0.1;   // of that at constant speed: a hammer that idles is judged as one that works
+constexpr double kUncertain = 5.0;  // times withhold_above: half of the peak, beyond it a load says nothing
+constexpr double kInertiaOff =
+    0.9;  // logarithm of the drive inertia over the given one, which a wrong zero changes more
+constexpr double kLeastPeak = 0.1;  // of that at constant speed: a hammer that idles is judged as one that works
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
 
@@ -83,8 +84,8 @@ const SampleResult& Pipeline::refuse(Refusal refusal) noexcept {
 
 /// Ends a sample that the crank has used and the outputs have not, which continue from the next one.
 const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
-  const bool believed = refusal == Refusal::kUnsettled && crank_.step().known();
-  swingOn(believed ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
+  const bool continues = refusal == Refusal::kUnsettled && crank_.step().known();
+  swingOn(continues ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
   sampler_.forget();
   turn_.withheld();
   return refuse(refusal);
@@ -214,7 +215,7 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
 /// A crank held at constant speed shows little of itself: its samples are known where no force's standard deviation is
 /// above five times withhold_above of the peak of the last minute, within the bounds of a turn at constant speed.
 bool Pipeline::isKnown() const noexcept {
-  // Readings that contradict the model do not show that a blow failed.
+  // A blow without a tool is doubtful while the readings contradict the model.
   if (result_.crank.position.isMirrored() && result_.consistency > CrankTrust::kMost) return false;
   const double inertia = crank_.tracker().driveInertia(), given = mechanism_.parameters().drive_inertia;
   if (!crank_.tracker().constantErrors().zeroIsShown() && inertia > 0.0 &&

@@ -35,8 +35,9 @@ Eigen::Matrix3d Pipeline::contactDoubt(const LinkMotion& links, const DriveReact
   return probability * doubt * doubt.transpose();
 }
 
-/// Covariance of the wrench by a zero that no turn has shown yet, beyond what is linear in it: the wrench at both ends
-/// of its range. Where the tool carries a slow rocker is not known either, and the drive inertia is learned wrong.
+/// Covariance of the wrench by a zero that no turn has shown yet: the wrench at both ends of the zero's range, as it is
+/// not linear in it. It includes the weight of a slow rocker, which the tool may carry, and the error of the drive
+/// inertia.
 Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
   const ConstantErrors& errors = crank_.tracker().constantErrors();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();

@@ -37,9 +37,9 @@ class RodRing {
   void restart(const CrankFilter& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankFilter& tracker) noexcept;
-  /// The filter has followed the readings, which may show that no rod vibrates. lost, restitution: isLost() and
-  /// restitution() of ElasticFollower. A blow that nothing explains has any restitution, but a vibration as large as by
-  /// that of the blows that a spring explained.
+  /// Takes the evidence of the crank's filter on a vibrating rod. lost, restitution: isLost() and restitution() of
+  /// ElasticFollower. The vibration after an unexplained blow is that by the restitution of the explained ones; the
+  /// restitution of the blow itself is not known.
   void take(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept;
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].

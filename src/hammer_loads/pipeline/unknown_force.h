@@ -31,8 +31,8 @@ class UnknownForce {
   /// Zero for a rod that is rigid and tight by the hammer file. Refers to the mechanism, which must outlive it.
   explicit UnknownForce(const Mechanism& mechanism) noexcept;
 
-  /// Over a step [s]; passed: the crank passed a blow in it. waits: the spring that is followed has not met the tool
-  /// yet, and the blow begins when it has.
+  /// Advances by a step [s]. passed: the crank passed the dead centre in it. waits: the elastic rod's filter has not
+  /// met the tool yet, so that the blow begins later.
   void follow(double step, bool passed, bool waits = false) noexcept;
   /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;

@@ -93,7 +93,7 @@ void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
   added_up_to_ = time;
 }
 
-/// Follows the hull, and what the deviations have beside the crank's, over the step that the sample ends.
+/// Takes the hull's motion over the step that the sample ends, and the errors at the sample that are not the crank's.
 void WrenchSampler::followStep(const SampleResult& result) noexcept {
   beside_before_ = beside_;
   beside_ = result.beside;
@@ -157,7 +157,7 @@ HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUn
   LoadColumns unused;
   HullDeviation of = hullDeviation(*hammer_, *model_, step_->driveInertia(), crank, there, hull, doubt, unused);
   addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of);
-  // A blow changes what rod and unknown forces leave open: in front of it the sample before counts.
+  // Errors by rod and unknown forces change at a blow; before it they are those of the previous sample.
   const bool before_blow = hull_.blow && crank.position.angle.side == Side::kBeforeBlow;
   addCovariance(before_blow ? beside_before_ : beside_, of);
   return of;

@@ -8,14 +8,15 @@ namespace {
 
 constexpr double kSearchShows =
     3.2 * kDegree;  // by the search, negative: on machines with a right zero it shows up to -2.4 deg
-constexpr double kSearchShowsAhead = 2.4 * kDegree;  // likewise, positive: up to 0.8 deg
+constexpr double kSearchShowsAhead =
+    2.4 * kDegree;  // by the search, positive: with a right zero it shows up to 0.8 deg
 constexpr double kFilterAgrees = 0.8 * kDegree;
 constexpr double kAgrees = 1.5;   // consistency of readings and model
-constexpr double kOfStep = 0.08;  // of the way between samples: what is seen no better
+constexpr double kOfStep = 0.08;  // part of the rotation between samples: resolution of the search
 constexpr double kDeviations = gate::kVeryRare;
 constexpr double kFilterShows =
     1.2 * kDegree;  // by the filter, positive: with a right zero it shows up to 0.5 deg, on a light hull 0.9 deg
-constexpr double kSearchErrs = 3.2 * kDegree,  // of the search, of readings at 100 Hz as well
+constexpr double kSearchErrs = 3.2 * kDegree,  // largest error of the search, also at 100 Hz
     kSearchErrsAhead = 1.5 * kDegree;
 constexpr double kSearchDeviation = 2.0 * kDegree;  // standard
 constexpr double kCountsAhead = 0.8 * kDegree;      // by the filter: a zero 3 deg off may look like 1 deg
@@ -71,7 +72,8 @@ ZeroWatch::Stated ZeroWatch::stated(const CrankFilter& filter) const noexcept {
   const double shown = errors.estimate()[ConstantErrors::kZero];
   Eigen::Vector4d deviations(errors.deviation()[ConstantErrors::kZero], errors.zeroNotLinear(), 0.0, 0.0);
   if (filter.rodEvidence().gives()) deviations[2] = ConstantErrors::kRodHides;
-  // The linear estimate saturates: readings that it does not explain leave open what the search shows.
+  // The linear estimate saturates: if it does not explain the readings, the difference from the search is a part of the
+  // deviation.
   if (!(filter.consistency() < kAgrees)) deviations[3] = found ? found->error - shown : ConstantErrors::kUnknownZero;
   return {moved_ + shown, deviations.norm()};
 }
@@ -81,7 +83,7 @@ bool ZeroWatch::mayCount(const CrankFilter& filter) const noexcept {
   if (errors.zeroIsGiven()) return true;
   if (!errors.zeroIsShown() || errors.turns() < kTurnsToSearch) return false;
   if (errors.estimate()[ConstantErrors::kZero] > kCountsAhead) return false;
-  // An elastic rod looks like a zero up to 3 deg off, and calibrate does not find the zero beside it.
+  // An elastic rod causes an apparent error of up to 3 deg, and calibrate cannot separate it from the zero.
   return filter.rodEvidence().gives() || std::max(errors.zeroDeviation(), stated(filter).deviation) < kMost;
 }
 

@@ -29,15 +29,15 @@ class ZeroWatch {
   bool withholds() const noexcept { return isOff() && (!settled_ || std::abs(moved_) > kMost); }
   /// Returns true if the zero in force differs from the parameter's.
   bool isOff() const noexcept { return std::abs(moved_) > kNone; }
-  /// The filter's estimate of the zero may be wrong: readings and model do not agree, nor does the search with it.
+  /// Returns true if the filter's estimate of the zero may be wrong, as it contradicts the readings or the search.
   bool doubts(const CrankFilter& filter) const noexcept;
   struct Stated {
     double error{};      ///< error of the parameter [rad of the crank's angle]
     double deviation{};  ///< standard [rad]
   };
-  /// Error of the parameter as far as it is known by now: by the filter where the search does not contradict it.
+  /// Best estimate of the parameter's error: that of the filter unless the search contradicts it.
   Stated stated(const CrankFilter& filter) const noexcept;
-  /// The zero in force is known well enough for what cannot be taken back: load cycles.
+  /// Returns true if the zero in force is known well enough to count load cycles, which cannot be corrected later.
   bool mayCount(const CrankFilter& filter) const noexcept;
   bool isSettled() const noexcept { return settled_; }  ///< the filter agrees with the zero that was found
   /// By how much the zero in force is larger than the parameter's [rad of the crank's angle].
