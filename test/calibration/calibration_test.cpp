@@ -46,7 +46,7 @@ TEST(Calibration, FindsTheZeroAmongBlowsThatDiffer) {
   EXPECT_NEAR(find(c, "crank_angle_resolution_rad")->value, kTwoPi / 4096, 1e-9);
   EXPECT_NEAR(find(c, "drive_inertia_kg_m2")->value, s.drive.inertia, 0.03 * s.drive.inertia);
   EXPECT_GE(find(c, "drive_inertia_kg_m2")->deviation, 0.02 * s.drive.inertia);  // the rocker's own
-  EXPECT_NEAR(std::sqrt(c.held_out), 1.0, 0.1);
+  EXPECT_NEAR(std::sqrt(c.mean_square), 1.0, 0.1);
 }
 
 TEST(Calibration, FindsAnEccentricEncoderThatTurnsTheOtherWay) {
@@ -268,7 +268,7 @@ TEST(Report, WritesNoKeyThatIsNotDetermined) {
 TEST(Report, StatesResultsGapsAndActionsInSixLines) {
   Calibration c;
   c.seconds = 60.0, c.blows = 240, c.more_blows = std::numeric_limits<double>::infinity(), c.facts.period = 1e-3;
-  c.fitted = c.held_out = 1.0;
+  c.mean_square = 1.0;
   c.estimates = {{"crank_zero_rad", "rad", 0.646, 4e-4, 5e-3, "m"},
                  {"crank_direction", "", -1.0, 0.0, 0.5, "m"},
                  {"crank_eccentricity_1_rad", "rad", 0.0, 1e-3, 7e-3, "m"},

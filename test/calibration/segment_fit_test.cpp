@@ -25,9 +25,11 @@ TEST(BlowShot, GoesWhereTheFiltersIntegrationGoes) {
       advance(model, (before ? -1.0 : 1.0) * (times[i] - now), Passing{}, state, load);
       now = times[i];
       const double offset = static_cast<double>(state.position.blow) * kTwoPi + state.position.angle.offset;
-      ASSERT_NEAR(points[i].offset, offset, 2e-6) << before << i;
-      ASSERT_NEAR(points[i].speed, state.speed, 1e-4);
-      ASSERT_NEAR(points[i].acceleration, acceleration(load, state), 0.02);
+      // A hundredth of a count of 4096, a thousandth of the noise of a measured speed (0.3 rad/s). The acceleration
+      // serves the weights alone: with a stamp off by 0.6 ms its error moves the speed as much.
+      ASSERT_NEAR(points[i].offset, offset, 1.5e-5) << before << i;
+      ASSERT_NEAR(points[i].speed, state.speed, 3e-4);
+      ASSERT_NEAR(points[i].acceleration, acceleration(load, state), 0.5);
     }
   }
 }

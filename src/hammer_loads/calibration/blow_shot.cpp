@@ -1,15 +1,18 @@
 #include "hammer_loads/calibration/blow_shot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hammer_loads/calibration/shot_way.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kMaxStep = 0.06;  // [rad]
-constexpr int kMostSteps = 64;     // from one time to the next
+// Numerical: kMaxStep, kMostSteps
+constexpr double kMaxStep = 0.08;  // [rad]
+constexpr int kMostSteps = 64;     // from one node of the torque to the next
 
 using Path = ShotWay::Path;
 using There = ShotWay::There;
@@ -19,6 +22,12 @@ struct Run {
   Path path;
   ShotSlopes slopes;
   There there;
+};
+
+struct Node {
+  double time;
+  ShotPoint at;
+  ShotSlopes slopes;
 };
 
 template <bool with_slopes>
@@ -44,16 +53,67 @@ void step(const ShotWay& way, double dt, Run& run) {
   run.there = way.at(end, run.path);
 }
 
-/// visit(i, run) at each of the times.
+/// Motion within a step: the polynomial of degree 5 through offset, speed and acceleration at both ends, and that of
+/// degree 3 for the derivatives.
+class Between {
+ public:
+  Between(double sign, const Node& from, const Node& to)
+      : sign_(sign), begin_(from.time), step_(to.time - from.time), from_(from), to_(to) {
+    const double v0 = sign * step_ * from.at.speed, v1 = sign * step_ * to.at.speed;
+    const double a0 = square(step_) * from.at.acceleration, a1 = square(step_) * to.at.acceleration;
+    const double left = to.at.offset - from.at.offset - v0 - 0.5 * a0, gained = v1 - v0 - a0, bent = a1 - a0;
+    c_ = {from.at.offset,
+          v0,
+          0.5 * a0,
+          10.0 * left - 4.0 * gained + 0.5 * bent,
+          -15.0 * left + 7.0 * gained - bent,
+          6.0 * left - 3.0 * gained + 0.5 * bent};
+  }
+  ShotPoint point(double time) const {
+    const double u = (time - begin_) / step_;
+    return {c_[0] + u * (c_[1] + u * (c_[2] + u * (c_[3] + u * (c_[4] + u * c_[5])))),
+            sign_ / step_ * (c_[1] + u * (2.0 * c_[2] + u * (3.0 * c_[3] + u * (4.0 * c_[4] + u * 5.0 * c_[5])))),
+            (2.0 * c_[2] + u * (6.0 * c_[3] + u * (12.0 * c_[4] + u * 20.0 * c_[5]))) / square(step_)};
+  }
+  ShotSlopes slopes(double time) const {
+    const double u = (time - begin_) / step_, v = 1.0 - u, signed_step = sign_ * step_;
+    const auto &a = from_.slopes, &b = to_.slopes;
+    ShotSlopes all;
+    all.row(0) = v * v * (1.0 + 2.0 * u) * a.row(0) + u * u * (3.0 - 2.0 * u) * b.row(0) +
+                 signed_step * u * v * (v * a.row(1) - u * b.row(1));
+    all.row(1) = 6.0 * u * v / signed_step * (b.row(0) - a.row(0)) + v * (1.0 - 3.0 * u) * a.row(1) +
+                 u * (1.0 - 3.0 * v) * b.row(1);
+    return all;
+  }
+
+ private:
+  double sign_, begin_, step_;
+  const Node &from_, &to_;
+  std::array<double, 6> c_;
+};
+
+template <bool with_slopes>
+Node nodeOf(const ShotWay& way, const Run& run) {
+  Node node{run.time, way.pointAt(run.there, run.path), {}};
+  if constexpr (with_slopes) node.slopes = way.ofPoint(run.there, run.slopes);
+  return node;
+}
+
+/// visit(i, motion within the step that holds the time) for each of the times. Steps end at the nodes of the torque.
 template <bool with_slopes, class Visit>
-void follow(const ShotWay& way, const std::vector<double>& times, Run run, const Visit& visit) {
+void follow(const ShotWay& way, const HalfShot& half, const std::vector<double>& times, Run run, const Visit& visit) {
   run.there = way.at(0.0, run.path);
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    const double left = times[i] - run.time;
-    const double needed = left / way.stepOf(run.there, kMaxStep);
+  Node from = nodeOf<with_slopes>(way, run);
+  double node_end = half.node_step;
+  for (std::size_t i = 0; i < times.size();) {
+    const double left = node_end - run.time, needed = left / way.stepOf(run.there, kMaxStep);
     const int steps = needed < kMostSteps ? std::max(1, static_cast<int>(std::ceil(needed))) : kMostSteps;
-    for (int k = 0; k < steps; ++k) step<with_slopes>(way, left / steps, run);
-    visit(i, run);
+    step<with_slopes>(way, left / steps, run);
+    if (steps == 1) node_end += half.node_step;
+    const Node to = nodeOf<with_slopes>(way, run);
+    const Between between(half.before ? -1.0 : 1.0, from, to);
+    for (; i < times.size() && times[i] <= to.time; ++i) visit(i, between);
+    from = to;
   }
 }
 
@@ -65,14 +125,14 @@ void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<doub
   points.resize(times.size());
   Run run{0.0, way.pathAtBlow(), ShotSlopes::Zero(), {}};
   if (!slopes) {
-    follow<false>(way, times, run, [&](std::size_t i, const Run& at) { points[i] = way.pointAt(at.there, at.path); });
+    follow<false>(way, half, times, run, [&](std::size_t i, const Between& at) { points[i] = at.point(times[i]); });
     return;
   }
   slopes->resize(times.size());
   run.slopes = way.slopesAtBlow();
-  follow<true>(way, times, run, [&](std::size_t i, const Run& at) {
-    points[i] = way.pointAt(at.there, at.path);
-    (*slopes)[i] = way.ofPoint(at.there, at.slopes);
+  follow<true>(way, half, times, run, [&](std::size_t i, const Between& at) {
+    points[i] = at.point(times[i]);
+    (*slopes)[i] = at.slopes(times[i]);
   });
 }
 

@@ -65,8 +65,8 @@ enum HalfIndex : Eigen::Index {
 using ShotSlopes = Eigen::Matrix<double, 2, kHalfMoving>;
 
 /// The crank at times away from the blow, ascending, >= 0 [s] (before it: how long before). Runge-Kutta of order 4 in
-/// angle and sqrt(inertia) speed, steps of at most 0.06 rad. slopes: null, or their derivatives, integrated along with
-/// them.
+/// angle and sqrt(inertia) speed, steps of at most 0.08 rad, polynomials within them. slopes: null, or their
+/// derivatives, integrated along with them.
 void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
            std::vector<ShotPoint>& points, std::vector<ShotSlopes>* slopes = nullptr);
 

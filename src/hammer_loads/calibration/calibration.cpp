@@ -17,6 +17,7 @@ namespace hammer_loads::calibration {
 namespace {
 
 constexpr std::size_t kLeastBlows = 12;
+constexpr std::size_t kRoughBlows = 40;  // of the first fit
 constexpr double kUsuallyNeeded = 60.0;  // blows
 constexpr int kCurveParts = 72;
 constexpr double kUnknownAngleNoise = 5e-4;  // first guess for a sensor without counts [rad]
@@ -25,6 +26,14 @@ Free toFind(bool centred) {
   Free free = Free::Constant(true);
   if (centred) free.segment<4>(kSine1).setConstant(false);
   return free;
+}
+
+/// So many of the blows at most, evenly spread over the recording.
+std::vector<BlowSegment> spread(const std::vector<BlowSegment>& segments, std::size_t most) {
+  std::vector<BlowSegment> some;
+  const std::size_t count = std::min(most, segments.size());
+  for (std::size_t i = 0; i < count; ++i) some.push_back(segments[i * segments.size() / count]);
+  return some;
 }
 
 ResidualCurve curveOf(const std::vector<SegmentFit>& fits, const SegmentModel& model, const Globals& globals,
@@ -137,40 +146,37 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   noise.torque = basis.torque_std;
   const bool centred = basis.ratio != 1.0;
   const Free free = toFind(centred);
-  const JointFit rough = fitJointly(segments, model, start, noise, toFind(true), piece(progress, 0.05, 0.22));
+  // A fit of some blows with the encoder on its centre finds where to cut.
+  const JointFit rough =
+      fitJointly(spread(segments, kRoughBlows), model, start, noise, toFind(true), piece(progress, 0.05, 0.15));
   segments = cutAtBlows(track, rough.globals[kZero]);
   result.blows = segments.size();
-
-  // The last quarter judges what the first three found.
-  const std::size_t three_quarters = segments.size() - segments.size() / 4;
-  const std::vector<BlowSegment> first(segments.begin(),
-                                       segments.begin() + static_cast<std::ptrdiff_t>(three_quarters));
-  const std::vector<BlowSegment> last(segments.begin() + static_cast<std::ptrdiff_t>(three_quarters), segments.end());
-  const JointFit part = fitJointly(first, model, rough.globals, rough.noise, free, piece(progress, 0.22, 0.35));
-  result.fitted = meanSquareOf(first, model, part.globals, part.noise, piece(progress, 0.35, 0.45));
-  result.held_out = meanSquareOf(last, model, part.globals, part.noise, piece(progress, 0.45, 0.48));
-
-  JointFit fit = fitJointly(segments, model, part.globals, part.noise, free, piece(progress, 0.48, 0.65));
+  JointFit fit = fitJointly(segments, model, rough.globals, rough.noise, free, piece(progress, 0.15, 0.35));
   if (!fit.converged || fit.fits.size() < kLeastBlows) {
     sayUnsettled(track, basis, start[kLogInertia], rough, result);
     return result;
   }
   result.left_out = fit.left_out;
+  result.mean_square = fit.mean_square;
   result.noise = fit.noise;
   result.after = curveOf(fit.fits, model, fit.globals, fit.noise);
   const double curve_square = systematic(result.after);
   fit.covariance *= std::max(1.0, curve_square);
   HammerPart hammer = findWithHammer(fit, model, free);
   hammer.widen(fit);
-  removeBias(fit, hammer, model, free, gain * track.facts.count, piece(progress, 0.65, 0.88));
-  if (!(hammer.covariance.diagonal().minCoeff() >= 0.0)) {
+  if (!hammer.isCertain()) {
     sayUnsettled(track, basis, start[kLogInertia], rough, result);
     return result;
   }
+  removeBias(fit, hammer, model, free, gain * track.facts.count, piece(progress, 0.35, 0.95));
   Globals in_force = basis.in_force;
   in_force.tail<kShaping>() = fit.globals.tail<kShaping>();
-  result.before = curveOf(fittedAlone(segments, model, in_force, fit.noise, piece(progress, 0.88, 1.0)), model,
-                          in_force, fit.noise);
+  std::vector<SegmentFit> as_in_force;
+  for (const BlowSegment& segment : segments) {
+    as_in_force.emplace_back(segment, in_force);
+    fitLocals(as_in_force.back(), model, in_force, fit.noise);
+  }
+  result.before = curveOf(as_in_force, model, in_force, fit.noise);
   const RodEvidence rod = rodEvidence(track, basis, fit);
   const GlobalMatrix by_blows = fit.covariance;
   fit.globals = hammer.globals, fit.covariance = hammer.covariance.topLeftCorner<kGlobals, kGlobals>();

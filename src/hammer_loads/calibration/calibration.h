@@ -53,8 +53,7 @@ struct Calibration {
   std::vector<std::string> remarks;
   bool rod_gives{};  ///< the connecting rod or its pins are elastic
   Noise noise;
-  double fitted{},
-      held_out{};  ///< mean square over variance: of the first three quarters, of the last with their values
+  double mean_square{};         ///< of the residuals over their variance, per degree of freedom
   ResidualCurve before, after;  ///< with the parameters in force, with those found
   double more_blows{};          ///< needed for every key that is not determined; infinity: more do not help
 

@@ -68,12 +68,12 @@ std::optional<FirstGuess> firstGuess(const CrankTrack& track, const SegmentModel
   double mean = 0.0;
   for (const SpeedAt& s : speeds) mean += s.speed / static_cast<double>(speeds.size());
   if (speeds.size() < 50 || mean < kLeastMean) return std::nullopt;
-  const ShaftModel shaft(model.mechanism, model.level);
   std::vector<double> inertia;
   for (int i = 0; i <= kTable; ++i) {
     const double angle = kTwoPi * i / kTable;
     inertia.push_back(
-        shaft(2 * i < kTable ? CrankAngle{angle, Side::kAfterBlow} : CrankAngle{angle - kTwoPi, Side::kBeforeBlow})
+        model
+            .shaft(2 * i < kTable ? CrankAngle{angle, Side::kAfterBlow} : CrankAngle{angle - kTwoPi, Side::kBeforeBlow})
             .inertia);
   }
   FirstGuess best;

@@ -12,8 +12,9 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr int kReplicas = 4;        // replicas of the recording, by which the bias is found
-constexpr double kBiasDoubt = 0.5;  // part of the bias that is left after its removal
+constexpr int kReplicas = 4;            // of the recording, in pairs whose errors have opposite signs
+constexpr double kMostUncertain = 5.0;  // variance over that before the recording
+constexpr double kBiasDoubt = 0.5;      // part of the bias that is left after its removal
 
 constexpr const char* kNames[kGlobals] = {"zero",
                                           "sine of the eccentricity once per revolution",
@@ -31,11 +32,10 @@ struct Information {
 };
 
 Information informationOf(const SegmentFit& fit, const JointFit& joint, const SegmentModel& model,
-                          const MachineColumns& columns) {
+                          const MachineColumns& columns, const std::vector<SegmentModel>& others) {
   const auto count = static_cast<Eigen::Index>(columns.columns().size()), size = kGlobals + count;
   std::vector<std::vector<ShotPoint>> beside;
-  for (const MachineColumn& column : columns.columns())
-    beside.push_back(fit.motion({column.mechanism, column.level}, joint.globals));
+  for (const SegmentModel& other : others) beside.push_back(fit.motion(other, joint.globals));
   const std::vector<ResidualRow> rows = fit.rows(model, joint.globals, joint.noise);
   const NormalEquations own = fit.equationsOf(rows, joint.noise);
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(kLocals, size);
@@ -83,25 +83,27 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
   constexpr int kSteps = 2;
   HammerPart part;
   part.globals = joint.globals, part.covariance = joint.plain_covariance;
-  part.prior = priorDeviations().cwiseAbs2().cwiseInverse();
+  Eigen::VectorXd prior = priorDeviations().cwiseAbs2().cwiseInverse();
   const auto columns = machineColumns(model.mechanism, model.level);
   if (!columns) return part;
   for (const MachineColumn& column : columns->columns()) part.names.push_back(column.name);
   const auto count = static_cast<Eigen::Index>(part.names.size()), size = kGlobals + count;
   part.errors = Eigen::VectorXd::Zero(count);
   const Globals centre = centreOf(joint);
-  part.prior.conservativeResize(size);
-  part.prior.tail(count).setOnes();
+  prior.conservativeResize(size);
+  prior.tail(count).setOnes();
   std::optional<Mechanism> hammer = model.mechanism;
   for (int i = 0; i < kSteps && hammer; ++i) {
     const SegmentModel here{*hammer, model.level};
     const MachineColumns beside(*hammer, model.level);
     if (beside.columns().size() != part.names.size()) break;  // at the edge of what a hammer can be
-    Information all{part.prior.asDiagonal(), Eigen::VectorXd(size)};
-    all.score << part.prior.head<kGlobals>().cwiseProduct(centre - joint.globals), -part.errors;
+    std::vector<SegmentModel> others;
+    for (const MachineColumn& column : beside.columns()) others.emplace_back(column.mechanism, column.level);
+    Information all{prior.asDiagonal(), Eigen::VectorXd(size)};
+    all.score << prior.head<kGlobals>().cwiseProduct(centre - joint.globals), -part.errors;
     for (SegmentFit& fit : joint.fits) {
       if (i > 0) fitLocals(fit, here, joint.globals, joint.noise);
-      const Information one = informationOf(fit, joint, here, beside);
+      const Information one = informationOf(fit, joint, here, beside, others);
       all.matrix += one.matrix, all.score += one.score;
     }
     hold(free, all.matrix, all.score);
@@ -126,17 +128,22 @@ void HammerPart::widen(const JointFit& fit) {
   }
 }
 
+bool HammerPart::isCertain() const {
+  return (covariance.diagonal().head<kGlobals>().array() <= kMostUncertain * priorDeviations().cwiseAbs2().array())
+      .all();
+}
+
 void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, const Free& free, double count,
                 const Progress& progress) {
   if (joint.fits.empty()) return;
   const Eigen::Index size = hammer.covariance.rows();
-  std::mt19937_64 random(1);
   Globals bias = Globals::Zero();
   Eigen::VectorXd of_hammer = Eigen::VectorXd::Zero(size);
   for (int i = 0; i < kReplicas; ++i) {
     std::vector<BlowSegment> segments;
+    std::mt19937_64 random(1 + static_cast<std::uint64_t>(i / 2));
     for (const SegmentFit& fit : joint.fits)
-      segments.push_back(fit.replica(model, joint.globals, joint.noise, count, random));
+      segments.push_back(fit.replica(model, joint.globals, joint.noise, count, i % 2 == 0 ? 1.0 : -1.0, random));
     JointFit replica = joint;
     for (std::size_t k = 0; k < segments.size(); ++k) replica.fits[k] = joint.fits[k].onto(segments[k]);
     settleNear(replica, model, free, piece(progress, static_cast<double>(i) / kReplicas, (i + 1.0) / kReplicas));
@@ -146,13 +153,9 @@ void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, 
     of_hammer.tail(size - kGlobals) += found.errors / kReplicas;
   }
   joint.globals -= bias;
-  joint.covariance *= 1.0 + 1.0 / kReplicas;
   joint.covariance += kBiasDoubt * kBiasDoubt * bias * bias.transpose();
   hammer.globals -= of_hammer.head<kGlobals>();
   hammer.errors -= of_hammer.tail(size - kGlobals);
-  // Noise of the replicas' mean; the part that was known before any reading has none.
-  const Eigen::MatrixXd P = hammer.covariance;
-  hammer.covariance += (P - P * hammer.prior.asDiagonal() * P) / kReplicas;
   hammer.covariance += kBiasDoubt * kBiasDoubt * of_hammer * of_hammer.transpose();
   for (SegmentFit& fit : joint.fits) fitLocals(fit, model, joint.globals, joint.noise);
 }

@@ -16,7 +16,6 @@ struct HammerPart {
   Eigen::VectorXd errors;  ///< errors of the constants, true less file's [their standard deviations], with the signs of
                            ///< MachineColumns
   Eigen::MatrixXd covariance;  ///< by the noise alone: shared parameters, then constants [rad, ..., as above]
-  Eigen::VectorXd prior;       ///< inverse variances of the same before any reading
 
   bool has(const std::string& constant) const;
   /// Name of a row of the covariance.
@@ -28,6 +27,8 @@ struct HammerPart {
   }
   /// Adds the differences between blows beyond the noise, which the covariance of a fit's shared parameters contains.
   void widen(const JointFit& fit);
+  /// False if the blows differ so much that a shared parameter is far less certain than before the recording.
+  bool isCertain() const;
 };
 
 /// From a fit with the file's constants. free: as in the fit; the others stay. A hammer that is exact has no constants
@@ -37,7 +38,8 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
 
 /// Noise biases the parameters of each blow, and thereby the shared ones, in the same direction at every blow, so that
 /// more blows do not average it out. Recordings are therefore simulated from the fit, with its noise and the counts,
-/// and fitted again; their mean error is subtracted from both. count: of the encoder, in `seen` [rad]; 0: none.
+/// and fitted again; their mean error is subtracted from both. Pairs of opposite errors leave no error of first order.
+/// count: of the encoder, in `seen` [rad]; 0: none.
 void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, const Free& free, double count,
                 const Progress& progress = {});
 

@@ -9,6 +9,7 @@
 namespace hammer_loads::calibration {
 namespace {
 
+constexpr int kIterations = 4;
 constexpr double kNotExplained = 6.0;  // times the median mean square of the blows
 
 /// Marquardt: a little more of the diagonal.
@@ -30,10 +31,10 @@ Locals limitedLocals(const Locals& step, const Locals& at) {
   return part * step;
 }
 
-void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise, int iterations) {
+void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
   double cost = fit.cost(model, globals, noise);
   double damping = 1e-3;
-  for (int i = 0; i < iterations; ++i) {
+  for (int i = 0; i < kIterations; ++i) {
     const NormalEquations e = fit.linearise(model, globals, noise);
     const Locals before = fit.locals();
     bool better = false;
@@ -76,36 +77,6 @@ double mostExplained(std::vector<double> mean_squares) {
   const auto median = mean_squares.begin() + static_cast<std::ptrdiff_t>(mean_squares.size() / 2);
   std::nth_element(mean_squares.begin(), median, mean_squares.end());
   return kNotExplained * std::max(*median, 0.05);
-}
-
-std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
-                                    const Globals& globals, const Noise& noise, const Progress& progress) {
-  std::vector<SegmentFit> fits;
-  for (const BlowSegment& segment : segments) {
-    fits.emplace_back(segment, globals);
-    fitLocals(fits.back(), model, globals, noise, 3 * kLocalIterations);
-    report(progress, static_cast<double>(fits.size()) / static_cast<double>(segments.size()));
-  }
-  return fits;
-}
-
-double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
-                    const Noise& noise, const Progress& progress) {
-  double sum = 0.0, freedom = 0.0;
-  std::vector<double> squares, free;  ///< mean squares of the blows, samples that are free
-  for (const SegmentFit& fit : fittedAlone(segments, model, globals, noise, progress)) {
-    const auto n = static_cast<double>(fit.size());
-    const Reduced r = reduce(fit.linearise(model, globals, noise));
-    free.push_back(freeOf(n, r.angle_freedom));
-    squares.push_back(n * meanSquare(fit, model, globals, noise) / free.back());
-  }
-  if (squares.empty()) return 0.0;
-  const double most = mostExplained(squares);
-  for (std::size_t i = 0; i < squares.size(); ++i) {
-    if (squares[i] > most) continue;  // blows without a tool are not the parameters' fault
-    sum += squares[i] * free[i], freedom += free[i];
-  }
-  return freedom > 0.0 ? sum / freedom : 0.0;
 }
 
 }  // namespace hammer_loads::calibration

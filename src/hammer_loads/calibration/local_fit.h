@@ -6,18 +6,14 @@
 #include <vector>
 
 #include "hammer_loads/calibration/segment_fit.h"
-#include "hammer_loads/util/progress.h"
 
 namespace hammer_loads::calibration {
-
-constexpr int kLocalIterations = 4;
 
 /// The step, shortened to what the model's curvature bears.
 Locals limitedLocals(const Locals& step, const Locals& at);
 
 /// Levenberg-Marquardt over the blow's own parameters.
-void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise,
-               int iterations = kLocalIterations);
+void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise);
 
 /// Information of a blow on the shared parameters once its own are eliminated.
 struct Reduced {
@@ -39,14 +35,5 @@ double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Global
 
 /// Blows of a larger mean square are not of this model. mean_squares: of all blows, not empty.
 double mostExplained(std::vector<double> mean_squares);
-
-/// Each blow alone.
-std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
-                                    const Globals& globals, const Noise& noise, const Progress& progress = {});
-
-/// Mean square over blows that are each fitted alone: residuals over their deviations, per degree of freedom, without
-/// the blows that are far off the others.
-double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
-                    const Noise& noise, const Progress& progress = {});
 
 }  // namespace hammer_loads::calibration

@@ -96,7 +96,7 @@ std::string nextStepOf(const Calibration& c) {
   for (const std::string& key : measured) constants += (constants.empty() ? "" : ", ") + key;
   if (!measured.empty()) steps.push_back("weigh or measure " + constants + " and give its standard deviation");
   if (at_other_level) steps.emplace_back("set level: linkage");
-  if (std::max(c.fitted, c.held_out) > square(kLargeResidual))
+  if (c.mean_square > square(kLargeResidual))
     steps.emplace_back("check the lengths of the hammer file and the stamps, for the residuals are above 1.3");
   if (few && std::isfinite(c.more_blows)) steps.push_back("record " + needOf(c));
   if (steps.empty()) return "start the node with this file as calibration_file:=FILE, or give it to --params";
@@ -197,10 +197,9 @@ std::string textOf(const Calibration& c, bool verbose) {
   if (!c.problem.empty())
     return c.problem + (std::isfinite(c.more_blows) ? "; needed are " + needOf(c) : "; more such work does not help") +
            "\n";
-  std::string text = format(
-      "%.1f s, %zu blows, %zu left out; residuals over their deviation (1: nothing but noise): %.3f, %.3f in the "
-      "last quarter\n",
-      c.seconds, c.blows, c.left_out, std::sqrt(c.fitted), std::sqrt(c.held_out));
+  std::string text =
+      format("%.1f s, %zu blows, %zu left out; residuals over their deviation (1: nothing but noise): %.3f\n",
+             c.seconds, c.blows, c.left_out, std::sqrt(c.mean_square));
   const std::string found = foundOf(c);
   if (!found.empty()) text += wrapped("found: " + found);
   for (const auto& [reason, keys] : notFoundOf(c)) text += wrapped("not found: " + keys + ": " + reason);
@@ -220,10 +219,8 @@ std::string textOf(const Calibration& c, bool verbose) {
 std::string yamlOf(const Calibration& c, const std::string& source) {
   if (!anyDetermined(c)) return {};
   std::string text = std::string(kYamlBegins) + " " + source + ":\n";
-  text += format(
-      "# %.1f s, %zu blows, residuals %.3f of their deviation, %.3f in the last quarter with the values of the "
-      "first three.\n",
-      c.seconds, c.blows, std::sqrt(c.fitted), std::sqrt(c.held_out));
+  text +=
+      format("# %.1f s, %zu blows, residuals %.3f of their deviation.\n", c.seconds, c.blows, std::sqrt(c.mean_square));
   for (const std::string& remark : c.remarks) text += "# " + remark + "\n";
   for (const Estimate& e : c.estimates) {
     const bool whole = e.unit.empty() && e.value == std::round(e.value);

@@ -93,7 +93,7 @@ void SegmentFit::run(const SegmentModel& model, const Globals& globals, std::vec
                      std::vector<MotionSlopes>* slopes) const {
   const auto& p = segment_->points;
   const std::size_t before = beforeCount();
-  ShaftModel shaft(model.mechanism, model.level);
+  ShaftModel shaft = model.shaft;
   shaft.setHullMotion(segment_->gravity);
   std::vector<double> times;
   std::vector<ShotPoint> side;
@@ -226,14 +226,14 @@ NormalEquations SegmentFit::equationsOf(const std::vector<ResidualRow>& rows, co
 }
 
 BlowSegment SegmentFit::replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count,
-                                std::mt19937_64& random) const {
+                                double sign, std::mt19937_64& random) const {
   struct Taken {
     double time;
     std::size_t place;
   };
   std::vector<Taken> taken;
   for (std::size_t i = 0; i < size(); ++i)
-    taken.push_back({segment_->points[i].time + noise.timing * normal(random), i});
+    taken.push_back({segment_->points[i].time + sign * noise.timing * normal(random), i});
   std::sort(taken.begin(), taken.end(), [](const Taken& a, const Taken& b) { return a.time < b.time; });
   BlowSegment instants = *segment_;
   for (std::size_t i = 0; i < size(); ++i) instants.points[i].time = taken[i].time;
@@ -244,9 +244,9 @@ BlowSegment SegmentFit::replica(const SegmentModel& model, const Globals& global
   for (std::size_t i = 0; i < size(); ++i) {
     const Seen seen = seenAt(globals, points[i].offset);
     CrankPoint& point = replica.points[taken[i].place];
-    point.seen = seen.value + (noise.angle_known ? 0.0 : noise.angle * normal(random));
-    if (count > 0.0) point.seen = centre + count * std::nearbyint((point.seen - centre) / count);
-    if (point.speed) point.speed = seen.slope * points[i].speed + noise.speed * normal(random);
+    point.seen = seen.value + (noise.angle_known ? 0.0 : sign * noise.angle * normal(random));
+    if (count > 0.0) point.seen += sign * (centre + count * std::nearbyint((point.seen - centre) / count) - point.seen);
+    if (point.speed) point.speed = seen.slope * points[i].speed + sign * noise.speed * normal(random);
   }
   return replica;
 }

@@ -29,8 +29,10 @@ struct Noise {
 };
 
 struct SegmentModel {
+  SegmentModel(const Mechanism& of, Level with) : mechanism(of), level(with), shaft(of, with) {}
   const Mechanism& mechanism;
   Level level;
+  ShaftModel shaft;  ///< of both, with the hull at rest
 };
 
 using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
@@ -96,7 +98,8 @@ class SegmentFit {
   /// The encoder at the segment's points by another hammer, all else the same.
   std::vector<ShotPoint> motion(const SegmentModel& model, const Globals& globals) const;
   /// Replica of the segment: the fitted motion with new noise, read at instants that differ from their stamps.
-  BlowSegment replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count,
+  /// sign: of all errors; the mean of two replicas that differ in it alone has no error of first order.
+  BlowSegment replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count, double sign,
                       std::mt19937_64& random) const;
   /// With the same parameters on another recording of it.
   SegmentFit onto(const BlowSegment& segment) const {
