@@ -6,6 +6,8 @@ import unittest
 
 from support import HERE, REPORT, ReportTest, program
 
+from report import check
+
 SOUND = HERE.parent / "data" / "mo100_1khz.bag"
 
 
@@ -58,6 +60,10 @@ class Check(ReportTest):
         outcome = self.check(self.altered("zero", lambda p, v: (p + math.radians(5.0), v)), "--json")
         statuses = {line["check"]: line["status"] for line in json.loads(outcome.stdout)["recordings"][0]["checks"]}
         self.assertIn(statuses["zero"], ("look", "wrong"))
+
+    def test_every_key_is_one_that_the_programs_give(self):
+        source = "".join(path.read_text() for path in (HERE.parent.parent / "src").rglob("*.[ch]*") if path.suffix in (".cpp", ".h"))
+        self.assertEqual([key for key in check.WARNINGS if f'"{key}"' not in source], [])
 
     def test_wrong_usage_is_refused(self):
         self.assertEqual(self.check("a.sqlite").returncode, 2)

@@ -21,7 +21,7 @@ struct Arguments {
   std::vector<std::string> bags;  ///< inputs, then the output unless there is none
   std::vector<std::string> params;
   std::string urdf, tables, ledger, reference;
-  bool force{}, no_bag{}, replace_run{}, recordings{};
+  bool force{}, no_bag{}, replace_run{}, recordings{}, keys{};
 };
 
 void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
@@ -47,6 +47,8 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
           "--reference", given.reference,
           "measured load of the hull: columns stamp [s], force_x, force_z [N], torque_y [N m], any of the last three")
       .type("FILE.csv");
+  line.flag("--keys", given.keys,
+            "on stderr first a line for each warning: its key in the table warnings, a tab, its text");
   line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
   line.flag("--pins", job.pins, "pin forces as well").excludes({"--no-bag"});
 }
@@ -187,6 +189,8 @@ int run(int argc, const char* const* argv) {
 
   BagReport report;
   const std::vector<std::string> problems = process(given, job, report);
+  for (const BagWarning& warning : report.warnings)
+    if (given.keys) std::cerr << warning.key << '\t' << warning.text << '\n';
   if (!problems.empty()) return fail(problems);
   for (const std::string& note : report.notes) std::cerr << "note: " << note << '\n';
   std::cerr << textOf(report);

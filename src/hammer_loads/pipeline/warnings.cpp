@@ -217,7 +217,7 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
   if (gives) {
     warnings.push_back({withheld > 0 ? "inconsistent" : "rod", rodOf(pipeline, filter), true});
   } else if (withheld > 0) {
-    warnings.push_back({"inconsistent", agreesAgain(filter, withheld), false});
+    warnings.push_back({"inconsistent before", agreesAgain(filter, withheld), false});
   }
   warnOfConstants(filter.constantErrors(), pipeline.zeroWatch().stated(filter), pipeline.settings().crank_sensor, gives,
                   warnings);
@@ -232,7 +232,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   if (pipeline.counts().blows < kLearned && withheld == 0) return;
   if (pipeline.zeroWatch().isOff())  // anything else that is seen may follow from it
     return warnings.push_back(
-        {pipeline.zeroWatch().withholds() ? "inconsistent" : "zero", zeroFarOff(pipeline, filter), true});
+        {pipeline.zeroWatch().withholds() ? "zero off" : "zero", zeroFarOff(pipeline, filter), true});
   // A rod alone hardly makes most of a recording contradict the model before the blow.
   const bool gives = filter.rodEvidence().gives() && !mostIsWithheld(pipeline.counts());
   if (filter.isLost())
@@ -254,7 +254,8 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
 }  // namespace
 
 bool isContradiction(std::string_view key) noexcept {
-  constexpr std::string_view kKeys[] = {"degrees", "angle unit", "speed unit", "backward", "inconsistent", "lost"};
+  constexpr std::string_view kKeys[] = {"degrees",      "angle unit",          "speed unit", "backward",
+                                        "inconsistent", "inconsistent before", "zero off",   "lost"};
   return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
 }
 

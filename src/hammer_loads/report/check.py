@@ -1,7 +1,6 @@
 """Check of a recording: a line for each condition, with ok, look or wrong, and the action."""
 import json
 import os
-import re
 import subprocess
 import tempfile
 
@@ -17,22 +16,24 @@ OK, LOOK, WRONG, UNKNOWN = "ok", "look", "wrong", "-"
 ORDER = (UNKNOWN, OK, LOOK, WRONG)
 VERDICT = {OK: "usable", LOOK: "usable, with reservations", WRONG: "do not use before the cause is removed", UNKNOWN: "not known"}
 
-# Name, words by which a warning belongs to it, words of those that make results wrong.
-CHECKS = [
-    ("hammer file", r"hammer file was given|no hammer file", ""),
-    ("unit", r"degrees|in turns|in counts|in rad/s|in radians|of another unit|revolutions", ""),
-    ("direction", r"turns backward|crank_direction|sign", ""),
-    ("zero", r"crank_zero_rad|slipped", r"withheld|contradict|slipped"),
-    ("readings", r"stands still|angle_resolution|crank angles are|crank speeds|crank joint|crank_joint|no message on .*crank",
-     r"stands still|crank_joint|no message"),
-    ("stamps", r"stamp|lost .* messages|several publishers", r"do not advance"),
-    ("hull pitch", r"hull pitch|pitch_signs|pitch_offset", ""),
-    ("joints", r"pitch_joints|boom joints|joint_states|joint", ""),
-    ("hull IMU", r"hull_imu|imu-topic", ""),
-    ("pressures", r"pressure|cylinder", ""),
-    ("consistency", r"differ from the model|differed from the model|contradict|restarts again|estimate is lost|elastic|unknown force|boom",
-     r"withheld|contradict|restarts again|estimate is lost"),
-]
+# Check and status by the key of a warning (pipeline/warnings.cpp, ros/bag_warnings.cpp).
+WARNINGS = {
+    "hammer": ("hammer file", LOOK),
+    "degrees": ("unit", WRONG), "angle unit": ("unit", WRONG), "speed unit": ("unit", WRONG),
+    "backward": ("direction", WRONG),
+    "zero": ("zero", LOOK), "zero off": ("zero", WRONG), "slip": ("zero", WRONG),
+    "frozen": ("readings", WRONG), "crank joint": ("readings", WRONG), "count": ("readings", LOOK), "angle lag": ("readings", LOOK),
+    "speed lag": ("readings", LOOK), "speed scale": ("readings", LOOK), "eccentricity": ("readings", LOOK),
+    "stamps": ("stamps", LOOK), "task": ("stamps", LOOK), "jitter": ("stamps", LOOK), "whole stamps": ("stamps", LOOK),
+    "lost messages": ("stamps", LOOK), "publishers": ("stamps", LOOK),
+    "pitch": ("hull pitch", LOOK),
+    "pitch joints": ("joints", LOOK), "joint states": ("joints", LOOK), "boom joints": ("joints", LOOK),
+    "imu": ("hull IMU", LOOK), "imu stamps": ("hull IMU", LOOK), "rock": ("hull IMU", LOOK),
+    "pressures": ("pressures", LOOK), "pressure stamps": ("pressures", LOOK), "pressure fit": ("pressures", LOOK),
+    "cylinder stiffness": ("pressures", LOOK),
+    "inconsistent before": ("consistency", WRONG), "lost": ("consistency", WRONG),
+}
+OTHER = ("consistency", LOOK)
 REMEDY = {
     "unit": "publish the angle in rad and the speed in rad/s",
     "direction": "set crank_direction to the other sign",
@@ -44,14 +45,13 @@ REMEDY = {
 }
 
 
-def sorted_warnings(texts):
-    """{check: (status, texts)}: each warning belongs to the first check whose words it has."""
+def sorted_warnings(warnings):
+    """{check: (status, texts)} of (key, text)."""
     found = {}
-    for text in texts:
-        name, _, severe = next((c for c in CHECKS if re.search(c[1], text)), ("consistency", "", ""))
-        bad = name in ("unit", "direction") or (severe and re.search(severe, text))
-        status, before = found.get(name, (OK, []))
-        found[name] = (max(status, WRONG if bad else LOOK, key=ORDER.index), before + [text])
+    for key, text in warnings:
+        name, status = WARNINGS.get(key, OTHER)
+        worst, before = found.get(name, (OK, []))
+        found[name] = (max(worst, status, key=ORDER.index), before + [text])
     return found
 
 
@@ -103,7 +103,7 @@ def figures(subject):
 
 def check_rows(subject):
     """[name, status, finding, action] of a recording."""
-    warned = sorted_warnings(text for text, in subject.database.rows("SELECT text FROM warnings ORDER BY place"))
+    warned = sorted_warnings(subject.database.rows("SELECT key, text FROM warnings ORDER BY place"))
     rows = []
     for name, (status, finding) in figures(subject).items():
         said, words = warned.get(name, (OK, []))
@@ -113,10 +113,13 @@ def check_rows(subject):
 
 
 def refused_rows(lines):
-    """Rows of a recording that process_bag refused; lines: of its stderr."""
-    texts = [re.sub(r"^(error|warning): ", "", one_line(line)) for line in lines]
-    rows = [[name, WRONG, words[0], REMEDY.get(name, "")] for name, (_, words) in sorted_warnings(texts).items()]
-    return rows or [["recording", WRONG, "no result", "see process_bag IN.bag"]]
+    """Rows of a recording that process_bag refused; lines: of its stderr, warnings with their keys."""
+    keyed = [line.split("\t", 1) for line in lines if "\t" in line]
+    rows = [[name, status, words[0], REMEDY.get(name, "")] for name, (status, words) in sorted_warnings(keyed).items()]
+    if all(row[1] != WRONG for row in rows):
+        problems = [one_line(line) for line in lines if "\t" not in line]
+        rows.append(["recording", WRONG, problems[0] if problems else "no result", "see process_bag IN.bag"])
+    return rows
 
 
 def verdict(rows):
@@ -132,7 +135,7 @@ def check_section(subject):
 
 def rows_of(splits, options, folder):
     database = os.path.join(folder, f"{len(os.listdir(folder))}.sqlite")
-    done = bags.process(splits, options, database, stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
+    done = bags.process(splits, ["--keys", *options], database, stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
     return refused_rows(done.stderr.splitlines()) if done.returncode else check_rows(subjects_of(Database(database))[0])
 
 
