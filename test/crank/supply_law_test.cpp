@@ -38,7 +38,7 @@ Follow followed(double hose) {
     i == 1 ? filter.start(sample) : static_cast<void>(filter.update(5e-3, sample));
     if (i > 2000) squares += std::pow(filter.state().torque - crank.torque, 2), ++judged;
   }
-  return {filter.supplyLaw().stiffness, std::sqrt(squares / judged)};
+  return {filter.walks().supply.stiffness, std::sqrt(squares / judged)};
 }
 
 TEST(SupplyLaw, IsLearnedFromTheHose) {

@@ -104,7 +104,7 @@ Played played(const Session& session, const std::string& sensor) {
   player.playTo(5.0, [](double, const SampleResult&) {});
   const SampleResult& last = player.pipeline.result();
   return {textOf(player.pipeline, sensor),
-          by_pressures ? last.boom != nullptr && last.boom->measured : player.pipeline.hull().motionKnown()};
+          by_pressures ? last.boom != nullptr && last.boom->measured : !player.pipeline.hull().imuTrust().isLost()};
 }
 
 TEST(MistakenSensors, RightOnesAreUsed) {

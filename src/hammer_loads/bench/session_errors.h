@@ -12,7 +12,6 @@ namespace hammer_loads::accuracy {
 struct WrenchAt {
   double time{}, force_x{}, force_z{}, torque_y{};
   double force_x_std{}, force_z_std{}, torque_y_std{};
-  double force_z_common{};  ///< the part of its deviation that is the same in all samples
 };
 
 /// A blow and the pulse of the turn before it, as estimated or true; turn_* are NaN without a pulse.

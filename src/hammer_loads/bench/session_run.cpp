@@ -28,7 +28,7 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
     if (!loads.isPublished()) return;
     const HullDeviation said = loads.outputs.empty() ? HullDeviation{} : loads.outputs.front().deviation;
     run.wrenches.push_back({seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y,
-                            said.wrench.force_x, said.wrench.force_z, said.wrench.torque_y, said.common.force_z});
+                            said.wrench.force_x, said.wrench.force_z, said.wrench.torque_y});
   });
   run.counts = player.pipeline.counts();
   return run;

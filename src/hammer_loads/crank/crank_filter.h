@@ -125,8 +125,6 @@ class CrankFilter {
   CrankWalks walks() const noexcept {
     return {roughness_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk, supply_.law()};
   }
-  /// Identified law of the supply.
-  const SupplyLaw& supplyLaw() const noexcept { return supply_.law(); }
   double mostSpeed() const noexcept;  ///< from which on an estimate has diverged [rad/s]
   /// Factor by which variances are multiplied before they are published.
   double growth() const noexcept { return consistency_.growth(); }

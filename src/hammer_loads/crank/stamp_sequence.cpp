@@ -190,7 +190,7 @@ StampSequence::Place StampSequence::begin(std::int64_t header) noexcept {
   uncounted_ = false;
   steady_ = mode_ == CrankStamps::kSteady;
   fit_.begin(header);
-  return {Kind::kRestart, header, false};
+  return {Kind::kRestart, header};
 }
 
 StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) noexcept {
@@ -199,16 +199,16 @@ StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) 
   if (header == *header_ && repeats != Repeats::kNo && !(may_be_burst && irregularity_ > kMany)) {
     uncounted_ = uncounted_ || repeats != Repeats::kAtWork;
     if (repeats == Repeats::kAtWork && !std::exchange(doubled_, true)) fit_.begin(header);  // it may have counted some
-    return {Kind::kDuplicate, header, false};
+    return {Kind::kDuplicate, header};
   }
   const std::int64_t back = newest_ - header;
   const bool too_far = mode_ == CrankStamps::kHeader ? back > 0 : back > stale_;
   if (too_far) {  // a single one may just be late
     const bool again = rewound_ && header > *rewound_;
     rewound_ = header;
-    return again ? begin(header) : Place{Kind::kOutOfOrder, header, false};
+    return again ? begin(header) : Place{Kind::kOutOfOrder, header};
   }
-  if (mode_ == CrankStamps::kHeader && back == 0) return {Kind::kDuplicate, header, false};
+  if (mode_ == CrankStamps::kHeader && back == 0) return {Kind::kDuplicate, header};
   rewound_.reset();
   if (-back > stale_) return begin(header);
   return next(header);
@@ -236,7 +236,7 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;
   const bool knows = fit_.isKnown() && (steady_ || !fit_.inBursts());
   const bool single = irregularity_ < kSingle && fit_.runs() > 0;  // one alone is no burst
-  if (repeats && !knows && !single) return {Kind::kDuplicate, header, false};
+  if (repeats && !knows && !single) return {Kind::kDuplicate, header};
   std::int64_t instant = header;
   if (steady_) {
     instant = fitted;
@@ -246,7 +246,7 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   }
   is_crowded_ = instant <= placed_;
   placed_ = instant > placed_ ? instant : placed_ + kLeastStep;
-  return {Kind::kPlaced, placed_, placed_ != header};
+  return {Kind::kPlaced, placed_};
 }
 
 }  // namespace hammer_loads

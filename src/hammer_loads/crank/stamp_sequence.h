@@ -145,7 +145,6 @@ class StampSequence {
   struct Place {
     Kind kind{Kind::kPlaced};
     std::int64_t stamp{};  ///< instant [ns]
-    bool refitted{};       ///< true if it is not the header stamp
   };
 
   /// stale_after: gap or way back from which on a sample starts anew [s].

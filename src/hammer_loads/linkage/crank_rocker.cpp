@@ -48,11 +48,11 @@ Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
   CrankRocker linkage;
   linkage.lengths_ = given;
   linkage.lengths_.rod = l0 + l3 - l1;
-  linkage.rod_correction_ = linkage.lengths_.rod - given.rod;
-  if (std::abs(linkage.rod_correction_) > 1e-12 * l1) {
+  const double correction = linkage.lengths_.rod - given.rod;
+  if (std::abs(correction) > 1e-12 * l1) {
     result.notes.push_back(
         format("rod_length_m: %.12g m corrected by %.3g m to %.12g m, so that crank + rod = pivot distance + rocker",
-               given.rod, linkage.rod_correction_, linkage.lengths_.rod));
+               given.rod, correction, linkage.lengths_.rod));
   }
   Ratios& k = linkage.ratios_;
   k.lambda0 = l0 / l1;

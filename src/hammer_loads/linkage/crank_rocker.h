@@ -25,8 +25,7 @@ class CrankRocker {
   /// the rod by the difference and notes it; refuses a larger miss, non-positive lengths and a crank that cannot turn.
   static Checked<CrankRocker> make(const LinkLengths& lengths);
 
-  const LinkLengths& lengths() const noexcept { return lengths_; }   ///< rod corrected [m]
-  double rodCorrection() const noexcept { return rod_correction_; }  ///< added to the given rod length [m]
+  const LinkLengths& lengths() const noexcept { return lengths_; }  ///< rod corrected [m]
 
   /// Ratios to the crank length and the combinations of them that motion() uses [-]. Differences such as
   /// lambda0 - 1 are formed from the lengths, so no digits are lost when links are nearly equal.
@@ -45,7 +44,6 @@ class CrankRocker {
 
  private:
   LinkLengths lengths_;
-  double rod_correction_{};
   Ratios ratios_;
 };
 

@@ -67,9 +67,6 @@ class HullState {
   void rest() noexcept { vibration_.reset(), vibration_doubt_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }
-  /// Returns false if the hull's motion is to be that of IMU or boom and is not known, or if the IMU is rejected. Then
-  /// the weight is by the joint angles, with the vibration of a boom whose oil is identified.
-  bool motionKnown() const noexcept { return known_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
   bool pitchKnown() const noexcept { return pitch_known_; }
   bool anglesLookLikeDegrees() const noexcept { return in_degrees_; }
@@ -100,6 +97,8 @@ class HullState {
   std::optional<HullMotionCovariance> vibration_doubt_;  ///< none: not requested while an IMU was in use
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
+  /// known_: false if the hull's motion is to be that of IMU or boom and is not known, or if the IMU is rejected. Then
+  /// the weight is by the joint angles, with the vibration of a boom whose oil is identified.
   bool known_{true}, by_imu_{};
   bool pitch_known_{}, in_degrees_{};  ///< state at the last message of joints
 };

@@ -83,7 +83,6 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   result_.unknown = unknown.squares;
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
   const Eigen::Matrix3d contact = contactDoubt(links.here.links, drive);
-  result_.contact_doubt = wrenchOf(contact.diagonal().cwiseSqrt());
   result_.beside = rod.covariance + contact + zeroDoubt(drive) + unknown.covariance;
   addCovariance(result_.beside, result_.deviation);
   const CrankFilter& tracker = crank_.tracker();

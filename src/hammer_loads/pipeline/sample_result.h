@@ -70,7 +70,6 @@ struct SampleResult {
   CrankUncertainty doubt;    ///< uncertainty of the crank's motion
   LoadColumns load_columns;  ///< errors of the wrench
   HullWrench rod_momentum;   ///< possible momentum of the rocker beside a rigid rod's, without a followed spring
-  HullWrench contact_doubt;  ///< standard deviation, by whether the tool was met
   /// Covariance of the wrench's errors that are not of the crank's motion: of rod, contact and unknown forces, in
   /// products of [N], [N], [N m].
   Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
