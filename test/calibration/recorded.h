@@ -8,6 +8,7 @@
 #include "hammer_loads/calibration/calibration.h"
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/constants.h"
+#include "support/filter_settings.h"
 
 namespace hammer_loads::test {
 
@@ -32,13 +33,8 @@ inline std::vector<calibration::RecordedSample> recorded(const simulation::Machi
   return samples;
 }
 
-/// As pipeline.yaml has it: walk 100 and deviation 400 rad/s2 per rocker inertia.
 inline calibration::CalibrationBasis basisOf(const Mechanism& mechanism) {
-  const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
-  calibration::CalibrationBasis basis{mechanism, Level::kRocker};
-  basis.torque_walk = 100.0 * inertia;
-  basis.torque_std = 400.0 * inertia;
-  return basis;
+  return {mechanism, Level::kRocker, filterSettings()};
 }
 
 inline Mechanism mechanismOf(const simulation::MachineSettings& s, double guess = 1.0) {

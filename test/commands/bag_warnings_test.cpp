@@ -8,6 +8,7 @@
 
 #include "boom/booms.h"
 #include "commands/bag_files.h"
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -41,7 +42,7 @@ class BagWarnings : public test::BagFiles {
 };
 
 TEST_F(BagWarnings, AGoodRecordingGivesNoneAndOneLineStatesWhatWasWritten) {
-  const test::TemporaryFile known_zero("crank_zero_std_rad: 0.003\n");
+  const test::TemporaryFile known_zero(kKnownZeroYaml);
   const test::Outcome outcome = run(kSession + " " + path("out.bag") + " --params " + configDirectory() +
                                     "/hammer_mo100.yaml --params " + known_zero.path());
   EXPECT_EQ(outcome.err, "");

@@ -6,6 +6,7 @@
 
 #include "commands/bag_files.h"
 #include "commands/recording_sink.h"
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/ros/stamp.h"
 #include "support/session_player.h"
 
@@ -14,7 +15,7 @@ namespace hammer_loads::test {
 inline constexpr double kSide = 0.8;  // [m] from arm_link back to the strain gauge
 inline const std::string kUrdf = sourceFile("urdf/eo2621_mo100.urdf");
 /// The encoder's zero is known as by `calibrate`: else samples of the first turns are withheld.
-inline const std::string kCalibrated = "crank_zero_std_rad: 0.003\n";
+inline const std::string kCalibrated = kKnownZeroYaml;
 inline const std::string kBoomFile = configDirectory() + "/boom_eo2621.yaml";
 
 /// Two and a half seconds of a machine that soon strikes; `moving`: its boom moves as well.

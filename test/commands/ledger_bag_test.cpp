@@ -1,5 +1,6 @@
 /// process_bag --ledger: what it adds, what it refuses, what it leaves as it was.
 #include "commands/bag_files.h"
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/life/ledger_reader.h"
 #include "hammer_loads/settings/load.h"
 
@@ -24,7 +25,7 @@ class LedgerOfBags : public test::BagFiles {
 };
 
 TEST_F(LedgerOfBags, HasEachRecordingOnce) {
-  std::ofstream(path("known_zero.yaml")) << "crank_zero_std_rad: 0.003\n";
+  std::ofstream(path("known_zero.yaml")) << kKnownZeroYaml;
   for (const std::size_t times : {0U, 1U}) {
     const test::Outcome outcome = add(kSession, "--params " + path("known_zero.yaml"));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "pipeline/drawn_machine.h"
 
@@ -95,7 +96,7 @@ TEST(ZeroWatch, NothingCountsBeforeTheZeroIsKnown) {
 /// Of a right zero the first second has to stay; one that `calibrate` has found costs nothing.
 TEST(ZeroWatch, WithholdsLittleOfARightZeroAndNothingOfACalibratedOne) {
   const Settings given = test::settingsWith("level: linkage\n" + kUnknownZero),
-                 calibrated = test::settingsWith("level: linkage\ncrank_zero_std_rad: 0.003\n");
+                 calibrated = test::settingsWith(std::string("level: linkage\n") + kKnownZeroYaml);
   const simulation::Session session = zeroSession(1000.0, 5, 5.0);
   const auto published = [&](const Settings& settings) {
     const test::ZeroPlayed played = test::playZero(settings, session);

@@ -14,6 +14,7 @@
 #include <map>
 #include <mutex>
 
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
@@ -122,7 +123,7 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   machine.duration = 4.0;
   machine.start_stamp = static_cast<std::int64_t>(start_.toNSec());
   Settings settings = *loadFiles(configDirectory(), {}).value;
-  settings.pipeline.crank_zero_std = 0.003;  // as the node's
+  settings.pipeline.crank_zero_std = kKnownZeroStd;  // as the node's
   machine.hammer = settings.mechanism.parameters();
   machine.level = settings.pipeline.level;
   const simulation::Session session = simulation::recordSession(machine);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <map>
 
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/settings/load.h"
@@ -71,7 +72,7 @@ Inputs from(double begin, const Inputs& inputs, double later = 0.0) {
 
 /// As the node's: nothing is withheld for the zero.
 Settings withKnownZero(Settings settings) {
-  settings.pipeline.crank_zero_std = 0.003;
+  settings.pipeline.crank_zero_std = kKnownZeroStd;
   return settings;
 }
 

@@ -1,6 +1,7 @@
 /// Settings for simulated machines whose hull is held and whose encoder has a known zero.
 #pragma once
 
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::test {
@@ -9,7 +10,7 @@ namespace hammer_loads::test {
 inline Settings heldHull(Settings settings) {
   if (settings.pipeline.hull_motion == HullMotionSource::kUnmeasured)
     settings.pipeline.hull_motion = HullMotionSource::kFixed;
-  settings.pipeline.crank_zero_std = 0.003;
+  settings.pipeline.crank_zero_std = kKnownZeroStd;
   return settings;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "boom/booms.h"
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
@@ -26,7 +27,7 @@ constexpr double kSessionEnd = 5.0;    ///< [s]
 /// zero is known as by `calibrate`.
 inline Settings settingsWith(const std::string& text, bool boom_file = true) {
   const TemporaryFile given(text);
-  const TemporaryFile level("level: rocker\nhull_motion: fixed\ncrank_zero_std_rad: 0.003\n");
+  const TemporaryFile level(std::string("level: rocker\nhull_motion: fixed\n") + kKnownZeroYaml);
   std::vector<std::string> files{level.path(), given.path()};
   if (boom_file) files.insert(files.begin(), configDirectory() + "/boom_eo2621.yaml");
   const Checked<Settings> settings = loadFiles(configDirectory(), files, shippedUrdf());

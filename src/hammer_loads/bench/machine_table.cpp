@@ -5,6 +5,7 @@
 
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/pipeline/filter_settings.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
@@ -132,9 +133,7 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
                        {machine.gravity * std::sin(pitch), -machine.gravity * std::cos(pitch)}});
   }
   const Mechanism mechanism = *Mechanism::make(hammer).value;
-  calibration::CalibrationBasis basis{mechanism, pipeline.level};
-  basis.torque_walk = pipeline.torque_walk * hammer.rocker_inertia_about_pivot;
-  basis.torque_std = pipeline.initial_torque_std * hammer.rocker_inertia_about_pivot;
+  const calibration::CalibrationBasis basis{mechanism, pipeline.level, filterSettings(mechanism, pipeline)};
   CrankSensorPlace place;
   for (const calibration::Estimate& e : calibration::calibrate(samples, basis).estimates) {
     if (!e.determined()) continue;

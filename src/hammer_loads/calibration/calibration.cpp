@@ -142,8 +142,8 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   noise.angle_known = track.facts.count > 0.0;
   noise.timing = 2e-4;
   noise.speed = 0.3;
-  noise.torque_walk = basis.torque_walk;
-  noise.torque = basis.torque_std;
+  noise.torque_walk = basis.filter.torque_walk;
+  noise.torque = basis.filter.initial_torque_std;
   const bool centred = basis.ratio != 1.0;
   const Free free = toFind(centred);
   // A fit of some blows with the encoder on its centre finds where to cut.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hammer_loads/calibration/joint_fit.h"
+#include "hammer_loads/crank/crank_filter.h"
 
 namespace hammer_loads::calibration {
 
@@ -12,10 +13,9 @@ namespace hammer_loads::calibration {
 struct CalibrationBasis {
   const Mechanism& mechanism;
   Level level;
+  CrankFilterSettings filter;         ///< of the parameters in force
   double ratio{1.0};                  ///< encoder turns per crank turn [-]
   double rocker_inertia_std{0.02};    ///< relative, of the given rocker inertia [-]
-  double torque_walk{};               ///< random walk of the net torque [N m/sqrt(s)]
-  double torque_std{};                ///< standard deviation of the net torque [N m]
   Globals in_force{Globals::Zero()};  ///< to compare with: zero and eccentricities of the parameters in force
 };
 

@@ -9,12 +9,13 @@
 namespace hammer_loads::calibration {
 namespace {
 
+// Numerical: kMostIterations, kLeastIterations, kNearIterations, kConverged
 constexpr int kMostIterations = 40;
 constexpr int kLeastIterations = 8;
-constexpr int kUsualExcess = 2;  // iterations beyond the least: for the progress shown alone
 constexpr int kNearIterations = 3;
-constexpr double kConverged = 0.01;       // change of every parameter, in deviations
-constexpr int kNeighbours = 3;            // blows on either side with which one may have errors in common
+constexpr double kConverged = 0.01;  // change of every parameter, in deviations
+constexpr int kNeighbours = 3;       // blows on either side with which one may have errors in common
+// Prior: kMostTiming, kMostAngleNoise, kMostSpeedNoise
 constexpr double kMostTiming = 0.01;      // [s]
 constexpr double kMostAngleNoise = 0.1;   // [rad]
 constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
@@ -162,7 +163,7 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Fr
 /// Until nothing changes any more, at least this many times.
 void settle(JointFit& joint, const SegmentModel& model, const Free& free, int least, const Progress& progress) {
   for (int i = 0; i < kMostIterations && !joint.fits.empty(); ++i) {
-    report(progress, std::min(1.0, static_cast<double>(i) / (least + kUsualExcess)));
+    report(progress, std::min(1.0, static_cast<double>(i) / least));
     System s = linearised(joint, model);
     joint.converged = improve(joint, model, s, free) < kConverged;
     learnNoise(joint, model, s.reduced);
@@ -193,17 +194,15 @@ Globals priorDeviations() { return (Globals() << 10.0, 0.05, 0.05, 0.03, 0.03, 1
 
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, const Free& free, const Progress& progress) {
-  constexpr double kOwn = 0.3;  // part of the time for the blows' own parameters
   JointFit joint;
   joint.globals = joint.centre = start;
   joint.noise = noise;
   for (const BlowSegment& segment : segments) {
     joint.fits.emplace_back(segment, start);
     fitLocals(joint.fits.back(), model, start, noise);
-    report(progress, kOwn * static_cast<double>(joint.fits.size()) / static_cast<double>(segments.size()));
   }
   leaveOut(joint, model);
-  settle(joint, model, free, kLeastIterations, piece(progress, kOwn, 1.0));
+  settle(joint, model, free, kLeastIterations, progress);
   judge(joint, model, free);
   return joint;
 }

@@ -9,7 +9,7 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr int kIterations = 4;
+constexpr int kIterations = 4;         // Numerical: kIterations
 constexpr double kNotExplained = 6.0;  // times the median mean square of the blows
 
 /// Marquardt: a little more of the diagonal.

@@ -10,8 +10,6 @@
 namespace hammer_loads::calibration {
 namespace {
 
-// Values of pipeline.yaml.
-constexpr double kSpeedWalk = 0.3, kInertiaWalk = 5e-4, kInertiaDeviation = 0.3, kMostSpeed = 300.0, kLeastNoise = 0.3;
 /// Largest effect of rods of 2e8 to 1e10 N/m with joint clearance up to 0.5 mm on the zero, the eccentricity and the
 /// drive's inertia (relative).
 constexpr double kOfZero = 3.0 * kDegree, kOfEccentricity = 1.5 * kDegree, kOfInertia = 0.3;
@@ -28,17 +26,13 @@ CrankSensor sensorOf(const Globals& globals) {
 }
 
 CrankFilterSettings settingsOf(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit) {
-  CrankFilterSettings s;
+  CrankFilterSettings s = basis.filter;
   s.sensor = sensorOf(fit.globals);
+  s.angle_resolution = 0.0;
+  s.zero_std = ConstantErrors::kUnknownZero;
   s.angle_noise = track.facts.count > 0.0 ? 0.0 : fit.noise.angle;
   s.timing_noise = fit.noise.timing;
-  s.speed_noise = std::max(fit.noise.speed, kLeastNoise);
-  s.torque_walk = basis.torque_walk;
-  s.speed_walk = kSpeedWalk;
-  s.inertia_walk = kInertiaWalk;
-  s.initial_torque_std = basis.torque_std;
-  s.initial_inertia_std = kInertiaDeviation;
-  s.max_speed = kMostSpeed;
+  s.speed_noise = std::max(fit.noise.speed, basis.filter.speed_noise);
   s.blow_factor = blowInertia(basis.mechanism, rigid(basis.level), std::exp(fit.globals[kLogInertia])).smoothFactor();
   return s;
 }

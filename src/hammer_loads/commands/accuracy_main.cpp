@@ -7,6 +7,7 @@
 #include "hammer_loads/bench/drawing_table.h"
 #include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/kdl_observer.h"
+#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/bench/life_table.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/scene_table.h"
@@ -57,7 +58,7 @@ class JsonFile {
 
 /// The settings for machines whose zero is known as after `calibrate`.
 Settings withKnownZero(Settings settings) {
-  settings.pipeline.crank_zero_std = 0.003;
+  settings.pipeline.crank_zero_std = kKnownZeroStd;
   return settings;
 }
 

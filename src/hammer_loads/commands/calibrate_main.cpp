@@ -14,6 +14,7 @@
 #include "hammer_loads/commands/crank_recording_bag.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
+#include "hammer_loads/pipeline/filter_settings.h"
 #include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/constants.h"
@@ -130,13 +131,11 @@ Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::ve
 
 calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_std) {
   const PipelineSettings& pipeline = settings.pipeline;
-  const double inertia = settings.mechanism.parameters().rocker_inertia_about_pivot;
   return {settings.mechanism,
           pipeline.level,
+          filterSettings(settings.mechanism, pipeline),
           pipeline.crank_sensor.place().ratio,
           rocker_std,
-          pipeline.torque_walk * inertia,
-          pipeline.initial_torque_std * inertia,
           inForce(pipeline.crank_sensor)};
 }
 

@@ -1,0 +1,9 @@
+/// Zero of the crank's sensor as `calibrate` finds it, for tables and tests without the first turns' search.
+#pragma once
+
+namespace hammer_loads {
+
+constexpr double kKnownZeroStd = 0.003;  ///< its standard deviation [rad]
+constexpr const char* kKnownZeroYaml = "crank_zero_std_rad: 0.003\n";
+
+}  // namespace hammer_loads
