@@ -3,7 +3,7 @@
 
 namespace hammer_loads {
 
-constexpr double kKnownZeroStd = 0.003;  ///< its standard deviation [rad]
+constexpr double kKnownZeroStd = 0.003;  ///< standard deviation of the zero [rad]
 constexpr const char* kKnownZeroYaml = "crank_zero_std_rad: 0.003\n";
 
 }  // namespace hammer_loads

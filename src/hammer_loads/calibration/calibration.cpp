@@ -17,7 +17,7 @@ namespace hammer_loads::calibration {
 namespace {
 
 constexpr std::size_t kLeastBlows = 12;
-constexpr std::size_t kRoughBlows = 40;  // of the first fit
+constexpr std::size_t kRoughBlows = 40;  // blows of the first fit
 constexpr double kUsuallyNeeded = 60.0;  // blows
 constexpr int kCurveParts = 72;
 constexpr double kUnknownAngleNoise = 5e-4;  // first guess for a sensor without counts [rad]
@@ -28,7 +28,7 @@ Free toFind(bool centred) {
   return free;
 }
 
-/// So many of the blows at most, evenly spread over the recording.
+/// At most `most` of the blows, evenly spread over the recording.
 std::vector<BlowSegment> spread(const std::vector<BlowSegment>& segments, std::size_t most) {
   std::vector<BlowSegment> some;
   const std::size_t count = std::min(most, segments.size());

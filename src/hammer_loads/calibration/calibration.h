@@ -13,7 +13,7 @@ namespace hammer_loads::calibration {
 struct CalibrationBasis {
   const Mechanism& mechanism;
   Level level;
-  CrankFilterSettings filter;         ///< of the parameters in force
+  CrankFilterSettings filter;         ///< settings of the filter by the parameters in force
   double ratio{1.0};                  ///< encoder turns per crank turn [-]
   double rocker_inertia_std{0.02};    ///< relative, of the given rocker inertia [-]
   Globals in_force{Globals::Zero()};  ///< to compare with: zero and eccentricities of the parameters in force
@@ -53,7 +53,7 @@ struct Calibration {
   std::vector<std::string> remarks;
   bool rod_gives{};  ///< the connecting rod or its pins are elastic
   Noise noise;
-  double mean_square{};         ///< of the residuals over their variance, per degree of freedom
+  double mean_square{};         ///< mean square of the residuals over their variance, per degree of freedom
   ResidualCurve before, after;  ///< with the parameters in force, with those found
   double more_blows{};          ///< needed for every key that is not determined; infinity: more do not help
 

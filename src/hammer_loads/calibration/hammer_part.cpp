@@ -13,7 +13,7 @@ namespace hammer_loads::calibration {
 namespace {
 
 // Numerical: kReplicas, kSteps
-constexpr int kReplicas = 4;            // of the recording, in pairs whose errors have opposite signs
+constexpr int kReplicas = 4;            // replicas of the recording, in pairs whose errors have opposite signs
 constexpr double kMostUncertain = 5.0;  // variance over that before the recording
 constexpr double kBiasDoubt = 0.5;      // part of the bias that is left after its removal
 

@@ -32,7 +32,7 @@ struct SegmentModel {
   SegmentModel(const Mechanism& of, Level with) : mechanism(of), level(with), shaft(of, with) {}
   const Mechanism& mechanism;
   Level level;
-  ShaftModel shaft;  ///< of both, with the hull at rest
+  ShaftModel shaft;  ///< shaft of the mechanism at this level, with the hull at rest
 };
 
 using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;

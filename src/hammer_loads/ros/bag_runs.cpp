@@ -90,8 +90,7 @@ Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, 
   result.problems = std::move(settings.problems);
   if (!settings.value) return result;
   if (!hasHammerKey(parameters))
-    addOnce(warnings,
-            {"hammer", "no hammer file was given (--params): the masses and lengths of the MO-100 are used"});
+    addOnce(warnings, {"hammer", "no hammer file was given (--params): the masses and lengths of the MO-100 are used"});
   result.notes.insert(result.notes.end(), settings.value->notes.begin(), settings.value->notes.end());
   result.value.emplace().push_back({ros::Time(), withTopics(*std::move(settings.value), job.topics, topics)});
   return result;
