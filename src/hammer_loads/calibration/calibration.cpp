@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "hammer_loads/calibration/estimates.h"
-#include "hammer_loads/calibration/first_guess.h"
 #include "hammer_loads/calibration/hammer_keys.h"
 #include "hammer_loads/calibration/rod_check.h"
+#include "hammer_loads/crank/zero_search.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/square.h"
@@ -26,6 +26,23 @@ Free toFind(bool centred) {
   Free free = Free::Constant(true);
   if (centred) free.segment<4>(kSine1).setConstant(false);
   return free;
+}
+
+/// Reading at the blow, within some 3 deg [rad]; empty if none shows.
+std::optional<double> placeOfBlow(const CrankTrack& track, const SegmentModel& model, double drive_inertia) {
+  ZeroSearch search(model.shaft, drive_inertia);
+  std::optional<double> place;
+  std::size_t piece = 0;
+  for (std::size_t i = 0; i < track.points.size(); ++i) {
+    const CrankPoint& point = track.points[i];
+    const bool starts = piece < track.starts.size() && track.starts[piece] == i;
+    piece += starts;
+    HullMotion hull;
+    hull.gravity = point.gravity;
+    search.add(point.seen, starts ? 0.0 : point.time - track.points[i - 1].time, hull);
+    if (search.found()) place = search.found()->error;
+  }
+  return place;
 }
 
 /// At most `most` of the blows, evenly spread over the recording.
@@ -121,12 +138,13 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   result.more_blows = kUsuallyNeeded;
   result.seconds = secondsOf(track);
   const SegmentModel model{basis.mechanism, basis.level};
-  const std::optional<FirstGuess> guess = firstGuess(track, model, basis.mechanism.parameters().drive_inertia);
-  if (!guess) {
-    result.problem = "the crank hardly turns in it";
+  const double drive_inertia = basis.mechanism.parameters().drive_inertia;
+  const std::optional<double> blow = placeOfBlow(track, model, drive_inertia);
+  if (!blow) {
+    result.problem = "no blow shows in the crank's turns";
     return result;
   }
-  std::vector<BlowSegment> segments = cutAtBlows(track, guess->zero);
+  std::vector<BlowSegment> segments = cutAtBlows(track, *blow);
   result.blows = segments.size();
   if (segments.size() < kLeastBlows) {
     result.problem =
@@ -134,8 +152,8 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
     return result;
   }
   Globals start = Globals::Zero();
-  start[kZero] = guess->zero;
-  start[kLogInertia] = std::log(guess->drive_inertia);
+  start[kZero] = *blow;
+  start[kLogInertia] = std::log(drive_inertia);
   const double gain = 1.0 / basis.ratio;
   Noise noise;
   noise.angle = track.facts.count > 0.0 ? gain * track.facts.count / std::sqrt(12.0) : kUnknownAngleNoise;
