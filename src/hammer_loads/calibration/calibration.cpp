@@ -176,7 +176,6 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   }
   result.left_out = fit.left_out;
   result.mean_square = fit.mean_square;
-  result.noise = fit.noise;
   result.after = curveOf(fit.fits, model, fit.globals, fit.noise);
   const double curve_square = systematic(result.after);
   fit.covariance *= std::max(1.0, curve_square);
