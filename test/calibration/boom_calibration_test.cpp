@@ -3,6 +3,7 @@
 
 #include "calibration/free_boom.h"
 #include "hammer_loads/calibration/reading_check.h"
+#include "hammer_loads/calibration/sensor_check.h"
 #include "hammer_loads/calibration/static_torques.h"
 #include "hammer_loads/simulation/session.h"
 
@@ -304,6 +305,75 @@ TEST(BoomCalibration, WritesNothingWhereWhatIsHeldOutDoesNotFit) {
   EXPECT_FALSE(found.cylinders[0].holds());
   EXPECT_TRUE(found.cylinders[2].holds());
   EXPECT_FALSE(found.determined());
+}
+
+/// Four recordings of one machine, whose zeros and offsets are those of their days.
+std::vector<WeighedRecording> fourDays(std::mt19937& random) {
+  std::normal_distribution<> normal;
+  FreeBoom machine = FreeBoom::drawn(random);
+  const FreeBoom usual = machine;
+  std::vector<WeighedRecording> recordings;
+  for (const char* name : {"monday", "tuesday", "wednesday", "thursday"}) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      machine.zero[k] = usual.zero[k] + 1e-3 * normal(random);
+      machine.offset[k] = usual.offset[k] + 5e4 * normal(random);
+    }
+    recordings.push_back({machine.record(random, 40.0), {}, name});
+  }
+  return recordings;
+}
+
+/// A sensor whose readings a flaw changes, in one of four recordings of different days.
+TEST(BoomCalibration, NamesTheJointAndTheRecordingOfAFaultySensor) {
+  using Readings = std::vector<double>;
+  constexpr double kDegree = kPi / 180.0;
+  const std::vector<std::pair<const char*, std::function<void(Readings&)>>> flaws{
+      {"leap", [](Readings& q) { std::for_each(q.begin() + 1000, q.end(), [](double& a) { a += kDegree; }); }},
+      {"stays", [](Readings& q) { std::fill(q.begin() + 800, q.begin() + 1400, q[800]); }},
+      {"stays throughout", [](Readings& q) { std::fill(q.begin(), q.end(), q[0]); }},
+      {"offset",
+       [](Readings& q) {
+         for (double& a : q) a += 2.0 * kDegree;
+       }},
+      {"scale",
+       [](Readings& q) {
+         for (double& a : q) a *= 1.1;
+       }},
+      {"dead band",
+       [](Readings& q) {
+         double shown = q[0];
+         for (double& a : q) a = shown = std::clamp(shown, a - 0.5 * kDegree, a + 0.5 * kDegree);
+       }},
+      {"swing in a half", [](Readings& q) {
+         for (std::size_t i = 0; i < q.size() / 2; ++i) q[i] += 0.03 * std::sin(0.5 * static_cast<double>(i));
+       }}};
+  std::mt19937 random(31);
+  for (std::size_t joint = 1; joint < 4; ++joint) {
+    const std::vector<WeighedRecording> good = fourDays(random);
+    const BoomCalibration found = calibrateBoom(test::shippedBasis(), good);
+    EXPECT_EQ(found.problem, "");
+    for (const auto& [name, change] : flaws) {
+      std::vector<WeighedRecording> faulty = good;
+      change(faulty[2].recording.joint[joint].value);
+      const BoomCalibration refused = calibrateBoom(test::shippedBasis(), faulty);
+      const std::string joint_name = test::shippedBoom().chain().jointNames()[joint];
+      EXPECT_EQ(refused.problem.find(joint_name), 0U) << name << ' ' << joint_name << ": " << refused.problem;
+      EXPECT_NE(refused.problem.find("wednesday"), std::string::npos) << name << ": " << refused.problem;
+      EXPECT_FALSE(refused.determined());
+    }
+  }
+}
+
+/// Encoders without noise repeat a reading as long as the joint rests.
+TEST(BoomCalibration, AcceptsACoarseSensorAtRest) {
+  std::mt19937 random(32);
+  FreeBoom machine;
+  machine.joint_noise = 0.0;
+  BoomRecording recording = machine.record(random, 40.0);
+  constexpr double kStep = 2e-4;  // [rad]
+  for (Trace& trace : recording.joint)
+    for (double& q : trace.value) q = kStep * std::round(q / kStep);
+  EXPECT_TRUE(brokenSensors(test::shippedBoom().chain(), {&recording}, {"encoder"}).empty());
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "hammer_loads/calibration/reading_check.h"
+#include "hammer_loads/calibration/recording_check.h"
+#include "hammer_loads/calibration/sensor_check.h"
 #include "hammer_loads/calibration/static_torques.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
@@ -26,6 +28,7 @@ class Finder {
  public:
   Finder(const BoomBasis& basis, const std::vector<WeighedRecording>& recordings) : basis_(basis) {
     for (const WeighedRecording& r : recordings) {
+      readings_.push_back(&r.recording);
       points_.push_back(pointsOf(r.recording));
       weights_.push_back(r.weight);
       result_.names.push_back(r.name);
@@ -44,6 +47,11 @@ class Finder {
     const BoomFit held = fitBoom(model, early, piece(progress, 0.1, 0.4));
     const BoomFit fit = fitBoom(model, rows, piece(progress, 0.4, 0.8));
     if (!fit.converged) result_.remarks.emplace_back("the fit did not settle: values are those of its last round");
+    const std::vector<Contradiction> found = contradictions(model, points_, rows, fit, result_.names);
+    if (!found.empty()) {
+      refuse(found.front().text);
+      return std::move(result_);
+    }
     fillCylinders(model, fit, rows, held, late);
     fillJoints(model, fit);
     fillEstimates(model, fit);
@@ -73,6 +81,7 @@ class Finder {
     };
     for (const std::string& line : misreadings(model, free)) add(line);
     for (const std::string& line : noisySensors(model.given().chain(), points_, result_.names)) add(line);
+    for (const std::string& line : brokenSensors(model.given().chain(), readings_, result_.names)) add(line);
     return result_.problem.empty();
   }
 
@@ -266,6 +275,7 @@ class Finder {
   }
 
   BoomBasis basis_;
+  std::vector<const BoomRecording*> readings_;
   std::vector<BoomPoints> points_;
   std::vector<TipWeight> weights_;
   BoomCalibration result_;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
 constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
-constexpr double kHuber = 3.0;           // standard deviations of what is left
+constexpr double kFullWeight = 3.0;      // standard deviations of what is left
 constexpr int kMostRounds = 40;
 constexpr double kSettled = 1e-3;               // in standard deviations
 constexpr double kStep = 0.05;                  // step of differences, in standard deviations before the recording
@@ -30,20 +30,24 @@ bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point)
   return arm * least > kLeastRodSpeed && rate > kSurelyMoves * point.rate_std[joint];
 }
 
-/// Variance of a sum of neighbours over that of as many strangers: 1 + 2 sum of the autocorrelation, until that is lost
-/// in noise.
+/// Variance of a sum of neighbours over that of as many strangers: 1 + 2 sum of the autocorrelation. Pairs of lags are
+/// added until their sum is lost in noise (initial positive sequence, Geyer 1992): residuals that alternate with a
+/// ripple of the pump have a negative first lag and are correlated further away.
 double alike(const std::vector<double>& left) {
   double square = 0.0;
   for (const double r : left) square += r * r;
-  double sum = 1.0;
-  for (std::size_t lag = 1; lag <= kNeighbouringRows && lag + 1 < left.size(); ++lag) {
+  const auto correlation = [&](std::size_t lag) {
     double product = 0.0;
     for (std::size_t i = lag; i < left.size(); ++i) product += left[i] * left[i - lag];
-    const double correlation = product / square;
-    if (!(correlation > 2.0 / std::sqrt(static_cast<double>(left.size())))) break;
-    sum += 2.0 * correlation;
+    return product / square;
+  };
+  double sum = -1.0;
+  for (std::size_t lag = 0; lag + 2 < std::min(left.size(), kNeighbouringRows); lag += 2) {
+    const double pair = correlation(lag) + correlation(lag + 1);
+    if (!(pair > std::sqrt(8.0 / static_cast<double>(left.size())))) break;
+    sum += 2.0 * pair;
   }
-  return sum;
+  return std::max(1.0, sum);
 }
 
 class Fitter {
@@ -60,7 +64,18 @@ class Fitter {
     }
   }
 
+  /// The correlation of neighbours is that of the residuals of a first fit, which has none. If it were updated in each
+  /// round, the errors of a poor first guess would count as correlated noise, and the fit would stay there.
   BoomFit run(const Progress& progress) {
+    settle(piece(progress, 0.0, 0.7));
+    for (std::size_t k = 0; k < fit_.noise.size(); ++k) fit_.together[k] = alike(residualsOfCylinder(k));
+    settle(piece(progress, 0.7, 1.0));
+    return std::move(fit_);
+  }
+
+ private:
+  void settle(const Progress& progress) {
+    fit_.converged = false;
     for (int round = 0; round < kMostRounds && !fit_.converged; ++round) {
       const Eigen::VectorXd before = fit_.x;
       step();
@@ -68,38 +83,14 @@ class Fitter {
       fit_.converged = round > 2 && (fit_.x - before).cwiseAbs().maxCoeff() < kSettled;
       report(progress, (round + 1.0) / kMostRounds);
     }
-    return std::move(fit_);
-  }
-
- private:
-  Eigen::MatrixXd slopes() const {
-    const auto unknowns = fit_.x.size();
-    Eigen::MatrixXd J(static_cast<Eigen::Index>(rows_.size()), unknowns);
-    for (Eigen::Index i = 0; i < unknowns; ++i) {
-      Eigen::VectorXd up = fit_.x, down = fit_.x;
-      up[i] += kStep, down[i] -= kStep;
-      J.col(i) = (residualsOf(model_, rows_, down) - residualsOf(model_, rows_, up)) / (2.0 * kStep);
-    }
-    return J;
-  }
-
-  Eigen::VectorXd weights(const Eigen::VectorXd& left) const {
-    Eigen::VectorXd weight(left.size());
-    for (Eigen::Index i = 0; i < left.size(); ++i) {
-      const std::size_t k = rows_[static_cast<std::size_t>(i)].cylinder;
-      const double size = std::abs(left[i]) / fit_.noise[k];
-      weight[i] = (size > kHuber ? kHuber / size : 1.0) / (fit_.noise[k] * fit_.noise[k] * fit_.together[k]);
-      if (!std::isfinite(left[i])) weight[i] = 0.0;
-    }
-    return weight;
   }
 
   /// Friction that would be below zero is held at zero.
   void step() {
     Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x);
-    const Eigen::VectorXd weight = weights(left);
+    const Eigen::VectorXd weight = weightsOf(fit_, rows_, left);
     left = (weight.array() > 0.0).select(left, 0.0);
-    Eigen::MatrixXd J = slopes();
+    Eigen::MatrixXd J = slopesOf(model_, rows_, fit_.x);
     for (Eigen::Index r = 0; r < J.rows(); ++r)
       if (!(weight[r] > 0.0)) J.row(r).setZero();
     const Eigen::Index n = fit_.x.size();
@@ -134,19 +125,24 @@ class Fitter {
     fit_.x += part * (next - fit_.x);
   }
 
-  void findNoise() {
+  /// Residuals of one cylinder, limited to what counts fully.
+  std::vector<double> residualsOfCylinder(std::size_t cylinder) const {
     const Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x);
+    const double most = kFullWeight * fit_.noise[cylinder];
+    std::vector<double> own;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (const double r = left[static_cast<Eigen::Index>(i)]; rows_[i].cylinder == cylinder && std::isfinite(r))
+        own.push_back(std::clamp(r, -most, most));
+    return own;
+  }
+
+  void findNoise() {
     for (std::size_t k = 0; k < fit_.noise.size(); ++k) {
-      std::vector<double> own;
-      for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (rows_[i].cylinder == k && std::isfinite(left[static_cast<Eigen::Index>(i)]))
-          own.push_back(left[static_cast<Eigen::Index>(i)]);
+      const std::vector<double> own = residualsOfCylinder(k);
       if (own.size() < 5) continue;
-      for (double& r : own) r = std::clamp(r, -kHuber * fit_.noise[k], kHuber * fit_.noise[k]);
       double square = 0.0;
       for (const double r : own) square += r * r;
       fit_.noise[k] = std::max(1.0, std::sqrt(square / static_cast<double>(own.size())));
-      fit_.together[k] = alike(own);
     }
   }
 
@@ -188,6 +184,27 @@ Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& 
         row.measured - model.shownForce(*boom, x, row.cylinder, row.recording, *row.point);
   }
   return left;
+}
+
+Eigen::MatrixXd slopesOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x) {
+  Eigen::MatrixXd J(static_cast<Eigen::Index>(rows.size()), x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Eigen::VectorXd up = x, down = x;
+    up[i] += kStep, down[i] -= kStep;
+    J.col(i) = (residualsOf(model, rows, down) - residualsOf(model, rows, up)) / (2.0 * kStep);
+  }
+  return J;
+}
+
+Eigen::VectorXd weightsOf(const BoomFit& fit, const std::vector<BoomRow>& rows, const Eigen::VectorXd& left) {
+  Eigen::VectorXd weight(left.size());
+  for (Eigen::Index i = 0; i < left.size(); ++i) {
+    const std::size_t k = rows[static_cast<std::size_t>(i)].cylinder;
+    const double size = std::abs(left[i]) / fit.noise[k];
+    weight[i] = (size > kFullWeight ? kFullWeight / size : 1.0) / (fit.noise[k] * fit.noise[k] * fit.together[k]);
+    if (!std::isfinite(left[i])) weight[i] = 0.0;
+  }
+  return weight;
 }
 
 }  // namespace hammer_loads::calibration

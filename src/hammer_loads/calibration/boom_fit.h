@@ -36,7 +36,13 @@ BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const 
 /// Residuals: forces of the rows less those of the model with values x [N].
 Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
 
-/// Standard deviation of any function of x; by differences over a tenth of each unknown's deviation.
+/// Slopes of the model's forces by the unknowns at x [N].
+Eigen::MatrixXd slopesOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
+
+/// Weights of rows with these residuals in a fit [1/N2]: the noise, the correlation of neighbours, Huber's weights.
+Eigen::VectorXd weightsOf(const BoomFit& fit, const std::vector<BoomRow>& rows, const Eigen::VectorXd& left);
+
+/// Gradient of any function of x; by differences over a tenth of each unknown's deviation.
 template <typename Function>
 Eigen::VectorXd gradientOf(const Function& function, const Eigen::VectorXd& x) {
   constexpr double kStep = 0.1;

@@ -13,7 +13,6 @@ namespace {
 constexpr double kFits = 0.5;    // part of the force, rms: errors of nominal masses, friction and zeros are below it
 constexpr double kBetter = 0.5;  // another reading of it is off by less than this part
 constexpr double kBeyondLimit = 0.3;  // [rad]
-constexpr double kFaultyNoise = 8.0;  // ratio of a joint sensor's noise to that in other recordings
 
 struct PressureUnit {
   const char* name;
@@ -87,43 +86,7 @@ void checkCylinder(const BoomModel& model, const BoomPoints& recording, std::siz
   }
 }
 
-/// Standard deviation of a joint's rate where it is quietest: of the sensor's noise, motion adds to it elsewhere.
-double quietNoise(const BoomPoints& recording, int joint) {
-  std::vector<double> all;
-  for (const BoomPoint& point : recording.points) all.push_back(point.rate_std[joint]);
-  if (all.empty()) return 0.0;
-  const auto tenth = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 10);
-  std::nth_element(all.begin(), tenth, all.end());
-  return *tenth;
-}
-
-double middleOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
-
-std::vector<std::string> noisySensors(const Chain& chain, const std::vector<BoomPoints>& recordings,
-                                      const std::vector<std::string>& names) {
-  std::vector<std::string> lines;
-  for (int j = 0; j < chain.joints() && recordings.size() > 1; ++j) {
-    std::vector<double> noise;
-    for (const BoomPoints& recording : recordings) noise.push_back(quietNoise(recording, j));
-    for (std::size_t r = 0; r < noise.size(); ++r) {
-      std::vector<double> others = noise;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
-      const double usual = middleOf(others);
-      if (!(usual > 0.0) || noise[r] <= kFaultyNoise * usual) continue;
-      lines.push_back(format(
-          "%s: its sensor's noise is %.0f times that of the other recordings in %s, must be within "
-          "%.0f times: faulty there, leave that recording out",
-          chain.jointNames()[static_cast<std::size_t>(j)].c_str(), noise[r] / usual, names[r].c_str(), kFaultyNoise));
-    }
-  }
-  return lines;
-}
 
 std::vector<std::string> misreadings(const BoomModel& model, const BoomPoints& recording) {
   std::vector<std::string> lines;

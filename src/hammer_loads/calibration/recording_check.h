@@ -1,0 +1,29 @@
+/// Checks of recordings against each other: the sensor of a joint that is faulty in one of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/calibration/boom_fit.h"
+
+namespace hammer_loads::calibration {
+
+/// Contradiction between one recording and the others. Texts: std::string(joint): ... in (recording) ...
+struct Contradiction {
+  std::size_t recording{};
+  double size{};  ///< over its limit [-]
+  std::string text;
+};
+
+/// The worst contradiction of a recording to the others, none where they agree or are fewer than three.
+///
+/// Each recording is predicted by a fit to the others, whose covariance, offsets by day and noise give the standard
+/// deviation of that prediction. Beyond four of them a recording contradicts the others, beyond two if a sensor of its
+/// joint has eight times the usual noise. A sensor that differs from itself in the other recordings by a constant or
+/// in proportion to the angle is estimated as one more unknown. It contradicts beyond four standard deviations and four
+/// times the values of the other recordings.
+std::vector<Contradiction> contradictions(const BoomModel& model, const std::vector<BoomPoints>& recordings,
+                                          const std::vector<BoomRow>& rows, const BoomFit& fit,
+                                          const std::vector<std::string>& names);
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,180 @@
+#include "hammer_loads/calibration/sensor_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+constexpr double kQuietNoise = 8.0;  // ratio to the others, where a recording is quietest
+constexpr double kLoudNoise = 40.0;  // ratio to the others, rms: an error that comes and goes
+constexpr double kLeap = 0.005;      // [rad]: 0.3 deg, the deviation of a zero
+constexpr double kLeapOverNoise = 10.0;
+constexpr double kLeapStays = 0.6;   // part of a leap by which the readings before and after differ
+constexpr double kBesideLeap = 0.3;  // [s]
+constexpr std::ptrdiff_t kLeastBeside = 5;
+constexpr double kStays = 0.5;          // [s]
+constexpr double kNoiseOverStep = 2.0;  // ratio of noise to the step of the readings above which they never repeat
+
+double middleOf(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Standard deviation of a joint's rate where it is quietest: of the sensor's noise, motion adds to it elsewhere.
+double quietNoise(const BoomPoints& recording, int joint) {
+  std::vector<double> all;
+  for (const BoomPoint& point : recording.points) all.push_back(point.rate_std[joint]);
+  if (all.empty()) return 0.0;
+  const auto tenth = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 10);
+  std::nth_element(all.begin(), tenth, all.end());
+  return *tenth;
+}
+
+double rmsNoise(const BoomPoints& recording, int joint) {
+  double square = 0.0;
+  for (const BoomPoint& point : recording.points) square += point.rate_std[joint] * point.rate_std[joint];
+  return std::sqrt(square / std::max<double>(1.0, static_cast<double>(recording.points.size())));
+}
+
+/// Each value over the median of the others.
+std::vector<double> overOthers(const std::vector<double>& values) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<double> others = values;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const double usual = middleOf(others);
+    ratios.push_back(usual > 0.0 ? values[i] / usual : 0.0);
+  }
+  return ratios;
+}
+
+/// Value of a line through the readings first to last, at a time.
+double lineAt(const Trace& trace, std::size_t first, std::size_t last, double time) {
+  double t = 0.0, x = 0.0, tt = 0.0, tx = 0.0;
+  const auto count = static_cast<double>(last - first);
+  for (std::size_t i = first; i < last; ++i) t += trace.time[i] - time, x += trace.value[i];
+  t /= count, x /= count;
+  for (std::size_t i = first; i < last; ++i) {
+    const double from = trace.time[i] - time - t;
+    tt += from * from, tx += from * (trace.value[i] - x);
+  }
+  return tt > 0.0 ? x - t * tx / tt : x;
+}
+
+/// Size of a leap between reading i and the next [rad]; zero: none.
+double leapAfter(const Trace& trace, std::size_t i) {
+  const double middle = 0.5 * (trace.time[i] + trace.time[i + 1]);
+  const auto at = [&](double time) {
+    return static_cast<std::size_t>(std::lower_bound(trace.time.begin(), trace.time.end(), time) - trace.time.begin());
+  };
+  const std::size_t first = at(middle - kBesideLeap), last = at(middle + kBesideLeap);
+  const std::size_t beside = static_cast<std::size_t>(kLeastBeside);
+  if (i + 1 - first < beside || last - i - 1 < beside) return 0.0;
+  std::vector<double> steps, off;
+  for (std::size_t k = first; k + 1 < last; ++k) steps.push_back(trace.value[k + 1] - trace.value[k]);
+  const double usual = middleOf(steps), leap = trace.value[i + 1] - trace.value[i] - usual;
+  for (const double step : steps) off.push_back(std::abs(step - usual));
+  if (std::abs(leap) < std::max(kLeap, kLeapOverNoise * middleOf(off))) return 0.0;
+  const double stays = lineAt(trace, i + 1, last, middle) - lineAt(trace, first, i + 1, middle);
+  return stays / leap > kLeapStays ? leap : 0.0;
+}
+
+struct Event {
+  double time{}, size{};
+};
+
+std::optional<Event> firstLeap(const Trace& trace) {
+  for (std::size_t i = 0; i + 1 < trace.value.size(); ++i) {
+    if (std::abs(trace.value[i + 1] - trace.value[i]) < kLeap) continue;
+    if (const double leap = leapAfter(trace, i); leap != 0.0) return Event{trace.time[i], leap};
+  }
+  return {};
+}
+
+/// The longest time without any change.
+Event longestStay(const Trace& trace) {
+  Event longest;
+  std::size_t since = 0;
+  for (std::size_t i = 1; i < trace.value.size(); ++i) {
+    if (trace.value[i] != trace.value[i - 1]) since = i;
+    const double lasts = trace.time[i] - trace.time[since];
+    if (lasts > longest.size) longest = {trace.time[since], lasts};
+  }
+  return longest;
+}
+
+/// Noise of the readings that change, over the step of the readings [-]; zero: none change.
+double noiseOverStep(const Trace& trace) {
+  std::vector<double> bends;
+  double step = kInfinity;
+  for (std::size_t i = 2; i < trace.value.size(); ++i) {
+    const double change = std::abs(trace.value[i] - trace.value[i - 1]);
+    if (!(change > 0.0)) continue;
+    step = std::min(step, change);
+    bends.push_back(std::abs(trace.value[i] - 2.0 * trace.value[i - 1] + trace.value[i - 2]));
+  }
+  constexpr double kMedianToStd = 1.4826, kOfBends = 2.4495;  // normal distribution; variance of a second difference: 6
+  return bends.empty() ? 0.0 : kMedianToStd * middleOf(bends) / kOfBends / step;
+}
+
+}  // namespace
+
+std::vector<double> noiseRatios(const std::vector<BoomPoints>& recordings, int joint) {
+  std::vector<double> noise;
+  for (const BoomPoints& recording : recordings) noise.push_back(rmsNoise(recording, joint));
+  return overOthers(noise);
+}
+
+std::vector<std::string> noisySensors(const Chain& chain, const std::vector<BoomPoints>& recordings,
+                                      const std::vector<std::string>& names) {
+  std::vector<std::string> lines;
+  for (int j = 0; j < chain.joints() && recordings.size() > 1; ++j) {
+    std::vector<double> quiet;
+    for (const BoomPoints& recording : recordings) quiet.push_back(quietNoise(recording, j));
+    const std::vector<double> quiet_ratios = overOthers(quiet), loud_ratios = noiseRatios(recordings, j);
+    for (std::size_t r = 0; r < recordings.size(); ++r) {
+      const bool always = quiet_ratios[r] > kQuietNoise;
+      if (!always && loud_ratios[r] <= kLoudNoise) continue;
+      lines.push_back(
+          format("%s: its sensor's noise is %.0f times that of the other recordings in %s, must be within "
+                 "%.0f times: faulty there, leave that recording out",
+                 chain.jointNames()[static_cast<std::size_t>(j)].c_str(), always ? quiet_ratios[r] : loud_ratios[r],
+                 names[r].c_str(), always ? kQuietNoise : kLoudNoise));
+    }
+  }
+  return lines;
+}
+
+std::vector<std::string> brokenSensors(const Chain& chain, const std::vector<const BoomRecording*>& recordings,
+                                       const std::vector<std::string>& names) {
+  constexpr double kDegrees = 180.0 / kPi;
+  std::vector<std::string> lines;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.joints()); ++j) {
+    const char* joint = chain.jointNames()[j].c_str();
+    double noise = 0.0;
+    for (const BoomRecording* recording : recordings) noise = std::max(noise, noiseOverStep(recording->joint[j]));
+    for (std::size_t r = 0; r < recordings.size(); ++r) {
+      const Trace& trace = recordings[r]->joint[j];
+      if (const auto leap = firstLeap(trace))
+        lines.push_back(
+            format("%s: its sensor leaps by %.2g deg after %.1f s of %s: faulty there, leave that recording out", joint,
+                   kDegrees * leap->size, leap->time, names[r].c_str()));
+      const Event stay = longestStay(trace);
+      if (stay.size > kStays && noise > kNoiseOverStep)
+        lines.push_back(
+            format("%s: its sensor reads the same for %.1f s after %.1f s of %s and is noisy elsewhere: faulty "
+                   "there, leave that recording out",
+                   joint, stay.size, stay.time, names[r].c_str()));
+    }
+  }
+  return lines;
+}
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,24 @@
+/// Checks of a joint's sensor by its own readings: noise, leaps, readings that stay.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/chain.h"
+#include "hammer_loads/calibration/boom_recording.h"
+
+namespace hammer_loads::calibration {
+
+/// Noise of a joint's sensor in each recording, rms over all instants, over the median of the others [-].
+std::vector<double> noiseRatios(const std::vector<BoomPoints>& recordings, int joint);
+
+/// One line per joint's sensor whose noise in one recording is far above that in the others; names: of the recordings.
+std::vector<std::string> noisySensors(const Chain& chain, const std::vector<BoomPoints>& recordings,
+                                      const std::vector<std::string>& names);
+
+/// One line per joint's sensor that leaps from one reading to the next and stays there, or whose reading stays exactly
+/// equal although it is noisy elsewhere. No joint moves like that. Recordings and their names.
+std::vector<std::string> brokenSensors(const Chain& chain, const std::vector<const BoomRecording*>& recordings,
+                                       const std::vector<std::string>& names);
+
+}  // namespace hammer_loads::calibration
