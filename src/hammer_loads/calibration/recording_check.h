@@ -20,8 +20,8 @@ struct Contradiction {
 /// Each recording is predicted by a fit to the others, whose covariance, offsets by day and noise give the standard
 /// deviation of that prediction. Beyond four of them a recording contradicts the others, beyond two if a sensor of its
 /// joint has eight times the usual noise. A sensor that differs from itself in the other recordings by a constant or
-/// in proportion to the angle is estimated as one more unknown. It contradicts beyond four standard deviations and four
-/// times the values of the other recordings.
+/// in proportion to the angle is estimated as one more unknown. It contradicts beyond four standard deviations,
+/// to which the spread of the other recordings contributes.
 std::vector<Contradiction> contradictions(const BoomModel& model, const std::vector<BoomPoints>& recordings,
                                           const std::vector<BoomRow>& rows, const BoomFit& fit,
                                           const std::vector<std::string>& names);
