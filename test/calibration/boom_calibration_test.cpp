@@ -251,23 +251,28 @@ TEST(BoomCalibration, LeavesOutWhatIsHammered) {
   }
 }
 
-/// Three days of one machine: pressures of each day are off by their own offset.
+/// Three days of one machine: each has its own offset of the pressures and its own load on the tip.
 TEST(BoomCalibration, KnowsHowWellItKnowsFromSeveralDays) {
+  constexpr double kLoad = 50.0, kLoadStd = 20.0;  // [kg]
+  const std::complex<double> place(-0.2, -0.9);    // [m] from D
   std::mt19937 random(21);
   std::normal_distribution<> normal;
   int weights = 0, within = 0;
   for (int i = 0; i < 8; ++i) {
-    FreeBoom machine = FreeBoom::drawn(random);
-    const auto usual = machine.offset;
+    const FreeBoom machine = FreeBoom::drawn(random);
+    FreeBoom usual = machine;
+    usual.hang(kLoad, place);
     std::vector<BoomPoints> points;
     for (int day = 0; day < 3; ++day) {
-      for (std::size_t k = 0; k < 3; ++k) machine.offset[k] = usual[k] + 1e5 * normal(random);
-      points.push_back(pointsOf(machine.record(random, 60.0)));
+      FreeBoom today = machine;
+      today.hang(std::max(0.0, kLoad + kLoadStd * normal(random)), place);
+      for (std::size_t k = 0; k < 3; ++k) today.offset[k] += 1e5 * normal(random);
+      points.push_back(pointsOf(today.record(random, 60.0)));
     }
     const BoomModel model(test::shippedBasis(), {TipWeight{}, TipWeight{}, TipWeight{}});
     const BoomFit fit = fitBoom(model, rowsOf(model, points));
     for (int n = 0; n < 4; ++n) {
-      const Pose3 q = anyPose(random), truth = machine.staticTorque(q);
+      const Pose3 q = anyPose(random), truth = usual.staticTorque(q);
       const std::vector<StaticTorque> found = staticTorques(model, fit, {readAt(machine, q)}).front();
       for (std::size_t k = 0; k < 3; ++k)
         ++weights, within += std::abs(found[k].value - truth[k]) < 2.0 * found[k].deviation;

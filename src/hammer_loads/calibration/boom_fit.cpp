@@ -70,6 +70,7 @@ class Fitter {
     settle(piece(progress, 0.0, 0.7));
     for (std::size_t k = 0; k < fit_.noise.size(); ++k) fit_.together[k] = alike(residualsOfCylinder(k));
     settle(piece(progress, 0.7, 1.0));
+    addRecordings();
     return std::move(fit_);
   }
 
@@ -83,6 +84,39 @@ class Fitter {
       fit_.converged = round > 2 && (fit_.x - before).cwiseAbs().maxCoeff() < kSettled;
       report(progress, (round + 1.0) / kMostRounds);
     }
+  }
+
+  /// Adds to the covariance that a cylinder's forces have a relative error of their own in each recording: the load on
+  /// the tip, the warmth of the oil and zeros differ by day. Its variance is a method of moments over the recordings
+  /// (DerSimonian and Laird, 1986), with the basis' value as two more of them.
+  void addRecordings() {
+    if (rows_.empty() || rows_.front().recording == rows_.back().recording) return;
+    constexpr double kAsMany = 2.0;
+    const Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x), weight = weightsOf(fit_, rows_, left);
+    const Eigen::MatrixXd slopes = slopesOf(model_, rows_, fit_.x), covariance = fit_.covariance;
+    for (std::size_t k = 0; k < fit_.noise.size(); ++k) {
+      double sum = kAsMany * std::pow(model_.basis().recording_gain_std, 2), count = kAsMany;
+      Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(fit_.x.size(), fit_.x.size());
+      for (std::size_t r = 0; r <= rows_.back().recording; ++r) {
+        const Eigen::VectorXd force = forcesOf(k, r), weighted = weight.cwiseProduct(force);
+        const Eigen::VectorXd by_unknowns = slopes.transpose() * weighted, change = covariance * by_unknowns;
+        const double information = weighted.dot(force) - by_unknowns.dot(change);
+        if (!(information > 0.0)) continue;
+        sum += std::pow(weighted.dot(left) / information, 2) - 1.0 / information, count += 1.0;
+        changes += change * change.transpose();
+      }
+      fit_.covariance += std::max(sum, 0.0) / count * changes;
+    }
+  }
+
+  /// Measured forces in the rows of one cylinder in one recording [N], zero in others.
+  Eigen::VectorXd forcesOf(std::size_t cylinder, std::size_t recording) const {
+    Eigen::VectorXd force(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const bool own = rows_[i].cylinder == cylinder && rows_[i].recording == recording;
+      force[static_cast<Eigen::Index>(i)] = own ? rows_[i].measured : 0.0;
+    }
+    return force;
   }
 
   /// Friction that would be below zero is held at zero.

@@ -28,6 +28,7 @@ struct BoomBasis {
   double zero_std{0.005};           ///< standard, of each joint's zero: 0.3 deg [rad]
   double offset_std{5e4};           ///< standard, of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
   double recording_std{5e4};        ///< by which a bore's pressure differs from one recording to the next [Pa]
+  double recording_gain_std{0.005};  ///< standard, by which a force differs from one recording to the next, relative [-]
   double gain_std{0.005};           ///< standard, of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
   double friction_std{0.05};        ///< standard, of the part of friction that goes with the force [-]
   double friction_force_std{0.02};  ///< standard, of the constant part, over the greatest push [-]

@@ -47,7 +47,7 @@ double spreadWithout(std::vector<double> values, std::size_t one) {
 /// Rows of one recording in the linear system of a fit.
 struct Part {
   std::vector<std::size_t> rows;
-  Eigen::MatrixXd slopes;  ///< of the model's forces by the unknowns
+  Eigen::MatrixXd slopes;  ///< change of the model's forces by the unknowns [N]
   Eigen::VectorXd left;    ///< [N]
   Eigen::VectorXd weight;  ///< [1/N2]
   std::size_t count() const { return rows.size(); }
@@ -136,7 +136,7 @@ class Comparison {
                  jointOf(cylinder).c_str(), names_[r].c_str(), sum / count, deviation);
       const std::string why = suspect ? format(", and its sensor has %.0f times their noise: faulty there", noise[r])
                                       : ": its sensor, a pressure or the load on the tip is another there";
-      found_.push_back({r, size / limit, what + why + ", leave that recording out"});
+      found_.push_back({size / limit, what + why + ", leave that recording out"});
     }
   }
 
@@ -222,7 +222,7 @@ class Comparison {
       if (size <= kContradicts || std::abs(s.value) * s.reach < kLeastAngle) continue;
       if (std::abs(s.value) * s.reach > kMostAngle) continue;
       const double shown = flaw == Flaw::kScale ? 100.0 * s.value : s.value * 180.0 / kPi;
-      found_.push_back({r, std::abs(s.value) / s.deviation / kContradicts,
+      found_.push_back({std::abs(s.value) / s.deviation / kContradicts,
                         jointOf(cylinder) + ": its sensor " + format(text, shown) +
                             format(" in %s than in the other recordings: faulty there, leave that recording out",
                                    names_[r].c_str())});

@@ -8,14 +8,13 @@
 
 namespace hammer_loads::calibration {
 
-/// Contradiction between one recording and the others. Texts: std::string(joint): ... in (recording) ...
+/// Contradiction between one recording and the others.
 struct Contradiction {
-  std::size_t recording{};
-  double size{};  ///< over its limit [-]
-  std::string text;
+  double size{};     ///< over its limit [-]
+  std::string text;  ///< begins with the joint and names the recording
 };
 
-/// The worst contradiction of a recording to the others, none where they agree or are fewer than three.
+/// Contradictions of recordings to the others, the largest first; none where they are fewer than three.
 ///
 /// Each recording is predicted by a fit to the others, whose covariance, offsets by day and noise give the standard
 /// deviation of that prediction. Beyond four of them a recording contradicts the others, beyond two if a sensor of its
