@@ -22,13 +22,14 @@ struct BoomBasis {
   RobotDescription urdf;
   BoomParameters parameters;
   Eigen::Vector3d g_B{0.0, 0.0, -kStandardGravity};  ///< gravity in the root's axes [m/s2]
-  double mass_std{0.25};            ///< standard, of each link's mass, relative: drawings lack hoses, oil, valves [-]
-  double com_std{0.10};             ///< standard, of each link's centre of mass in x and z each [m]
-  double inertia_std{0.30};         ///< standard, of each link's inertia, relative [-]
-  double zero_std{0.005};           ///< standard, of each joint's zero: 0.3 deg [rad]
-  double offset_std{5e4};           ///< standard, of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
-  double recording_std{5e4};        ///< by which a bore's pressure differs from one recording to the next [Pa]
-  double recording_gain_std{0.005};  ///< standard, by which a force differs from one recording to the next, relative [-]
+  double mass_std{0.25};      ///< standard, of each link's mass, relative: drawings lack hoses, oil, valves [-]
+  double com_std{0.10};       ///< standard, of each link's centre of mass in x and z each [m]
+  double inertia_std{0.30};   ///< standard, of each link's inertia, relative [-]
+  double zero_std{0.005};     ///< standard, of each joint's zero: 0.3 deg [rad]
+  double offset_std{5e4};     ///< standard, of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
+  double recording_std{5e4};  ///< by which a bore's pressure differs from one recording to the next [Pa]
+  double recording_gain_std{
+      0.005};                       ///< standard, by which a force differs from one recording to the next, relative [-]
   double gain_std{0.005};           ///< standard, of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
   double friction_std{0.05};        ///< standard, of the part of friction that goes with the force [-]
   double friction_force_std{0.02};  ///< standard, of the constant part, over the greatest push [-]
