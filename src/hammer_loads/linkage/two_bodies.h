@@ -1,6 +1,7 @@
 /// Crank and rocker as two bodies, the rod between them a spring: how they move after a blow.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -35,6 +36,19 @@ struct TwoBodyDrive {
 struct TwoBodyAccelerations {
   double crank{}, rocker{};  ///< [rad/s2]
 };
+
+/// Acceleration of the rocker relative to that of a rigid rod at the crank's acceleration [rad/s2].
+inline double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
+  return a.rocker - links.rocker.u * a.crank - links.rocker.du * s.speed * s.speed;
+}
+
+/// Force in the rod by its moment on the rocker [N m], links: at the same instant [N]. Near the dead centre, where the
+/// rod has no lever, it is that of the shortest lever from which a force follows.
+inline double rodForce(const Mechanism& mechanism, const LinkMotion& links, double moment) noexcept {
+  constexpr double kLeastLever = 0.01;  // part of l3
+  // Numerical: kLeastLever
+  return std::abs(moment) / (mechanism.parameters().lengths.rocker * std::max(kLeastLever, std::abs(links.sin_mu)));
+}
 
 /// With independent angles phi and psi, a rod whose masses move in proportion between its pins and theta = psi - phi,
 /// kinetic energy is 1/2 (M11 w^2 + 2 M12(theta) w v + M22 v^2), M11 and M22 constant (as BlowInertia). In phi and x:

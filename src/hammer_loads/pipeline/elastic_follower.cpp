@@ -16,22 +16,19 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kFrom = -0.30,
-                 kFromLatest = -0.05;  // beginning of the elastic model [rad]: some 15 ms before the blow
-constexpr double kTo = 2.2;            // [rad]: by then no rod vibrates
+                 kFromLatest = -0.05;            // beginning of the elastic model [rad]: some 15 ms before the blow
+constexpr double kTo = 2.2, kRungOutTime = 0.3;  // [rad], [s] after the blow: by then no rod vibrates
+// Numerical: kTo, kRungOutTime
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // for logarithms of likelihoods, per blow
 constexpr std::int64_t kOthersTurn = 4;                 // [blows]
 // Numerical: kOthersTurn
 constexpr double kContact = 5e-4, kContactsShare = 0.01;  // [s]; of a restitution: what that makes of it
 
-/// x'' [rad/s2]: of the rocker beside a rigid rod's at the crank's acceleration.
-double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
-  return a.rocker - links.rocker.u * a.crank - links.rocker.du * square(s.speed);
-}
-
-/// One that was never struck is contradicted long before.
+/// After a blow with a small restitution the rod brakes the crank to less than kSlowCrank. A rocker that was never
+/// struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
-  return s.angle.offset > kTo || !(s.speed > kSlowCrank);
+  return s.angle.offset > kTo || rod.sinceBlow() > kRungOutTime || !(s.speed > (rod.hasStruck() ? 0.0 : kSlowCrank));
 }
 
 }  // namespace
@@ -115,7 +112,7 @@ void ElasticFollower::judge() noexcept {
   const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
   evidence_ += kEvidenceGain * (gain - evidence_);
   best_ = evidence_ > (best_ == nullptr ? odds::kLikely : 0.0) ? &rod : nullptr;
-  if (rod.isProven()) restitution_ = rod.motion().restitution;
+  if (rod.isProven()) restitution_ = rod.motion().restitution, clearance_ = rod.motion().play;
 }
 
 CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {
