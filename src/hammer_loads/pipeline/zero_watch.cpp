@@ -24,6 +24,13 @@ constexpr int kTurnsToSearch = 8;                   // of a machine whose times 
 constexpr int kTurnsToShow = 20;                    // readings and model that agree for so long outweigh the search
 constexpr double kRefined = 0.5 * kDegree;
 
+/// Consistency of the readings with the model. An elastic rod contradicts it after the blow alone, a wrong zero
+/// elsewhere as well.
+double consistencyBesideRod(const CrankFilter& filter) noexcept {
+  const RodEvidence& rod = filter.rodEvidence();
+  return rod.gives() ? std::max(rod.later(), filter.strikeConsistency()) : filter.consistency();
+}
+
 }  // namespace
 
 double ZeroWatch::move(double angle, double deviation) noexcept {
@@ -51,7 +58,7 @@ double ZeroWatch::follow(const CrankFilter& filter, double reading, double step,
 bool ZeroWatch::agrees(const CrankFilter& filter) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];
-  return errors.knows() && filter.consistency() < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
+  return errors.knows() && consistencyBesideRod(filter) < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
 }
 
 bool ZeroWatch::doubts(const CrankFilter& filter) const noexcept {
@@ -95,7 +102,7 @@ double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
     const auto& found = search_.found();
     const double readings = std::hypot(filter.timingNoise() * filter.state().speed, kOfStep * search_.stepAngle());
     const double least = found && found->error > 0.0 ? kSearchShowsAhead : kSearchShows;
-    if (found && !(left_ && found->error < 0.0) &&
+    if (found && !(left_ && found->error < 0.0) && !(filter.rodEvidence().gives() && agrees(filter)) &&
         (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
         std::abs(found->error) > std::max(least, kDeviations * std::hypot(found->deviation, readings)))
       return move(found->error, kSearchDeviation);
