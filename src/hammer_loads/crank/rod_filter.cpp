@@ -15,7 +15,7 @@ constexpr double kPlaceDeviation = 5e-3;  // [rad]: a millimetre
 // Prior: kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
 constexpr double kOtherPlace = 2e-2;  // [rad] after a blow that this one does not explain: a retainer is 5 mm away
 // Prior: kOtherPlace
-constexpr double kWalks[] = {0.005, 0.01, 5e-6, 0.02, 3e-3};  // of the learned rows from blow to blow
+constexpr double kWalks[] = {0.005, 0.01, 5e-6, 0.03, 4e-3};  // of the learned rows from blow to blow
 // Prior: kWalks
 constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
 // Prior: kLeastLog, kMostLog
@@ -29,12 +29,17 @@ constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;  // [rad], [rad/s]
 // Prior: kSettledX, kSettledSpeed
 constexpr double kUnmodelled = 1.0;  // [rad/s/sqrt(s)] of the rocker's speed
 // Prior: kUnmodelled
+constexpr double kFriction = 0.05; // part of the friction radius
+constexpr double kHeld = 0.02;     // T [s]
+// Prior: kFriction, kHeld
 constexpr int kEnough = 8;
 
 }  // namespace
 
-RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(mechanism) {
-  const RodPrior prior = priorOf(mechanism.parameters().rod, mechanism.parameters().rod_std);
+RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : mechanism_(&mechanism), bodies_(mechanism) {
+  const HammerParameters& p = mechanism.parameters();
+  friction_radius_ = kFriction * std::hypot(p.rod.friction_radius, p.rod_std.friction_radius);
+  const RodPrior prior = priorOf(p.rod, p.rod_std);
   const double play = pins == Pins::kPlay ? prior.play : 0.0;
   learned_.play = pins == Pins::kPlay && prior.rod.play > 0.0 ? prior.rod.play : play;
   learned_.restitution = kFirstRestitution;
@@ -62,7 +67,7 @@ void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
   motion_.state = {s.position.angle, s.speed, 0.0, 0.0};
   motion_.torque = s.torque;
   motion_.log_inertia = std::log(s.drive_inertia);
-  since_blow_ = ratio_sum_ = fit_ = 0.0;
+  since_blow_ = ratio_sum_ = fit_ = rod_force_ = 0.0;
   running_ = true;
   samples_ = 0;
   constexpr Eigen::Index kOf[] = {kAngle, kSpeed, kTorque, kInertia};
@@ -167,6 +172,19 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   belief_.addNoise(kSpeed, kSpeed, square(walks.speed) * dt + torque * square(b * dt) / 3.0);
   belief_.addNoise(kSpeed, kTorque, 0.5 * torque * b * dt);
   belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kUnmodelled) * dt);
+  if (hasStruck()) addFriction(dt);
+}
+
+/// At the end of a step of dt [s].
+void RodFilter::addFriction(double dt) noexcept {
+  const double inertia = mechanism_->parameters().rocker_inertia_about_pivot;
+  const LinkMotion links = bodies_.links(motion_.state.angle);
+  const TwoBodyAccelerations a = bodies_.accelerations(rod(motion_), drive(motion_), motion_.state, links);
+  const double force = rodForce(*mechanism_, links, inertia * besideRigidly(motion_.state, a, links));
+  rod_force_ = std::max(force, rod_force_ * std::exp(-dt / kHeld));
+  const double impulse = 2.0 * kHeld * square(friction_radius_ * rod_force_) * dt;  // square of an impulse [(N m s)^2]
+  belief_.addNoise(kBesideSpeed, kBesideSpeed, impulse / square(inertia));
+  belief_.addNoise(kSpeed, kSpeed, impulse * std::exp(-2.0 * motion_.log_inertia));
 }
 
 bool RodFilter::take(const WeighedSample& sample) noexcept {

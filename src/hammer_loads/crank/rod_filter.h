@@ -26,6 +26,10 @@ struct RodMotion {
 ///
 /// Extended Kalman filter, linearised by differences: for each independent error (a column of the covariance's root) a
 /// perturbed machine is integrated in parallel.
+///
+/// Friction of the pins disturbs both bodies by a torque that grows with the rod's force N: as white noise of the
+/// spectral density 2 T (r N)^2, with r a part of the friction radius that the hammer file leaves possible. N is the
+/// greatest force of the last T.
 class RodFilter {
  public:
   enum Row : Eigen::Index {
@@ -89,7 +93,11 @@ class RodFilter {
   std::optional<TwoBodies::Blow> advance(double dt, bool strikes, RodMotion& motion) const noexcept;
   Belief::Vector difference(const RodMotion& of, const RodMotion& from) const noexcept;
   double growth() const noexcept;
+  void addFriction(double dt) noexcept;
 
+  const Mechanism* mechanism_;
+  double friction_radius_{};  ///< r [m]
+  double rod_force_{};        ///< N [N]
   TwoBodies bodies_;
   Gravity gravity_;
   SupplyLaw supply_;
