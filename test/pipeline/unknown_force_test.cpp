@@ -4,8 +4,12 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 
+#include "hammer_loads/life/damage.h"
+#include "hammer_loads/life/exact_cycles.h"
+#include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/square.h"
@@ -88,6 +92,9 @@ struct Covered {
   int count[kClasses]{}, within[kClasses][3]{};
   double error[kClasses]{}, stated[kClasses]{};
   int blows{}, energies{};
+  int followed{}, after_blow{};            // samples of the first 90 deg with the spring; all
+  life::ExactCycles true_loads;            // of Fx
+  std::optional<life::CycleCount> counts;  // of Fx, with deviations
 
   double share(int c) const {
     return static_cast<double>(*std::min_element(within[c], within[c] + 3)) / std::max(1, count[c]);
@@ -104,6 +111,9 @@ Covered coveredOf(const test::WornMachineSettings& machine, const Mechanism& fil
   PipelineSettings settings = test::shippedDrawing().pipeline;
   settings.level = Level::kElastic;
   Pipeline pipeline(file, settings);
+  life::LifeSettings counted;
+  counted.channels = {{"hull_wrench/force_x", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
+  LifeFollower follower(pipeline, counted);
   Covered covered;
   constexpr double kLearned = 2.0, kBesideTouch = 1.5e-3;  // [s]
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -111,6 +121,8 @@ Covered coveredOf(const test::WornMachineSettings& machine, const Mechanism& fil
     const auto stamp = static_cast<StampNs>(std::llround(1e9 * (100.0 + sample.time)));
     const SampleResult& result = pipeline.crankSample(stamp, {sample.reading, std::nullopt});
     if (sample.time < kLearned) continue;
+    follower.follow();
+    if (sample.since_touch > kBesideTouch) covered.true_loads.add(sample.force_x);
     for (std::size_t k = 0; k < result.turn_ends; ++k) {
       const double time = 1e-9 * static_cast<double>(result.ends[k].stamp) - 100.0;
       for (const auto& blow : blows) {
@@ -131,9 +143,11 @@ Covered coveredOf(const test::WornMachineSettings& machine, const Mechanism& fil
                              result.wrench.torque_y - drive - sample.torque_y};
     const Eigen::Vector3d stated = vectorOf(result.deviation.wrench);
     ++covered.count[c];
+    if (c < 2) ++covered.after_blow, covered.followed += result.rod_followed;
     for (int k = 0; k < 3; ++k) covered.within[c][k] += std::abs(errors[k]) <= 2.0 * stated[k];
     covered.error[c] += square(errors[1]), covered.stated[c] += square(stated[1]);
   }
+  covered.counts = follower.take().counts[0];
   return covered;
 }
 
@@ -153,13 +167,43 @@ TEST(WornMachine, IsCoveredWithFrictionAndClearance) {
   EXPECT_GE(covered.energies + 1, covered.blows);
 }
 
-/// Friction hides the rod in some blows. What they leave open is by the restitution of the others, not by any.
-TEST(WornMachine, IsNotStatedFarLessCertainThanItIsWithFriction) {
+/// Friction disturbs crank and rocker beside the spring, which is still seen.
+TEST(WornMachine, ShowsItsSpringInSpiteOfFriction) {
   test::WornMachineSettings machine = wornMo100();
   machine.friction = 0.08, machine.duration = 5.0;
   const Covered covered = coveredOf(machine, test::shippedDrawing().mechanism);
   EXPECT_GT(covered.least(), 0.9);
+  EXPECT_GT(covered.followed, covered.after_blow / 2);
   EXPECT_LT(std::sqrt(covered.stated[0]), 5.0 * std::sqrt(covered.error[0]));
+}
+
+/// A rocker that hardly rebounds is pulled along by the rod, which nearly stops the crank.
+TEST(WornMachine, IsFollowedAfterABlowThatNearlyStopsTheCrank) {
+  test::WornMachineSettings machine = wornMo100();
+  machine.restitution = 0.06, machine.restitution_spread = 0.0, machine.duration = 5.0;
+  const Covered covered = coveredOf(machine, test::shippedDrawing().mechanism);
+  EXPECT_GT(covered.followed, 9 * covered.after_blow / 10);
+  EXPECT_LT(std::sqrt(covered.error[0] / covered.count[0]), 1000.0);
+}
+
+/// Contacts in pins with clearance load the hull for a small share of the time; a damage-equivalent range is by their
+/// crests. The readings show a clearance: the range of a machine without one is not stated as uncertain.
+TEST(WornMachine, HasAnUncertainRangeOnlyWhereItsPinsShowClearance) {
+  test::WornMachineSettings machine = wornMo100();
+  machine.duration = 6.0;
+  const auto rangeOf = [](const Covered& covered) {
+    return life::equivalentLoad(life::rangesAndMeans(*covered.counts), 5.0, 1.0, life::rangeDeviation(*covered.counts));
+  };
+  const auto trueRange = [](const Covered& covered) {
+    return life::equivalentLoad(life::rangesAndMeans(covered.true_loads), 5.0, 1.0, {}).value;
+  };
+  const Covered tight = coveredOf(machine, test::shippedDrawing().mechanism);
+  EXPECT_NEAR(rangeOf(tight).value, trueRange(tight), 2.0 * rangeOf(tight).deviation);
+  EXPECT_LT(rangeOf(tight).deviation, 0.2 * trueRange(tight));
+  machine.clearance = 1e-4;
+  const Covered worn = coveredOf(machine, test::shippedDrawing().mechanism);
+  EXPECT_LT(rangeOf(worn).value, 0.85 * trueRange(worn));
+  EXPECT_NEAR(rangeOf(worn).value, trueRange(worn), 2.0 * rangeOf(worn).deviation);
 }
 
 /// The table of doc/model.md 6: --gtest_also_run_disabled_tests --gtest_filter=WornMachine.*
@@ -167,7 +211,6 @@ TEST(WornMachine, DISABLED_TableOfTheModel) {
   struct Row {
     const char* name;
     test::WornMachineSettings machine;
-    bool is_limit{};  ///< named as such by the model's documentation
   };
   const auto with = [](const char* name, const auto& change) {
     Row row{name, wornMo100()};
@@ -192,7 +235,6 @@ TEST(WornMachine, DISABLED_TableOfTheModel) {
         m.friction = 0.05, m.clearance = 1e-4, m.bow = 3e-3, m.bending_frequency = 450.0, m.damping_ratio = 0.12;
         m.late = 8e-3, m.late_share = 0.1, m.restitution = 0.25, m.restitution_spread = 0.1;
       })};
-  rows[10].is_limit = true;
   std::string text =
       "| machine | 0 to 30 deg | 30 to 90 deg | 90 to 180 deg | 180 to 270 deg | 270 to 330 deg | 330 to 360 deg | Fz, "
       "0 to 30 deg: rms error, stated | blow energies within |\n"
@@ -203,7 +245,7 @@ TEST(WornMachine, DISABLED_TableOfTheModel) {
     for (int c = 0; c < Covered::kClasses; ++c) text += format(" | %.0f %%", 100.0 * covered.share(c));
     text += format(" | %.0f N, %.0f N | %d of %d |\n", std::sqrt(covered.error[0] / std::max(1, covered.count[0])),
                    std::sqrt(covered.stated[0] / std::max(1, covered.count[0])), covered.energies, covered.blows);
-    if (!row.is_limit) EXPECT_GT(covered.least(), 0.8) << row.name;
+    EXPECT_GT(covered.least(), 0.8) << row.name;
   }
   std::printf("%s", text.c_str());
 }

@@ -19,7 +19,7 @@ constexpr double kKnown =
 struct LifeFollower::StepEnd {
   explicit StepEnd(const SampleResult& result) noexcept {
     wrenchValues(result.wrench, value.data());
-    wrenchValues(result.deviation.wrench, deviation.data());
+    wrenchValues(result.ofExtreme().deviation, deviation.data());
     wrenchValues(result.deviation.common, common.data());
   }
   std::array<double, kHullChannels> value, deviation, common;

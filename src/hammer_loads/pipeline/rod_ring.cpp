@@ -21,7 +21,7 @@ constexpr double kRestitutionDoubt = 0.05;  // error by an elastic rod: 0.03 to 
 // Prior: kRestitutionDoubt
 constexpr double kMeanRestitution = 0.5,
                  kAnyRestitution = 0.29;  // mean and deviation of a restitution uniform from 0 to 1
-constexpr double kOtherBlow = 0.1;        // of a restitution from blow to blow
+constexpr double kOtherBlow = 0.08;       // of a restitution from blow to blow
 // Prior: kMeanRestitution, kAnyRestitution, kOtherBlow
 constexpr double kPart = 1e-2;       // [rad], as kLongest
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
@@ -92,12 +92,17 @@ void RodRing::begin(double beside_speed) noexcept {
 void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   if (!(blow.drive_inertia > 0.0) || !(speed_before > 0.0)) return rest();
   const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
-  const double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0);
+  const bool by_others = unexplained_ && explained_;
+  const double restitution = std::clamp(by_others ? *explained_ : at.restitution(blow.mean), 0.0, 1.0);
   const double rocker = -restitution * at.u_before * speed_before;  // rocker's speed as it leaves the tool
-  const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
-  const double by_rod = lost_ && explained_ ? std::hypot(kOtherBlow, restitution - *explained_) : doubtOf(restitution);
+  const double measured =
+      !by_others && std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
+  const double by_rod = by_others             ? kOtherBlow
+                        : lost_ && explained_ ? std::hypot(kOtherBlow, restitution - *explained_)
+                                              : doubtOf(restitution);
   const double doubt = std::hypot(measured, by_rod) * at.u_before * speed_before;
-  const double missing = rocker - at.u_after * blow.mean * speed_before;
+  const double factor = by_others ? at.factor(restitution) : blow.mean;
+  const double missing = rocker - at.u_after * factor * speed_before;
   struck_ = std::hypot(missing, doubt);
   begin(std::copysign(struck_, missing));
 }
@@ -206,7 +211,7 @@ void RodRing::take(const CrankFilter& filter, bool lost, std::optional<double> r
   const RodEvidence& evidence = filter.rodEvidence();
   share_ = std::sqrt(evidence.share(filter.readingDeviation()));
   released_ = std::sqrt(evidence.releasedShare(filter.readingDeviation()));
-  lost_ = lost || evidence.isLost();
+  unexplained_ = lost, lost_ = lost || evidence.isLost();
   explained_ = restitution;
 }
 

@@ -81,6 +81,7 @@ class RodRing {
   double acceleration_{}, struck_{}, share_{1.0}, released_{1.0};
   double driven_{};                  ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
   double lacking_{};                 ///< at the last blow, of the crank's speed [rad/s]
+  bool unexplained_{};               ///< no rod explains the last blow
   bool lost_{};                      ///< nothing explains what blows did to the crank
   std::optional<double> explained_;  ///< restitution of the blows that a spring explains [-]
 };

@@ -48,11 +48,15 @@ struct SampleResult {
   /// phase that is the crest, the root of two times its root mean square.
   struct OfExtreme {
     HullWrench deviation, ring;
+    UnknownForce::Squares unknown;
   };
   OfExtreme ofExtreme() const noexcept {
-    if (rod_followed) return {deviation.wrench, rod_ring};
-    const Eigen::Vector3d ring = vectorOf(rod_ring), all = vectorOf(deviation.wrench);
-    return {wrenchOf((all.cwiseAbs2() + ring.cwiseAbs2()).cwiseSqrt()), wrenchOf(std::sqrt(2.0) * ring)};
+    const UnknownForce::Squares crest = UnknownForce::ofExtreme(unknown);
+    Eigen::Vector3d all = vectorOf(deviation.wrench).cwiseAbs2() + (crest - unknown).rowwise().sum();
+    if (rod_followed) return {wrenchOf(all.cwiseSqrt()), rod_ring, crest};
+    const Eigen::Vector3d ring = vectorOf(rod_ring);
+    all += ring.cwiseAbs2();
+    return {wrenchOf(all.cwiseSqrt()), wrenchOf(std::sqrt(2.0) * ring), crest};
   }
 
   StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence

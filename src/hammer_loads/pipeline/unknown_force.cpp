@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/linkage/rod_spring.h"
+#include "hammer_loads/linkage/two_bodies.h"
 #include "hammer_loads/pipeline/rod_ring.h"
 #include "hammer_loads/util/square.h"
 
@@ -12,12 +12,13 @@ namespace {
 
 constexpr double kContacts = 0.012;     // root mean square of the contacts' force over its greatest
 constexpr double kContactsLever = 0.5;  // in parts of l3
-constexpr double kOfDamping = 0.2;      // part of the moment, per unit of the damping ratio
-constexpr double kLasts = 0.08;         // [s]
+constexpr double kHidden = 0.05;        // part of the file's clearance that readings do not show
+constexpr double kOfDamping = 0.4;      // part of the moment, per unit of the damping ratio
+constexpr double kLasts = 0.1;          // [s]
+constexpr double kFrictionPins = 2.0;   // at both ends of the rocker
 constexpr double kHeld = 0.02;          // [s] for which friction has changed what the rod does
-// Prior: WornMachine.IsCoveredWithFrictionAndClearance of kContacts, kContactsLever, kOfDamping, kLasts, kHeld
-constexpr double kLeastLever = 0.01;  // part of l3: below it the rod's force does not follow from its moment
-// Numerical: kLeastLever
+// Prior: WornMachine.IsCoveredWithFrictionAndClearance of kContacts, kContactsLever, kHidden, kOfDamping, kLasts,
+// kFrictionPins, kHeld
 
 }  // namespace
 
@@ -25,7 +26,7 @@ UnknownForce::UnknownForce(const Mechanism& mechanism) noexcept : mechanism_(&me
   const RodSpring &rod = mechanism.parameters().rod, &deviation = mechanism.parameters().rod_std;
   const RodPrior prior = priorOf(rod, deviation);
   if (!prior.gives) return;
-  clearance_ = std::hypot(rod.play, deviation.play);
+  clearance_ = given_clearance_ = std::hypot(rod.play, deviation.play);
   friction_radius_ = std::hypot(rod.friction_radius, deviation.friction_radius);
   damping_ = deviation.damping_ratio;
   stiffness_ = prior.rod.stiffness;
@@ -39,10 +40,14 @@ void UnknownForce::follow(double step, bool passed, bool waits) noexcept {
   held_ *= std::exp(-step / kHeld);
 }
 
+void UnknownForce::observe(std::optional<double> clearance) noexcept {
+  clearance_ = clearance ? std::hypot(*clearance, kHidden * given_clearance_) : given_clearance_;
+}
+
 void UnknownForce::vibrates(const LinkMotion& links, double vibration) noexcept {
   const HammerParameters& p = mechanism_->parameters();
   const double moment = p.rocker_inertia_about_pivot * std::abs(vibration);
-  const double force = moment / (p.lengths.rocker * std::max(kLeastLever, std::abs(links.sin_mu)));
+  const double force = rodForce(*mechanism_, links, moment);
   held_ = std::max(force, held_);
   now_ = {std::max(now_.moment, moment), std::max(now_.force, force)};
 }
@@ -54,7 +59,7 @@ double UnknownForce::contacts() const noexcept {
 UnknownForce::Errors UnknownForce::errors(const LinkMotion& links) const noexcept {
   const HammerParameters& p = mechanism_->parameters();
   const double lasts = std::exp(-square(since_ / kLasts)), contacts = lasts * this->contacts();
-  const double on_rocker[] = {kContactsLever * p.lengths.rocker * contacts, friction_radius_ * held_,
+  const double on_rocker[] = {kContactsLever * p.lengths.rocker * contacts, kFrictionPins * friction_radius_ * held_,
                               kOfDamping * damping_ * lasts * greatest().moment};
   const Eigen::Vector3d by_moment = vectorOf(rockerWrench(*mechanism_, links, 1.0 / p.rocker_inertia_about_pivot));
   Errors errors{by_moment.cwiseAbs2().replicate<1, kSources>(), {}};
@@ -75,7 +80,7 @@ UnknownForce::Largest UnknownForce::largest() const noexcept {
   const HammerParameters& p = mechanism_->parameters();
   const double by_moment = mechanism_->rockerFirstMoment() / p.rocker_inertia_about_pivot;
   const double forces[kSources] = {contacts() * std::hypot(1.0, kContactsLever * p.lengths.rocker * by_moment),
-                                   friction_radius_ * greatest().force * by_moment,
+                                   kFrictionPins * friction_radius_ * greatest().force * by_moment,
                                    kOfDamping * damping_ * greatest().moment * by_moment};
   const auto i = std::max_element(forces, forces + kSources) - forces;
   return {std::hypot(forces[kClearance], forces[kFriction], forces[kDamping]), kNames[i], kKeys[i]};

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <optional>
 
 #include "hammer_loads/hammer/hammer_model.h"
 
@@ -12,16 +13,19 @@ namespace hammer_loads {
 /// is linear in them: F = F0 + (dF/dpsi'') d/I. Usual encoders do not show them. Their standard deviations therefore
 /// follow from what the hammer file leaves open and from the size of the rod's vibration, and a model that fits the
 /// readings does not reduce them. With N the rod's force, N_max and E its greatest value and its greatest moment on the
-/// rocker over the last revolution, s the time since the blow and D = exp(-(s/80 ms)^2):
+/// rocker over the last revolution, s the time since the blow and D = exp(-(s/100 ms)^2):
 ///
 ///     clearance   closing a clearance c under N_max turns N_max c into the spring energy F^2/(2 k), F = sqrt(2 k c
 ///                 N_max). Contacts last for a small share of the time: 0.012 F D on the rod in each direction, and
-///                 l3/2 times that on the rocker
-///     friction    rho N, with rho the radius of the friction circle; N is held for 20 ms
-///     damping     0.2 zeta E D, with zeta the standard deviation of the damping ratio
+///                 l3/2 times that on the rocker; three times that where the load is an extreme of the revolution
+///     friction    2 rho N by the pins at both ends of the rocker, with rho the radius of the friction circle; N is
+///                 held for 20 ms
+///     damping     0.4 zeta E D, with zeta the standard deviation of the damping ratio; a bending mode of the rod is as
+///                 large
 ///
 /// c and rho are a value of the file and its standard deviation together, since no level has clearance in two
-/// dimensions, nor friction. The factors are those of simulated machines (doc/model.md 6).
+/// dimensions, nor friction. Along the rod the readings show a clearance: c is that, and a twentieth of the file's. The
+/// factors are those of simulated machines (doc/model.md 6).
 class UnknownForce {
  public:
   enum Source : Eigen::Index { kClearance, kFriction, kDamping, kSources };
@@ -34,6 +38,9 @@ class UnknownForce {
   /// Advances by a step [s]. passed: the crank passed the dead centre in it. waits: the elastic rod's filter has not
   /// met the tool yet, so that the blow begins later.
   void follow(double step, bool passed, bool waits = false) noexcept;
+  /// Joint clearance of both pins together along the rod that the readings show [m], 0 where they fit tight pins;
+  /// empty: they show nothing.
+  void observe(std::optional<double> clearance) noexcept;
   /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;
   /// Errors of the load: squares by source, and the covariance of all sources, whose diagonal is their sum.
@@ -49,12 +56,20 @@ class UnknownForce {
     const char *name{}, *key{};
   };
   Largest largest() const noexcept;
+  /// Squares where the load is an extreme of the revolution.
+  static Squares ofExtreme(Squares squares) noexcept {
+    squares.col(kClearance) *= kCrest * kCrest;
+    return squares;
+  }
   static constexpr const char* kKeys[kSources] = {"pin_play_m", "pin_friction_radius_m", "rod_damping_ratio"};
   /// Time for which such a force keeps its sign, 1/(2 pi 200 Hz) [s]: its impulse is at most that times the force.
   static constexpr double kKeepsSign = 8e-4;
   // Numerical: kKeepsSign
 
  private:
+  static constexpr double kCrest = 3.0;  // of the contacts, over their root mean square
+  // Prior: kCrest
+
   struct Greatest {
     double moment{}, force{};  ///< moment of the rod on the rocker [N m]; force in the rod [N]
   };
@@ -65,6 +80,7 @@ class UnknownForce {
   double contacts() const noexcept;
 
   const Mechanism* mechanism_;
+  double given_clearance_{};                            ///< that of the file [m]
   double clearance_{}, friction_radius_{}, damping_{};  ///< c [m], rho [m], zeta [-]
   double stiffness_{};                                  ///< k [N/m]
   Greatest now_, last_;                                 ///< since the last blow; in the revolution before it
