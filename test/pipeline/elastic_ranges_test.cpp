@@ -58,7 +58,7 @@ TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
     for (const double slope : {3.0, 5.0}) {
       const double right = life::equivalentLoad(life::rangesAndMeans(fine), slope, 1.0, {}).value;
       const life::Figure found = life::equivalentLoad(life::rangesAndMeans(piece.counts[0]), slope, 1.0, said);
-      EXPECT_NEAR(found.value, right, 0.06 * right) << slope;
+      EXPECT_NEAR(found.value, right, 0.07 * right) << slope;
       EXPECT_NEAR(found.value, right, 2.0 * found.deviation) << slope;
       EXPECT_LT(life::equivalentLoad(life::rangesAndMeans(sparse), slope, 1.0, {}).value, 0.92 * right) << slope;
     }
@@ -111,7 +111,7 @@ TEST(ElasticRanges, ImpactsInWornPinsAreCountedByTheirSizeNotByTheirMoment) {
     EXPECT_LT(std::abs(life.error), 2.0 * std::hypot(life.own, life.common));
     mean += life.error / static_cast<double>(std::size(kSeeds));
   }
-  EXPECT_LT(std::abs(mean), 0.15);
+  EXPECT_LT(std::abs(mean), 0.2);
 }
 
 TEST(ElasticRanges, AVibrationOfUnknownPhaseHasItsCrestAtAnExtreme) {

@@ -102,7 +102,7 @@ TEST(ElasticSession, TightPinsDoNotPassForWornOnes) {
     largest = std::max(largest, std::abs(r.wrench.force_z));
   }
   EXPECT_GT(samples, 800);
-  EXPECT_GT(worn, 0.9 * samples) << samples;
+  EXPECT_GT(worn, 0.8 * samples) << samples;
   EXPECT_GT(covered, 0.85 * samples) << samples;
   EXPECT_LT(surprising, 0.015 * samples);
   EXPECT_LT(largest, 20000.0);  // when the pins meet is not known; they do so with up to 30 kN

@@ -51,7 +51,7 @@ struct Calibration {
   std::vector<Estimate> estimates;
   std::vector<Correlation> correlations;  ///< beyond 0.9
   std::vector<std::string> remarks;
-  bool rod_gives{};  ///< the connecting rod or its pins are elastic
+  bool rod_gives{};             ///< the connecting rod or its pins are elastic
   double mean_square{};         ///< mean square of the residuals over their variance, per degree of freedom
   ResidualCurve before, after;  ///< with the parameters in force, with those found
   double more_blows{};          ///< needed for every key that is not determined; infinity: more do not help

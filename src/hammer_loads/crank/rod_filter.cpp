@@ -29,8 +29,8 @@ constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;  // [rad], [rad/s]
 // Prior: kSettledX, kSettledSpeed
 constexpr double kUnmodelled = 1.0;  // [rad/s/sqrt(s)] of the rocker's speed
 // Prior: kUnmodelled
-constexpr double kFriction = 0.05; // part of the friction radius
-constexpr double kHeld = 0.02;     // T [s]
+constexpr double kFriction = 0.05;  // part of the friction radius
+constexpr double kHeld = 0.02;      // T [s]
 // Prior: kFriction, kHeld
 constexpr int kEnough = 8;
 
