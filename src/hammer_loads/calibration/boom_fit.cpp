@@ -86,9 +86,9 @@ class Fitter {
     }
   }
 
-  /// Adds to the covariance that a cylinder's forces have a relative error of their own in each recording: the load on
-  /// the tip, the warmth of the oil and zeros differ by day. Its variance is a method of moments over the recordings
-  /// (DerSimonian and Laird, 1986), with the basis' value as two more of them.
+  /// Adds a relative error of a cylinder's forces in each recording to the covariance, since the load on the tip, the
+  /// temperature of the oil and zeros differ by day. Its variance is estimated by the method of moments over the
+  /// recordings (DerSimonian and Laird, 1986), in which the basis' value counts as two recordings.
   void addRecordings() {
     if (rows_.empty() || rows_.front().recording == rows_.back().recording) return;
     constexpr double kAsMany = 2.0;

@@ -42,10 +42,10 @@ inline double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a
   return a.rocker - links.rocker.u * a.crank - links.rocker.du * s.speed * s.speed;
 }
 
-/// Force in the rod by its moment on the rocker [N m], links: at the same instant [N]. Near the dead centre, where the
-/// rod has no lever, it is that of the shortest lever from which a force follows.
+/// Force in the rod [N] that exerts a moment on the rocker [N m]. Its lever vanishes at the dead centre; the force is
+/// computed with at least a hundredth of the rocker's length.
 inline double rodForce(const Mechanism& mechanism, const LinkMotion& links, double moment) noexcept {
-  constexpr double kLeastLever = 0.01;  // part of l3
+  constexpr double kLeastLever = 0.01;
   // Numerical: kLeastLever
   return std::abs(moment) / (mechanism.parameters().lengths.rocker * std::max(kLeastLever, std::abs(links.sin_mu)));
 }

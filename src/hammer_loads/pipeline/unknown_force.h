@@ -24,8 +24,8 @@ namespace hammer_loads {
 ///                 large
 ///
 /// c and rho are a value of the file and its standard deviation together, since no level has clearance in two
-/// dimensions, nor friction. Along the rod the readings show a clearance: c is that, and a twentieth of the file's. The
-/// factors are those of simulated machines (doc/model.md 6).
+/// dimensions, nor friction. Level elastic identifies the clearance along the rod; c then consists of this clearance
+/// and a twentieth of the file's. The factors are those of simulated machines (doc/model.md 6).
 class UnknownForce {
  public:
   enum Source : Eigen::Index { kClearance, kFriction, kDamping, kSources };
@@ -38,8 +38,8 @@ class UnknownForce {
   /// Advances by a step [s]. passed: the crank passed the dead centre in it. waits: the elastic rod's filter has not
   /// met the tool yet, so that the blow begins later.
   void follow(double step, bool passed, bool waits = false) noexcept;
-  /// Joint clearance of both pins together along the rod that the readings show [m], 0 where they fit tight pins;
-  /// empty: they show nothing.
+  /// Updates c by the joint clearance of both pins together that the readings show along the rod [m]: 0 if they fit
+  /// tight pins, empty if they show none.
   void observe(std::optional<double> clearance) noexcept;
   /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;
@@ -56,7 +56,7 @@ class UnknownForce {
     const char *name{}, *key{};
   };
   Largest largest() const noexcept;
-  /// Squares where the load is an extreme of the revolution.
+  /// Squares of the errors of a load that is an extreme of the revolution.
   static Squares ofExtreme(Squares squares) noexcept {
     squares.col(kClearance) *= kCrest * kCrest;
     return squares;

@@ -24,8 +24,8 @@ constexpr int kTurnsToSearch = 8;                   // of a machine whose times 
 constexpr int kTurnsToShow = 20;                    // readings and model that agree for so long outweigh the search
 constexpr double kRefined = 0.5 * kDegree;
 
-/// Consistency of the readings with the model. An elastic rod contradicts it after the blow alone, a wrong zero
-/// elsewhere as well.
+/// Consistency of the readings with the model without the part that an elastic rod explains: such a rod contradicts the
+/// model just after the blow, a wrong zero elsewhere as well.
 double consistencyBesideRod(const CrankFilter& filter) noexcept {
   const RodEvidence& rod = filter.rodEvidence();
   return rod.gives() ? std::max(rod.later(), filter.strikeConsistency()) : filter.consistency();
