@@ -27,13 +27,6 @@ enum class Flaw { kConstant, kScale };
 constexpr std::array<std::pair<Flaw, const char*>, 2> kFlaws{
     {{Flaw::kConstant, "reads %.2g deg more"}, {Flaw::kScale, "reads angles %.2g %% wider"}}};
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Spread of all values but one about their median, as a standard deviation: a faulty recording shifts all others
 /// alike.
 double spreadWithout(std::vector<double> values, std::size_t one) {

@@ -20,13 +20,6 @@ constexpr std::ptrdiff_t kLeastBeside = 5;
 constexpr double kStays = 0.5;          // [s]
 constexpr double kNoiseOverStep = 2.0;  // ratio of noise to the step of the readings above which they never repeat
 
-double middleOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Standard deviation of a joint's rate where it is quietest: of the sensor's noise, motion adds to it elsewhere.
 double quietNoise(const BoomPoints& recording, int joint) {
   std::vector<double> all;
@@ -49,7 +42,7 @@ std::vector<double> overOthers(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::vector<double> others = values;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const double usual = middleOf(others);
+    const double usual = medianOf(others);
     ratios.push_back(usual > 0.0 ? values[i] / usual : 0.0);
   }
   return ratios;
@@ -79,9 +72,9 @@ double leapAfter(const Trace& trace, std::size_t i) {
   if (i + 1 - first < beside || last - i - 1 < beside) return 0.0;
   std::vector<double> steps, off;
   for (std::size_t k = first; k + 1 < last; ++k) steps.push_back(trace.value[k + 1] - trace.value[k]);
-  const double usual = middleOf(steps), leap = trace.value[i + 1] - trace.value[i] - usual;
+  const double usual = medianOf(steps), leap = trace.value[i + 1] - trace.value[i] - usual;
   for (const double step : steps) off.push_back(std::abs(step - usual));
-  if (std::abs(leap) < std::max(kLeap, kLeapOverNoise * middleOf(off))) return 0.0;
+  if (std::abs(leap) < std::max(kLeap, kLeapOverNoise * medianOf(off))) return 0.0;
   const double stays = lineAt(trace, i + 1, last, middle) - lineAt(trace, first, i + 1, middle);
   return stays / leap > kLeapStays ? leap : 0.0;
 }
@@ -121,10 +114,17 @@ double noiseOverStep(const Trace& trace) {
     bends.push_back(std::abs(trace.value[i] - 2.0 * trace.value[i - 1] + trace.value[i - 2]));
   }
   constexpr double kMedianToStd = 1.4826, kOfBends = 2.4495;  // normal distribution; variance of a second difference: 6
-  return bends.empty() ? 0.0 : kMedianToStd * middleOf(bends) / kOfBends / step;
+  return bends.empty() ? 0.0 : kMedianToStd * medianOf(bends) / kOfBends / step;
 }
 
 }  // namespace
+
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 std::vector<double> noiseRatios(const std::vector<BoomPoints>& recordings, int joint) {
   std::vector<double> noise;

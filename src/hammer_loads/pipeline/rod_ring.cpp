@@ -92,16 +92,17 @@ void RodRing::begin(double beside_speed) noexcept {
 void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   if (!(blow.drive_inertia > 0.0) || !(speed_before > 0.0)) return rest();
   const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
-  const bool by_others = unexplained_ && explained_;
-  const double restitution = std::clamp(by_others ? *explained_ : at.restitution(blow.mean), 0.0, 1.0);
+  double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0), factor = blow.mean, deviation = kOtherBlow;
+  if (unexplained_ && explained_) {  // what the crank shows of this blow is not its restitution
+    restitution = *explained_, factor = at.factor(restitution);
+  } else {
+    const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
+    const double by_rod =
+        lost_ && explained_ ? std::hypot(kOtherBlow, restitution - *explained_) : doubtOf(restitution);
+    deviation = std::hypot(measured, by_rod);
+  }
   const double rocker = -restitution * at.u_before * speed_before;  // rocker's speed as it leaves the tool
-  const double measured =
-      !by_others && std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
-  const double by_rod = by_others             ? kOtherBlow
-                        : lost_ && explained_ ? std::hypot(kOtherBlow, restitution - *explained_)
-                                              : doubtOf(restitution);
-  const double doubt = std::hypot(measured, by_rod) * at.u_before * speed_before;
-  const double factor = by_others ? at.factor(restitution) : blow.mean;
+  const double doubt = deviation * at.u_before * speed_before;
   const double missing = rocker - at.u_after * factor * speed_before;
   struck_ = std::hypot(missing, doubt);
   begin(std::copysign(struck_, missing));
