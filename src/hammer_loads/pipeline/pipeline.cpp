@@ -192,7 +192,7 @@ void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
   const double step = taken == CrankFollower::Taken::kContinued ? crank_.step().length() : 0.0;
   if (taken == CrankFollower::Taken::kBegan) trust_.begin();
   trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
-  crank_.moveZero(zero_.follow(crank_.tracker(), crank_.reading(), step, {hull_.gravity()}));
+  crank_.moveZero(zero_.follow(crank_.tracker(), elastic_.isUsed(), crank_.reading(), step, {hull_.gravity()}));
   crank_.doubtZero(zero_.doubts(crank_.tracker()));
   if (taken == CrankFollower::Taken::kContinued) {
     for (const CrankStep::Passage& passage : crank_.step())

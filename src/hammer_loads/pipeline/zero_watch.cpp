@@ -41,7 +41,8 @@ double ZeroWatch::move(double angle, double deviation) noexcept {
   return angle;
 }
 
-double ZeroWatch::follow(const CrankFilter& filter, double reading, double step, const HullMotion& hull) noexcept {
+double ZeroWatch::follow(const CrankFilter& filter, bool rod_explains, double reading, double step,
+                         const HullMotion& hull) noexcept {
   const Encoder& encoder = filter.encoder();
   if (filter.slips() != slips_) search_.restart(), left_ = false;
   slips_ = filter.slips();
@@ -50,7 +51,7 @@ double ZeroWatch::follow(const CrankFilter& filter, double reading, double step,
   search_.setWanted(filter.constantErrors().turns() < kTurnsToSearch || !agrees(filter));
   const double half_count = encoder.isFiner() ? 0.0 : 0.5 * encoder.resolution();
   search_.add(encoder.place().angle(reading + half_count), step, hull);
-  return toMove(filter);
+  return toMove(filter, rod_explains);
 }
 
 /// A filter that agrees with the readings and shows no error takes precedence, since a turn without a tool misleads the
@@ -94,7 +95,7 @@ bool ZeroWatch::mayCount(const CrankFilter& filter) const noexcept {
   return filter.rodEvidence().gives() || std::max(errors.zeroDeviation(), stated(filter).deviation) < kMost;
 }
 
-double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
+double ZeroWatch::toMove(const CrankFilter& filter, bool rod_explains) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];
   if (search_.evaluations() != evaluations_) {
@@ -102,7 +103,10 @@ double ZeroWatch::toMove(const CrankFilter& filter) noexcept {
     const auto& found = search_.found();
     const double readings = std::hypot(filter.timingNoise() * filter.state().speed, kOfStep * search_.stepAngle());
     const double least = found && found->error > 0.0 ? kSearchShowsAhead : kSearchShows;
-    if (found && !(left_ && found->error < 0.0) && !(filter.rodEvidence().gives() && agrees(filter)) &&
+    // Friction in the pins of an elastic rod misleads the search by up to 14 deg.
+    const bool right = filter.rodEvidence().gives() &&
+                       (rod_explains || agrees(filter) || (!errors.knows() && consistencyBesideRod(filter) < kAgrees));
+    if (found && !(left_ && found->error < 0.0) && !right &&
         (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
         std::abs(found->error) > std::max(least, kDeviations * std::hypot(found->deviation, readings)))
       return move(found->error, kSearchDeviation);

@@ -23,8 +23,10 @@ class ZeroWatch {
   ZeroWatch(const ShaftModel& model, double drive_inertia) noexcept : search_(model, drive_inertia) {}
 
   /// After each sample that the filter has taken. step: since the sample before [s], 0 if it is not known; hull: its
-  /// motion. Returns by how much the filter's zero is to be moved [rad], mostly 0.
-  double follow(const CrankFilter& filter, double reading, double step, const HullMotion& hull) noexcept;
+  /// motion; rod_explains: an elastic rod explains the last blows. Returns by how much the filter's zero is to be moved
+  /// [rad], mostly 0.
+  double follow(const CrankFilter& filter, bool rod_explains, double reading, double step,
+                const HullMotion& hull) noexcept;
 
   bool withholds() const noexcept { return isOff() && (!settled_ || std::abs(moved_) > kMost); }
   /// Returns true if the zero in force differs from the parameter's.
@@ -49,7 +51,7 @@ class ZeroWatch {
 
   double move(double angle, double deviation) noexcept;
   static bool agrees(const CrankFilter& filter) noexcept;
-  double toMove(const CrankFilter& filter) noexcept;
+  double toMove(const CrankFilter& filter, bool rod_explains) noexcept;
 
   ZeroSearch search_;
   int evaluations_{}, slips_{};
