@@ -167,14 +167,17 @@ TEST(WornMachine, IsCoveredWithFrictionAndClearance) {
   EXPECT_GE(covered.energies + 1, covered.blows);
 }
 
-/// Friction disturbs crank and rocker beside the spring, which is still seen.
-TEST(WornMachine, ShowsItsSpringInSpiteOfFriction) {
+/// Friction brakes crank and rocker and resembles a zero of the encoder that is -6 deg off. The spring and the friction
+/// are identified: the loads after a blow are as accurate as without friction.
+TEST(WornMachine, IsFollowedWithFriction) {
   test::WornMachineSettings machine = wornMo100();
-  machine.friction = 0.08, machine.duration = 5.0;
+  machine.duration = 5.0;
+  const Covered smooth = coveredOf(machine, test::shippedDrawing().mechanism);
+  machine.friction = 0.05;
   const Covered covered = coveredOf(machine, test::shippedDrawing().mechanism);
   EXPECT_GT(covered.least(), 0.9);
-  EXPECT_GT(covered.followed, covered.after_blow / 2);
-  EXPECT_LT(std::sqrt(covered.stated[0]), 5.0 * std::sqrt(covered.error[0]));
+  EXPECT_GT(covered.followed, 9 * covered.after_blow / 10);
+  EXPECT_LT(covered.error[0] / covered.count[0], 2.0 * smooth.error[0] / smooth.count[0]);
 }
 
 /// A rocker that hardly rebounds is pulled along by the rod, which nearly stops the crank.

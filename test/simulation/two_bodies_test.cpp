@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "hammer_loads/crank/crank_dynamics.h"
@@ -89,34 +90,73 @@ TEST(TwoBodies, AStepFollowsTheAccelerations) {
     }
 }
 
-/// No drive, no weight, no damping; energies by the simulated machine's links.
+/// Kinetic energy of drive and links and that of the spring [J], by the simulated machine's links.
+double energyOf(const TwoBodies& bodies, const simulation::ElasticLinks& links, double stiffness,
+                const TwoBodyState& s) {
+  const LinkMotion l = bodies.links(s.angle);
+  const simulation::TwoBodies angles{s.angle.offset, rockerOf(bodies, s)},
+      v{s.speed, l.rocker.u * s.speed + s.beside_speed};
+  const simulation::ElasticLinks::View view = links.at(angles, v);
+  auto M = links.inertia(view);
+  return 0.5 * ((M[0] + kJc) * v[0] * v[0] + M[2] * v[1] * v[1]) + M[1] * v[0] * v[1] +
+         simulation::RodSpring({stiffness, 0.0, 0.0}).energy(view.rod.stretch);
+}
+
+/// No drive, no weight, no damping.
 TEST(TwoBodies, AVibrationKeepsItsEnergy) {
   const Mechanism mechanism = test::mechanismOf(heavy());
   const TwoBodies bodies(mechanism);
   const simulation::ElasticLinks links(mechanism.parameters(), Level::kLinkage);
   const RodSpring rod{1e9, 0.0, 0.0};
-  const simulation::RodSpring spring({rod.stiffness, 0.0, 0.0});
-  const auto energy = [&](const TwoBodyState& s) {
-    const LinkMotion l = bodies.links(s.angle);
-    const simulation::TwoBodies angles{s.angle.offset, rockerOf(bodies, s)},
-        v{s.speed, l.rocker.u * s.speed + s.beside_speed};
-    const simulation::ElasticLinks::View view = links.at(angles, v);
-    auto M = links.inertia(view);
-    return 0.5 * ((M[0] + kJc) * v[0] * v[0] + M[2] * v[1] * v[1]) + M[1] * v[0] * v[1] +
-           spring.energy(view.rod.stretch);
-  };
   const auto drift = [&](double part) {
     TwoBodyState s{{0.003, Side::kAfterBlow}, 14.0, -2e-3, -1.5};
-    const double before = energy(s);
+    const double before = energyOf(bodies, links, rod.stiffness, s);
     double worst = 0.0;
     for (double time = 0.0; time < 0.04; time += part) {
       bodies.move(rod, {kJc, 0.0, {}}, part, s);
-      worst = std::max(worst, std::abs(energy(s) - before));
+      worst = std::max(worst, std::abs(energyOf(bodies, links, rod.stiffness, s) - before));
     }
     return worst;
   };
   EXPECT_LT(drift(1e-5), 0.15);   // [J] of 70; a stretch of third order in x is left out
   EXPECT_LT(drift(2.5e-4), 0.3);  // as the filter goes
+}
+
+/// Each pin dissipates its moment r |T| times the rotation of the links that it joins, by differences of their angles.
+TEST(TwoBodies, FrictionDissipatesTheWorkOfThePins) {
+  const Mechanism mechanism = test::mechanismOf(heavy());
+  const TwoBodies bodies(mechanism);
+  const simulation::ElasticLinks links(mechanism.parameters(), Level::kLinkage);
+  const LinkLengths& l = mechanism.linkage().lengths();
+  const auto anglesOf = [&](const TwoBodyState& s) {  // crank, rocker and rod from pin to pin [rad]
+    const LinkMotion rigid = bodies.links(s.angle);
+    const Planar pivots = l.crank * rigid.phi + l.rod * rigid.beta - l.rocker * rigid.psi;
+    const LinkMotion at = withRocker(rigid, s.beside);
+    const Planar rod = pivots + l.rocker * at.psi - l.crank * at.phi;
+    return std::array<double, 3>{std::atan2(at.phi.im, at.phi.re), std::atan2(at.psi.im, at.psi.re),
+                                 std::atan2(rod.im, rod.re)};
+  };
+  for (const double step : {2e-5, 5e-4}) {
+    const RodSpring spring{1e9, 0.0, 0.0, 1e-3};
+    TwoBodyState s{{0.003, Side::kAfterBlow}, 14.0, -2e-3, -1.5};
+    const double before = energyOf(bodies, links, spring.stiffness, s);
+    double work = 0.0;
+    for (double time = 0.0; time < 0.03; time += step) {
+      const auto from = anglesOf(s);
+      const auto tension = [&] {
+        return std::abs(bodies.accelerations(spring, {kJc, 0.0, {}}, s, bodies.links(s.angle)).tension);
+      };
+      const double here = tension();
+      bodies.move(spring, {kJc, 0.0, {}}, step, s);
+      const auto to = anglesOf(s);
+      const auto turned = [&](std::size_t i) { return CrankAngle::wrapToPi(to[i] - from[i]); };
+      work += spring.friction_radius * 0.5 * (here + tension()) *
+              (std::abs(turned(0)) + std::abs(turned(1)) + std::abs(turned(2) - turned(0)) +
+               std::abs(turned(2) - turned(1)));
+    }
+    EXPECT_GT(work, 2.0) << step;
+    EXPECT_NEAR(before - energyOf(bodies, links, spring.stiffness, s), work, 0.1 * work) << step;
+  }
 }
 
 TEST(TwoBodies, AStiffRodIsTheRigidMechanism) {

@@ -15,7 +15,7 @@ constexpr double kPlaceDeviation = 5e-3;  // [rad]: a millimetre
 // Prior: kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
 constexpr double kOtherPlace = 2e-2;  // [rad] after a blow that this one does not explain: a retainer is 5 mm away
 // Prior: kOtherPlace
-constexpr double kWalks[] = {0.005, 0.01, 5e-6, 0.03, 4e-3};  // of the learned rows from blow to blow
+constexpr double kWalks[] = {0.005, 0.01, 5e-6, 5e-5, 0.02, 4e-3};  // of the learned rows from blow to blow
 // Prior: kWalks
 constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
 // Prior: kLeastLog, kMostLog
@@ -29,31 +29,34 @@ constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;  // [rad], [rad/s]
 // Prior: kSettledX, kSettledSpeed
 constexpr double kUnmodelled = 1.0;  // [rad/s/sqrt(s)] of the rocker's speed
 // Prior: kUnmodelled
-constexpr double kFriction = 0.05;  // part of the friction radius
-constexpr double kHeld = 0.02;      // T [s]
-// Prior: kFriction, kHeld
+constexpr double kNotCoulomb = 0.1;    // part of the friction radius
+constexpr double kUnidentified = 0.3;  // part of its standard deviation that is not identified
+constexpr double kHeld = 0.02;         // T [s]
+// Prior: kNotCoulomb, kUnidentified, kHeld
 constexpr int kEnough = 8;
 
 }  // namespace
 
-RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : mechanism_(&mechanism), bodies_(mechanism) {
+RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(mechanism) {
   const HammerParameters& p = mechanism.parameters();
-  friction_radius_ = kFriction * std::hypot(p.rod.friction_radius, p.rod_std.friction_radius);
   const RodPrior prior = priorOf(p.rod, p.rod_std);
   const double play = pins == Pins::kPlay ? prior.play : 0.0;
   learned_.play = pins == Pins::kPlay && prior.rod.play > 0.0 ? prior.rod.play : play;
+  learned_.friction = prior.rod.friction_radius;
   learned_.restitution = kFirstRestitution;
   learned_.log_stiffness = std::log(prior.rod.stiffness);
   learned_.log_damping = std::log(prior.rod.damping_ratio);
+  unknown_friction_ = (pins == Pins::kPlay ? 1.0 : kUnidentified) * prior.friction_radius;
+  const double friction = pins == Pins::kTight ? prior.friction_radius : 0.0;
   Eigen::Matrix<double, kLearned, 1> deviations;
-  deviations << prior.log_stiffness, prior.log_damping, play, kRestitutionDeviation, kPlaceDeviation;
+  deviations << prior.log_stiffness, prior.log_damping, play, friction, kRestitutionDeviation, kPlaceDeviation;
   learned_covariance_ = deviations.cwiseAbs2().asDiagonal();
   first_ = learned_;
   first_covariance_ = learned_covariance_;
 }
 
 RodSpring RodFilter::rod(const RodMotion& m) const noexcept {
-  return {std::exp(m.log_stiffness), std::exp(m.log_damping), m.play};
+  return {std::exp(m.log_stiffness), std::exp(m.log_damping), m.play, m.friction};
 }
 
 TwoBodyDrive RodFilter::drive(const RodMotion& m) const noexcept {
@@ -104,6 +107,7 @@ RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
   m.log_stiffness += by[kStiffness];
   m.log_damping += by[kDamping];
   m.play = std::max(0.0, m.play + by[kPlay]);
+  m.friction = std::max(0.0, m.friction + by[kFriction]);
   m.restitution += by[kRestitution];
   m.place += by[kPlace];
   return m;
@@ -115,7 +119,7 @@ RodFilter::Belief::Vector RodFilter::difference(const RodMotion& of, const RodMo
   d << s.angle.offset - from.state.angle.offset, s.speed - from.state.speed, s.beside - from.state.beside,
       s.beside_speed - from.state.beside_speed, of.torque - from.torque, of.log_inertia - from.log_inertia,
       of.log_stiffness - from.log_stiffness, of.log_damping - from.log_damping, of.play - from.play,
-      of.restitution - from.restitution, of.place - from.place;
+      of.friction - from.friction, of.restitution - from.restitution, of.place - from.place;
   return d;
 }
 
@@ -177,12 +181,13 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
 
 /// At the end of a step of dt [s].
 void RodFilter::addFriction(double dt) noexcept {
-  const double inertia = mechanism_->parameters().rocker_inertia_about_pivot;
+  const double inertia = bodies_.mechanism().parameters().rocker_inertia_about_pivot;
   const LinkMotion links = bodies_.links(motion_.state.angle);
   const TwoBodyAccelerations a = bodies_.accelerations(rod(motion_), drive(motion_), motion_.state, links);
-  const double force = rodForce(*mechanism_, links, inertia * besideRigidly(motion_.state, a, links));
-  rod_force_ = std::max(force, rod_force_ * std::exp(-dt / kHeld));
-  const double impulse = 2.0 * kHeld * square(friction_radius_ * rod_force_) * dt;  // square of an impulse [(N m s)^2]
+  rod_force_ = std::max(std::abs(a.tension), rod_force_ * std::exp(-dt / kHeld));
+  const double deviation = std::sqrt(belief_.covariance(kFriction, kFriction));
+  const double radius = kNotCoulomb * std::hypot(motion_.friction, deviation, unknown_friction_);
+  const double impulse = 2.0 * kHeld * square(radius * rod_force_) * dt;  // square of an impulse [(N m s)^2]
   belief_.addNoise(kBesideSpeed, kBesideSpeed, impulse / square(inertia));
   belief_.addNoise(kSpeed, kSpeed, impulse * std::exp(-2.0 * motion_.log_inertia));
 }
@@ -204,6 +209,10 @@ bool RodFilter::take(const WeighedSample& sample) noexcept {
 }
 
 double RodFilter::growth() const noexcept { return samples_ < kEnough ? 1.0 : std::max(1.0, ratio_sum_ / samples_); }
+
+double RodFilter::frictionDeviation() const noexcept {
+  return std::hypot(kUnidentified * motion_.friction, deviation(kFriction), unknown_friction_);
+}
 
 RodFilter::Belief::Matrix RodFilter::errors() const noexcept {
   return std::sqrt(growth()) * covarianceRoot(belief_.covariance);

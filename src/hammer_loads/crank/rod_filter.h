@@ -16,6 +16,7 @@ struct RodMotion {
   double restitution{};                   ///< restitution of the rocker on the tool [-]
   double log_stiffness{}, log_damping{};  ///< logarithms of RodSpring's stiffness and damping ratio
   double play{};                          ///< joint clearance of the pins [m]
+  double friction{};                      ///< radius of a pin's friction circle [m]
   double place{};                         ///< psi at which the tool is met [rad]: its contact's depth is part of it
 };
 
@@ -27,9 +28,9 @@ struct RodMotion {
 /// Extended Kalman filter, linearised by differences: for each independent error (a column of the covariance's root) a
 /// perturbed machine is integrated in parallel.
 ///
-/// Friction of the pins disturbs both bodies by a torque that grows with the rod's force N: as white noise of the
-/// spectral density 2 T (r N)^2, with r a part of the friction radius that the hammer file leaves possible. N is the
-/// greatest force of the last T.
+/// Friction is identified with tight pins alone, since impacts in worn pins resemble it. Pins do not exactly follow
+/// Coulomb's law. The rest disturbs both bodies as white noise of the spectral density 2 T (r N)^2, with r a part of
+/// the friction radius and of its standard deviation; N is the rod's greatest force of the last T.
 class RodFilter {
  public:
   enum Row : Eigen::Index {
@@ -42,6 +43,7 @@ class RodFilter {
     kStiffness,
     kDamping,
     kPlay,
+    kFriction,
     kRestitution,  ///< from here on: what counts at the tool alone
     kPlace,
     kSize
@@ -83,6 +85,8 @@ class RodFilter {
   Belief::Matrix errors() const noexcept;
   /// Motion displaced by an error.
   RodMotion displaced(const Belief::Vector& by) const noexcept;
+  /// Standard deviation of the friction radius [m]; the part that does not follow Coulomb's law is in it.
+  double frictionDeviation() const noexcept;
   double deviation(Row row) const noexcept { return std::sqrt(growth() * belief_.covariance(row, row)); }
 
   RodSpring rod(const RodMotion& motion) const noexcept;
@@ -95,9 +99,8 @@ class RodFilter {
   double growth() const noexcept;
   void addFriction(double dt) noexcept;
 
-  const Mechanism* mechanism_;
-  double friction_radius_{};  ///< r [m]
-  double rod_force_{};        ///< N [N]
+  double unknown_friction_{};  ///< standard deviation of the friction radius that is not identified [m]
+  double rod_force_{};         ///< N [N]
   TwoBodies bodies_;
   Gravity gravity_;
   SupplyLaw supply_;

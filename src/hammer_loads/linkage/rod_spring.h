@@ -7,8 +7,8 @@
 
 namespace hammer_loads {
 
-/// Rod, pins and bearings as one spring along the rod, its damping and the joint clearance of the pins; and what their
-/// friction is, which no level models.
+/// Rod, pins and bearings as one spring along the rod, its damping, and the joint clearance and friction of the pins.
+/// Level elastic models all four; the other levels model none of them.
 struct RodSpring {
   double stiffness{};        ///< k [N/m]; 0: not known
   double damping_ratio{};    ///< damping ratio of an oscillator of kReference on k [-]; 0: not known
@@ -25,6 +25,7 @@ struct RodPrior {
   RodSpring rod;
   double log_stiffness{}, log_damping{};  ///< standard deviations of their logarithms
   double play{};                          ///< standard deviation [m]
+  double friction_radius{};               ///< standard deviation [m]
   bool gives{};                           ///< false: the rod is given as rigid, its pins as tight
 
   static constexpr double kStiffness = 8e8, kDamping = 0.4;  ///< 4e8 to 1e9 N/m and 0.2 to 0.6: estimates
@@ -39,7 +40,7 @@ inline RodSpring usualDeviation(const RodSpring& rod) noexcept {
 
 /// deviation: standard, in the units of the rod. A stiffness that is neither known nor in doubt is that of a rigid rod.
 inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexcept {
-  RodPrior prior{rod, 0.0, 0.0, deviation.play, true};
+  RodPrior prior{rod, 0.0, 0.0, deviation.play, deviation.friction_radius, true};
   if (!(rod.stiffness > 0.0)) prior.rod.stiffness = deviation.stiffness > 0.0 ? prior.kStiffness : prior.kStiffest;
   if (!(rod.damping_ratio > 0.0)) prior.rod.damping_ratio = prior.kDamping;
   prior.log_stiffness = deviation.stiffness / prior.rod.stiffness;
@@ -47,6 +48,12 @@ inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexce
   prior.gives = rod.stiffness > 0.0 || deviation.stiffness > 0.0 || rod.play > 0.0 || deviation.play > 0.0;
   return prior;
 }
+
+/// The pins as the readings show them.
+struct IdentifiedPins {
+  double clearance{};        ///< joint clearance along the rod, of both pins together [m]; 0 if the readings fit none
+  double friction_radius{};  ///< standard deviation of RodSpring::friction_radius [m]
+};
 
 /// y'' = -square y - 2 decay y', exactly over a time, with any damping.
 struct Oscillator {

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kBallistic = 1e-4;  // [rad]: below, the spring does nothing within a step
 
+constexpr double kSlides = 0.5;  // [rad/s]; faster, a pin slides
+// Numerical: kSlides
+
 constexpr double kContact = 1.2e-4;  // [s]; part of a step within which pins with joint clearance may separate or meet
 // Numerical: kContact
 
@@ -28,10 +31,11 @@ void oscillate(double square, double decay, double pull, double time, double& y,
   y += rest_at;
 }
 
-/// Tension of a rod with joint clearance: either side of a pin can only push.
-double pushes(const RodSpring& rod, double damping, double stretch, double rate) noexcept {
+/// Tension of a rod [N]. With joint clearance, either side of a pin can only push.
+double tension(const RodSpring& rod, double stretch, double rate) noexcept {
   const double half = 0.5 * rod.play, pressed = stretch - std::clamp(stretch, -half, half);
-  const double both = rod.stiffness * pressed + damping * rate;
+  const double both = rod.stiffness * pressed + rod.damping() * rate;
+  if (!(half > 0.0)) return both;
   return pressed > 0.0 ? std::max(0.0, both) : (pressed < 0.0 ? std::min(0.0, both) : 0.0);
 }
 
@@ -88,18 +92,36 @@ TwoBodies::Local TwoBodies::local(const TwoBodyDrive& drive, const TwoBodyState&
   return a;
 }
 
+/// Adds the generalised forces of friction, by virtual work; moment: of each pin [N m]. The rod turns at a w + b v.
+void TwoBodies::addFriction(double moment, const TwoBodyState& s, const LinkMotion& links, Local& a) const noexcept {
+  const LinkLengths& l = mechanism_->linkage().lengths();
+  const double by_crank = -l.crank / l.rod * (conj(links.beta) * links.phi).re;  // a
+  const double by_rocker = l.rocker / l.rod * links.cos_mu;                      // b
+  const double w = s.speed, v = links.rocker.u * w + s.beside_speed, rod = by_crank * w + by_rocker * v;
+  const auto sign = [](double speed) { return speed / std::sqrt(speed * speed + kSlides * kSlides); };
+  const double at_crank = sign(rod - w), at_rocker = sign(rod - v);
+  const double on_rocker = -moment * (sign(v) + at_crank * by_rocker + at_rocker * (by_rocker - 1.0));
+  a.on_rocker += on_rocker;
+  a.on_crank -= moment * (sign(w) + at_crank * (by_crank - 1.0) + at_rocker * by_crank) - links.rocker.u * on_rocker;
+}
+
 void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& s) const noexcept {
   const TwoBodyState from = s;
   TwoBodyState middle = s;
   middle.angle.offset += 0.5 * dt * s.speed;
   middle.beside += 0.5 * dt * s.beside_speed;
-  const Local a = local(drive, middle, links(middle.angle));
+  const LinkMotion there = links(middle.angle);
+  Local a = local(drive, middle, there);
   const double damping = rod.damping(), half = 0.5 * rod.play;
+  const auto tensionAt = [&](const TwoBodyState& at) {
+    return tension(rod, -a.secant_lever * at.beside, a.by_crank * at.speed - a.lever * at.beside_speed);
+  };
   const auto isFree = [&](const TwoBodyState& at) {
-    const double stretch = -a.secant_lever * at.beside, rate = a.by_crank * at.speed - a.lever * at.beside_speed;
-    return half > 0.0 && (std::abs(stretch) < half || pushes(rod, damping, stretch, rate) == 0.0);
+    return half > 0.0 && (std::abs(a.secant_lever * at.beside) < half || tensionAt(at) == 0.0);
   };
   const bool free = isFree(middle);
+  if (rod.friction_radius > 0.0 && !free)
+    addFriction(rod.friction_radius * std::abs(tensionAt(middle)), middle, there, a);
   // tension = -stiff x - damped x' - apart, at the middle's levers
   const double stiff = free ? 0.0 : rod.stiffness * a.secant_lever;
   const double damped = free ? 0.0 : damping * a.lever;
@@ -111,8 +133,8 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   const double pull = (a.on_rocker - back * a.on_crank) * a.per_own - per * apart;
   oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.beside, s.beside_speed);
   const double moved = s.beside - from.beside, gained = s.beside_speed - from.beside_speed;
-  const double tension = -stiff * 0.5 * (from.beside + s.beside) - damped * moved / dt - apart;
-  const double rate_of_crank = (a.on_crank - tension * a.by_crank) * a.per_reflected;
+  const double force = -stiff * 0.5 * (from.beside + s.beside) - damped * moved / dt - apart;
+  const double rate_of_crank = (a.on_crank - force * a.by_crank) * a.per_reflected;
   s.angle.offset += dt * (s.speed + 0.5 * dt * rate_of_crank) - back * (moved - dt * from.beside_speed);
   s.speed += dt * rate_of_crank - back * gained;
   // Pins that part or meet within the step: it is made of two.
@@ -172,15 +194,13 @@ void TwoBodies::strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBody
 
 TwoBodyAccelerations TwoBodies::accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& s,
                                               const LinkMotion& links) const noexcept {
-  const Local a = local(drive, s, links);
-  const double damping = rod.damping();
-  const double stretch = -a.secant_lever * s.beside, half = 0.5 * rod.play;
-  const double rate = a.by_crank * s.speed - a.lever * s.beside_speed;
-  const double tension = half > 0.0 ? pushes(rod, damping, stretch, rate) : rod.stiffness * stretch + damping * rate;
-  const double on_crank = a.on_crank - tension * a.by_crank;
-  const double beside = (a.on_rocker + tension * a.lever - a.coupling * a.per_reflected * on_crank) * a.per_own;
+  Local a = local(drive, s, links);
+  const double force = tension(rod, -a.secant_lever * s.beside, a.by_crank * s.speed - a.lever * s.beside_speed);
+  if (rod.friction_radius > 0.0) addFriction(rod.friction_radius * std::abs(force), s, links, a);
+  const double on_crank = a.on_crank - force * a.by_crank;
+  const double beside = (a.on_rocker + force * a.lever - a.coupling * a.per_reflected * on_crank) * a.per_own;
   const double crank = (on_crank - a.coupling * beside) * a.per_reflected;
-  return {crank, links.rocker.u * crank + links.rocker.du * s.speed * s.speed + beside};
+  return {crank, links.rocker.u * crank + links.rocker.du * s.speed * s.speed + beside, force};
 }
 
 double TwoBodies::rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyState& s,

@@ -35,6 +35,7 @@ struct TwoBodyDrive {
 
 struct TwoBodyAccelerations {
   double crank{}, rocker{};  ///< [rad/s2]
+  double tension{};          ///< of the rod [N]
 };
 
 /// Acceleration of the rocker relative to that of a rigid rod at the crank's acceleration [rad/s2].
@@ -58,7 +59,9 @@ inline double rodForce(const Mechanism& mechanism, const LinkMotion& links, doub
 /// h = l3 sin(psi - beta) the rod's lever, g = d(stretch)/d(phi), in proportion to x: a third of h where lively rock
 /// has thrown the rocker far; T = -k h x - c (h x)' its tension. A step solves the oscillator (M22 - B^2/J) x'' with
 /// the lever at its middle in closed form: exact however stiff or dead the rod is; the stiffer it is, the nearer to the
-/// rigid mechanism. Neglects: bending of the links, motion of the hull but its effective gravity.
+/// rigid mechanism. Coulomb friction of the four pins brakes their rotation by the moment r |T| each, r the radius of
+/// their friction circles; its sign is continuous within 0.5 rad/s. Neglects: bending of the links, motion of the hull
+/// but its effective gravity, forces of the pins other than T.
 class TwoBodies {
  public:
   /// Refers to the mechanism, which must outlive it.
@@ -78,6 +81,7 @@ class TwoBodies {
                                       const LinkMotion& links) const noexcept;
   /// Links' speeds times i in the form of accelerations, so that hullWrenchOf() returns minus their momentum.
   LinkAccelerations linkSpeeds(const TwoBodyState& state, const LinkMotion& links) const noexcept;
+  const Mechanism& mechanism() const noexcept { return *mechanism_; }
   LinkMotion links(CrankAngle angle) const noexcept { return linkMotion(mechanism_->linkage(), angle); }
   /// A rod at rest on its spring: x as the motion of the crank asks for, its rate 0.
   void settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& state) const noexcept;
@@ -103,6 +107,8 @@ class TwoBodies {
   void strike(const TwoBodyDrive& drive, double restitution, TwoBodyState& state) const noexcept;
   struct Local;
   Local local(const TwoBodyDrive& drive, const TwoBodyState& at, const LinkMotion& links) const noexcept;
+
+  void addFriction(double moment, const TwoBodyState& at, const LinkMotion& links, Local& a) const noexcept;
 
   const Mechanism* mechanism_;
   double crank_, rocker_;                ///< M11 less Jc, M22 [kg m2]

@@ -112,7 +112,9 @@ void ElasticFollower::judge() noexcept {
   const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
   evidence_ += kEvidenceGain * (gain - evidence_);
   best_ = evidence_ > (best_ == nullptr ? odds::kLikely : 0.0) ? &rod : nullptr;
-  if (rod.isProven()) restitution_ = rod.motion().restitution, clearance_ = rod.motion().play;
+  if (!rod.isProven()) return;
+  restitution_ = rod.motion().restitution;
+  pins_ = {rod.motion().play, rod.frictionDeviation()};
 }
 
 CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {

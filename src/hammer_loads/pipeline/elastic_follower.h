@@ -34,8 +34,10 @@ class ElasticFollower {
   std::optional<double> restitution() const noexcept {
     return best_ != nullptr ? std::make_optional(restitution_) : std::nullopt;
   }
-  /// Joint clearance of both pins together [m], 0 of a rod in tight pins; empty if the readings show no spring.
-  std::optional<double> clearance() const noexcept { return isUsed() ? std::make_optional(clearance_) : std::nullopt; }
+  /// Empty if the readings show no spring.
+  std::optional<IdentifiedPins> identifiedPins() const noexcept {
+    return isUsed() ? std::make_optional(pins_) : std::nullopt;
+  }
   bool isWanted() const noexcept { return wanted_; }  ///< level elastic, and a spring may be there
   /// The spring is followed around each blow; elsewhere the machine is that of level linkage.
   bool isUsed() const noexcept { return best_ != nullptr && best_->isProven(); }
@@ -137,7 +139,7 @@ class ElasticFollower {
   double rigid_fit_{};         ///< fit of the rigid mechanism at this blow
   const RodFilter* best_{};    ///< null: rigid
   double restitution_{};       ///< restitution()
-  double clearance_{};         ///< clearance() [m]
+  IdentifiedPins pins_;        ///< identifiedPins()
   std::int64_t blow_{};        ///< CrankPosition::blow
   double late_{};              ///< standard deviation of what all stamps are off alike [s]
   RunningMean<> squares_;      ///< mean square of x'' since the blow [rad2/s4]

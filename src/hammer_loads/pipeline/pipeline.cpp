@@ -147,7 +147,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
     rod_.follow(crank_.step(), crank_.tracker());
     rod_.take(crank_.tracker(), elastic_.isLost(), elastic_.restitution());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
-    unknown_.observe(crank_.tracker().constantErrors().zeroIsShown() ? elastic_.clearance() : std::nullopt);
+    unknown_.observe(crank_.tracker().constantErrors().zeroIsShown() ? elastic_.identifiedPins() : std::nullopt);
     unknown_.follow(crank_.step().length(), crank_.step().strikes(), elastic_.runs() && !elastic_.filter().hasStruck());
     if (elastic_.runs())
       crank_.considerRod(elastic_.filter().motion().state.angle, elastic_.filter().motion().state.speed);

@@ -27,7 +27,7 @@ UnknownForce::UnknownForce(const Mechanism& mechanism) noexcept : mechanism_(&me
   const RodPrior prior = priorOf(rod, deviation);
   if (!prior.gives) return;
   clearance_ = given_clearance_ = std::hypot(rod.play, deviation.play);
-  friction_radius_ = std::hypot(rod.friction_radius, deviation.friction_radius);
+  friction_radius_ = given_friction_radius_ = std::hypot(rod.friction_radius, deviation.friction_radius);
   damping_ = deviation.damping_ratio;
   stiffness_ = prior.rod.stiffness;
 }
@@ -40,8 +40,9 @@ void UnknownForce::follow(double step, bool passed, bool waits) noexcept {
   held_ *= std::exp(-step / kHeld);
 }
 
-void UnknownForce::observe(std::optional<double> clearance) noexcept {
-  clearance_ = clearance ? std::hypot(*clearance, kHidden * given_clearance_) : given_clearance_;
+void UnknownForce::observe(const std::optional<IdentifiedPins>& pins) noexcept {
+  friction_radius_ = pins ? pins->friction_radius : given_friction_radius_;
+  clearance_ = pins ? std::hypot(pins->clearance, kHidden * given_clearance_) : given_clearance_;
 }
 
 void UnknownForce::vibrates(const LinkMotion& links, double vibration) noexcept {

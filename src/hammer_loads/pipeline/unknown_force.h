@@ -24,8 +24,9 @@ namespace hammer_loads {
 ///                 large
 ///
 /// c and rho are a value of the file and its standard deviation together, since no level has clearance in two
-/// dimensions, nor friction. Level elastic identifies the clearance along the rod; c then consists of this clearance
-/// and a twentieth of the file's. The factors are those of simulated machines (doc/model.md 6).
+/// dimensions, and only elastic has friction. Where level elastic identifies the pins, c consists of the clearance
+/// along the rod and a twentieth of the file's, and rho is the standard deviation that is left. The factors are those
+/// of simulated machines (doc/model.md 6).
 class UnknownForce {
  public:
   enum Source : Eigen::Index { kClearance, kFriction, kDamping, kSources };
@@ -38,9 +39,8 @@ class UnknownForce {
   /// Advances by a step [s]. passed: the crank passed the dead centre in it. waits: the elastic rod's filter has not
   /// met the tool yet, so that the blow begins later.
   void follow(double step, bool passed, bool waits = false) noexcept;
-  /// Updates c by the joint clearance of both pins together that the readings show along the rod [m]: 0 if they fit
-  /// tight pins, empty if they show none.
-  void observe(std::optional<double> clearance) noexcept;
+  /// Updates c and rho by the pins that the readings show; empty if they show none.
+  void observe(const std::optional<IdentifiedPins>& pins) noexcept;
   /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;
   /// Errors of the load: squares by source, and the covariance of all sources, whose diagonal is their sum.
@@ -80,7 +80,7 @@ class UnknownForce {
   double contacts() const noexcept;
 
   const Mechanism* mechanism_;
-  double given_clearance_{};                            ///< clearance in the hammer file [m]
+  double given_clearance_{}, given_friction_radius_{};  ///< those of the hammer file [m]
   double clearance_{}, friction_radius_{}, damping_{};  ///< c [m], rho [m], zeta [-]
   double stiffness_{};                                  ///< k [N/m]
   Greatest now_, last_;                                 ///< since the last blow; in the revolution before it
