@@ -123,33 +123,6 @@ double relativeError(double x, double z, const test::Vector& exact) {
   return static_cast<double>(sqrt(dot(miss, miss) / dot(exact, exact)));
 }
 
-TEST(Batch, KeepsItsDigitsNearTheBlow) {
-  std::mt19937 random(85);
-  for (int i = 0; i < 4; ++i) {
-    const HammerParameters p = i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random);
-    const Mechanism mechanism = test::mechanismOf(p);
-    for (Level level : {Level::kRocker, Level::kLinkage}) {
-      Table table;
-      for (int decade = 1; decade <= 12; ++decade) {
-        for (double sign : {-1.7, 1.7}) table.add(sign * std::pow(10.0, -decade), 30.0, decade % 2 ? 0.0 : 400.0);
-      }
-      table.compute(HullModel(mechanism, level), true);
-      const test::NewtonEuler exact(p, level);
-      double worst = 0.0;
-      for (std::size_t k = 0; k < table.size(); ++k) {
-        const test::Reference right =
-            exact.at(CrankAngle::fromOffset(table.angle[k]), 30.0, table.acceleration[k], kGravity);
-        const auto& o = table.out;
-        worst = std::max({worst, relativeError(o[0][k], o[1][k], right.hull_force),
-                          relativeError(o[3][k], o[4][k], right.r01), relativeError(o[5][k], o[6][k], right.r12),
-                          relativeError(o[7][k], o[8][k], right.r23), relativeError(o[9][k], o[10][k], right.r03)});
-      }
-      EXPECT_LE(worst, 1e-13);
-      std::printf("batch near the blow, machine %d level %d: %.2e\n", i, static_cast<int>(level), worst);
-    }
-  }
-}
-
 TEST(Batch, LosesDigitsOnlyAsThePivotsComeNearTheCranksLength) {
   for (const auto& [pivot_distance, batch_bound] :
        {std::pair{1.5, 2e-14}, std::pair{1.1, 5e-14}, std::pair{1.02, 2e-13}}) {

@@ -196,40 +196,6 @@ TEST(MovingHull, AccelerationIsGravityTheOtherWay) {
   }
 }
 
-/// Crank at rest in a hull that turns steadily: only the centrifugal force of the links, no moment about D.
-TEST(MovingHull, SteadyTurningGivesTheCentrifugalForce) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
-  for (const double phi : {0.3, 2.0, 4.0, 6.0}) {
-    const CrankMotion still{CrankAngle::fromAngle(phi), 0.0, 0.0};
-    const HullWrench wrench = hullWrench(mechanism, Level::kLinkage, still, HullMotion{{}, 3.0, 0.0});
-    const HullWrench unit_weight = hullWrench(mechanism, Level::kLinkage, still, Gravity{0.0, 1.0});
-    const HullWrench unit_side = hullWrench(mechanism, Level::kLinkage, still, Gravity{1.0, 0.0});
-    EXPECT_NEAR(wrench.force_x, 9.0 * -unit_weight.torque_y, 1e-11) << phi;  // moment of weight: z gx - x gz
-    EXPECT_NEAR(wrench.force_z, 9.0 * unit_side.torque_y, 1e-11) << phi;
-    EXPECT_EQ(wrench.torque_y, 0.0) << phi;
-  }
-}
-
-TEST(MovingHull, MasslessCrankAndRodLeaveLevelRocker) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
-  const HullMotion hull{{4.0, -22.0}, 1.7, -60.0};
-  for (const double phi : {0.1, 1.0, 2.5, 4.0, 5.5, 6.2}) {
-    const CrankMotion crank{CrankAngle::fromAngle(phi), 25.0, 400.0};
-    const LinkLoads poor = linkLoads(mechanism, Level::kRocker, crank, hull, kNearBlow);
-    const LinkLoads rich = linkLoads(mechanism, Level::kLinkage, crank, hull, kNearBlow);
-    const double force = std::hypot(poor.wrench.force_x, poor.wrench.force_z);
-    EXPECT_NEAR(rich.wrench.force_x, poor.wrench.force_x, 1e-13 * force);
-    EXPECT_NEAR(rich.wrench.force_z, poor.wrench.force_z, 1e-13 * force);
-    EXPECT_NEAR(rich.wrench.torque_y / poor.wrench.torque_y, 1.0, 1e-13);
-    EXPECT_NEAR(rich.pins.hull_on_crank.x / poor.pins.hull_on_crank.x, 1.0, 1e-12);
-    EXPECT_NEAR(rich.pins.drive_torque / poor.pins.drive_torque, 1.0, 1e-12);
-    const ShaftLoad a = shaftLoad(mechanism, Level::kRocker, crank.angle, hull);
-    const ShaftLoad b = shaftLoad(mechanism, Level::kLinkage, crank.angle, hull);
-    EXPECT_NEAR(a.weight_torque, b.weight_torque, 1e-12);
-    EXPECT_NEAR(a.weight_torque_slope, b.weight_torque_slope, 1e-10);
-  }
-}
-
 TEST_P(HullMotionTest, SlopeOfTheShaftsTorqueIsItsDerivative) {
   const HullMotion hull{{4.0, -22.0}, 1.7, -60.0};
   constexpr double h = 1e-5;

@@ -80,18 +80,5 @@ TEST(StrikingPoint, SticksWhereTheMechanismIsRefused) {
   }
 }
 
-TEST(StrikingPoint, SlidesTheOtherWayOnTheOtherSide) {
-  HammerParameters p = test::mo100Parameters();
-  p.striking_friction = 0.2;
-  p.striking_offset = 0.02;
-  const RockerBlow above = blowAtCrankSpeed(test::mechanismOf(p), 13.6);
-  p.striking_offset = -0.02;
-  const RockerBlow below = blowAtCrankSpeed(test::mechanismOf(p), 13.6);
-  EXPECT_GT(above.tool_impulse_x, 0.0);  // the approaching K moves along -x
-  EXPECT_NEAR(below.tool_impulse_x, -above.tool_impulse_x, 1e-12);
-  EXPECT_NEAR(below.tool_impulse_z, above.tool_impulse_z, 1e-12);
-  EXPECT_LT(above.energy, blowAtCrankSpeed(test::mechanismOf(test::mo100Parameters()), 13.6).energy);
-}
-
 }  // namespace
 }  // namespace hammer_loads
