@@ -100,31 +100,5 @@ TEST(HostileInput, VerdictsAreOnTheSafeSide) {
   EXPECT_FALSE(boom.holdDown(huge).holds());
 }
 
-TEST(HostileInput, RefusesCylinderFiguresOfNoMachine) {
-  const BoomParameters good = test::shippedBoomParameters();
-  double CylinderParameters::*const fields[] = {
-      &CylinderParameters::base_x,          &CylinderParameters::base_z,         &CylinderParameters::rod_x,
-      &CylinderParameters::rod_z,           &CylinderParameters::bore,           &CylinderParameters::rod_diameter,
-      &CylinderParameters::closed_length,   &CylinderParameters::stroke,         &CylinderParameters::bore_hose_volume,
-      &CylinderParameters::rod_hose_volume, &CylinderParameters::relief_pressure};
-  for (double CylinderParameters::*field : fields) {
-    for (double value : {1e308, -1e308, 1e155, kInfinity, std::nan("")}) {
-      BoomParameters bad = good;
-      bad.cylinders[1].*field = value;
-      const Checked<Boom> made = Boom::make(test::shippedUrdf(), bad);
-      EXPECT_FALSE(made.value);
-      ASSERT_EQ(made.problems.size(), 1U) << value;
-      EXPECT_EQ(made.problems[0].rfind("arm_cylinder_", 0), 0U) << made.problems[0];
-    }
-  }
-  for (double modulus : {1e308, 1e-300}) {
-    BoomParameters bad = good;
-    bad.bulk_modulus = modulus;
-    const Checked<Boom> made = Boom::make(test::shippedUrdf(), bad);
-    ASSERT_EQ(made.problems.size(), 1U);
-    EXPECT_EQ(made.problems[0].rfind("bulk_modulus_Pa: ", 0), 0U);
-  }
-}
-
 }  // namespace
 }  // namespace hammer_loads

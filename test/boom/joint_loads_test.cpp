@@ -14,52 +14,6 @@ using test::kLevel;
 
 double worstOf(const JointVector& a, const JointVector& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
-/// d/dq_j of the tip's place and turn by differences of order 6, each wrench component times its displacement.
-double virtualWork(const Chain& chain, const JointVector& q, int j, const Wrench& w_T) {
-  constexpr double kStep = 2e-3;
-  constexpr double kWeight[] = {45.0, -9.0, 1.0};
-  ChainPose pose;
-  forwardKinematics(chain, q, pose);
-  const Pose here = pose.tip();
-  Eigen::Matrix4d rate = Eigen::Matrix4d::Zero();
-  for (int k = 1; k <= 3; ++k) {
-    for (int side : {1, -1}) {
-      JointVector moved = q;
-      moved[j] += side * k * kStep;
-      forwardKinematics(chain, moved, pose);
-      rate += side * kWeight[k - 1] / (60.0 * kStep) * pose.tip().matrix();
-    }
-  }
-  const Eigen::Matrix3d spin = rate.topLeftCorner<3, 3>() * here.linear().transpose();
-  const Eigen::Vector3d omega(0.5 * (spin(2, 1) - spin(1, 2)), 0.5 * (spin(0, 2) - spin(2, 0)),
-                              0.5 * (spin(1, 0) - spin(0, 1)));
-  const Eigen::Vector3d v = rate.topRightCorner<3, 1>();
-  return (here.linear() * w_T.force).dot(v) + (here.linear() * w_T.torque).dot(omega);
-}
-
-TEST(JointTorqueOfTipLoad, IsItsVirtualWork) {
-  const Checked<Chain> made = Chain::make(test::shippedUrdf(), {});
-  ASSERT_TRUE(made.value);
-  std::mt19937 random(11);
-  double worst = 0.0;
-  for (int i = 0; i < 1000; ++i) {
-    const JointVector q = test::randomPosition(*made.value, random);
-    const Wrench w = test::randomWrench(random);
-    ChainPose pose;
-    forwardKinematics(*made.value, q, pose);
-    const JointVector torque = jointTorqueOfTipLoad(pose, w);
-    Eigen::Matrix<double, 6, 1> stacked;
-    stacked << w.force, w.torque;
-    EXPECT_LT(worstOf(torque, tipJacobian(pose).transpose() * stacked), 1e-14 * torque.cwiseAbs().maxCoeff());
-    for (int j = 0; j < q.size(); ++j) {
-      const double error = std::abs(torque[j] - virtualWork(*made.value, q, j, w)) / torque.cwiseAbs().maxCoeff();
-      worst = std::max(worst, error);
-    }
-  }
-  RecordProperty("worst", format("%.2g", worst));
-  EXPECT_LT(worst, 1e-9);
-}
-
 TEST(JointTorqueOfTipLoad, HasTheDocumentedSign) {
   // Boom and arm stretched, hull at the end: a force up along +z lifts the boom, against its joint's positive sense.
   Boom boom = test::shippedBoom();
@@ -76,68 +30,6 @@ TEST(JointTorqueOfTipLoad, HasTheDocumentedSign) {
   EXPECT_GT(loads.weight[1], 0.0);
   // The boom's cylinder raises it by pushing: weight makes it push.
   EXPECT_GT(loads.cylinder[0].force, 0.0);
-}
-
-TEST(JointTorqueOfWeight, EqualsKdlAndTheSlopeOfPotentialEnergy) {
-  const Checked<Chain> made = Chain::make(test::shippedUrdf(), {});
-  ASSERT_TRUE(made.value);
-  const Chain& chain = *made.value;
-  std::mt19937 random(12);
-  for (int i = 0; i < 1000; ++i) {
-    const Eigen::Vector3d g = test::randomVector(random, 10.0);
-    KDL::ChainDynParam kdl(chain.kdl(), KDL::Vector(g.x(), g.y(), g.z()));
-    KDL::JntArray q(chain.kdl().getNrOfJoints()), expected(q.rows());
-    q.data = test::randomPosition(chain, random);
-    kdl.JntToGravity(q, expected);
-    ChainPose pose;
-    forwardKinematics(chain, q.data, pose);
-    const JointVector torque = jointTorqueOfWeight(chain, pose, g);
-    EXPECT_LT(worstOf(torque, -expected.data), 1e-13 * expected.data.cwiseAbs().maxCoeff());
-
-    const auto energy = [&](double shift) {
-      JointVector moved = q.data;
-      moved[1] += shift;
-      forwardKinematics(chain, moved, pose);
-      const PointMass all = massFrom(chain, pose, 1);
-      return -all.mass * g.dot(all.p);
-    };
-    const double h = 1e-3;
-    const double slope = (8.0 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12.0 * h);
-    EXPECT_NEAR(torque[1], -slope, 1e-9 * torque.cwiseAbs().maxCoeff());
-  }
-}
-
-TEST(JointLoads, TotalEqualsTheHandMadePlanarChain) {
-  std::mt19937 random(13);
-  double worst = 0.0;
-  for (int k = 0; k < 20; ++k) {
-    const auto planar = test::PlanarChain<3>::random(random);
-    BoomParameters parameters = test::shippedBoomParameters();
-    parameters.chain = {"base_link", "tip", {"j0", "j1", "j2"}};
-    parameters.cylinders.clear();
-    parameters.sections.clear();
-    Checked<Boom> boom = Boom::make(planar.urdf(), parameters);
-    ASSERT_TRUE(boom.value) << boom.problems.front();
-    for (int i = 0; i < 50; ++i) {
-      test::PlanarChain<3>::Joints q, qd, qdd;
-      for (std::size_t j = 0; j < 3; ++j) {
-        q[j] = test::between(random, -3.0, 3.0);
-        qd[j] = test::between(random, -2.0, 2.0);
-        qdd[j] = test::between(random, -5.0, 5.0);
-      }
-      const double fx = test::between(random, -5e4, 5e4), fz = test::between(random, -4e4, 4e4);
-      const double ty = test::between(random, -5e3, 5e3);
-      const auto expected = planar.loads(q, qd, qdd, {fx, fz}, ty);
-      const auto vector = [](const auto& values) { return test::joints({values[0], values[1], values[2]}); };
-      boom.value->move({vector(q), vector(qd), vector(qdd)}, kLevel);
-      BoomLoads loads;
-      boom.value->loads({Eigen::Vector3d(fx, 0.0, fz), Eigen::Vector3d(0.0, ty, 0.0)}, true, loads);
-      const double size = vector(expected).cwiseAbs().maxCoeff();
-      worst = std::max(worst, worstOf(loads.total, vector(expected)) / size);
-    }
-  }
-  RecordProperty("worst", format("%.2g", worst));
-  EXPECT_LT(worst, 1e-10);
 }
 
 TEST(JointLoads, TotalEqualsOneCallOfKdlWithEverything) {
@@ -201,17 +93,6 @@ TEST(JointLoads, AreEqualAtEveryLink) {
     const Wrench here = wrenchAtLink(boom.pose(), chain.tip(), w);
     EXPECT_LT((here.force - w.force).norm(), 1e-15 * w.force.norm());
   }
-}
-
-TEST(JointLoads, GravityAtTheTipFollowsPitch) {
-  Boom boom = test::shippedBoom();
-  const JointVector zero = JointVector::Zero(4);
-  boom.move({test::joints({0.7, -0.3, 1.1, -0.6}), zero, zero}, kLevel);
-  const Eigen::Vector3d g = boom.gravityAtTip();
-  const double pitch = -0.3 + 1.1 - 0.6;
-  EXPECT_NEAR(g.x(), kGravity * std::sin(pitch), 1e-14);
-  EXPECT_NEAR(g.y(), 0.0, 1e-14);
-  EXPECT_NEAR(g.z(), -kGravity * std::cos(pitch), 1e-14);
 }
 
 }  // namespace

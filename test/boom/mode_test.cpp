@@ -151,44 +151,6 @@ ModeState stepped(const Mode& mode, double mu, int steps) {
   return state;
 }
 
-TEST(HalfSine, SteppingConvergesToTheClosedForm) {
-  // Exact for the polygon through the samples; the polygon's own error is a series in h^2, which Richardson removes.
-  double worst = 0.0;
-  for (double omega : {3.0, 25.0, 160.0}) {
-    const Mode mode{omega, 0.05};
-    const double mu = 168.0;
-    std::array<std::array<double, 2>, 6> row;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const ModeState state = stepped(mode, mu, 8 << i);
-      row[i] = {state.x, state.v};
-    }
-    const ModeState exact = halfSineResponse(mode, 1.0, mu, 2.0 * kPi / mu);
-    const double size = std::hypot(exact.v, omega * exact.x);
-    // Second order: four times less for half the step.
-    EXPECT_NEAR(std::abs(row[2][1] - exact.v) / std::abs(row[3][1] - exact.v), 4.0, 0.1);
-    for (std::size_t level = 1; level < row.size(); ++level) {
-      const double factor = std::pow(4.0, static_cast<double>(level));
-      for (std::size_t i = row.size() - 1; i >= level; --i) {
-        for (std::size_t c = 0; c < 2; ++c) row[i][c] = (factor * row[i][c] - row[i - 1][c]) / (factor - 1.0);
-      }
-    }
-    worst =
-        std::max({worst, std::abs(row.back()[0] - exact.x) * omega / size, std::abs(row.back()[1] - exact.v) / size});
-  }
-  RecordProperty("worst", format("%.2g", worst));
-  EXPECT_LT(worst, 1e-12);
-}
-
-TEST(HalfSine, ImpulseTimesFrequencyDecidesForAShortPulse) {
-  // Impulse 2/mu on a slow mode: velocity 2/mu, displacement 2/(mu omega) a quarter period later.
-  const Mode mode{6.0, 1e-6};
-  const double mu = 3000.0;
-  const ModeState after = halfSineResponse(mode, 1.0, mu, kPi / mu);
-  EXPECT_NEAR(after.v, 2.0 / mu, 1e-5 * 2.0 / mu);
-  const ModeState quarter = halfSineResponse(mode, 1.0, mu, 0.5 * kPi / mu + 0.5 * kPi / mode.omega);
-  EXPECT_NEAR(quarter.x, 2.0 / (mu * mode.omega), 1e-4 * 2.0 / (mu * mode.omega));
-}
-
 double energy(const Mode& mode, const ModeState& s) { return 0.5 * (s.v * s.v + mode.omega * mode.omega * s.x * s.x); }
 
 TEST(ModeAdvance, EnergyNeverGrowsWithoutForceWhateverTheStep) {

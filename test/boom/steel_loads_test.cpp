@@ -232,64 +232,6 @@ TEST_F(Steel, PinsCarryTheCylindersForce) {
   }
 }
 
-TEST_F(Steel, StaticSectionIsTheWorkOfASmallYieldThere) {
-  // Everything beyond the cut shifts or turns a little about it: the load's work is that of hammer, weight and the
-  // cylinders whose length it changes.
-  std::mt19937 random(34);
-  for (int i = 0; i < 20; ++i) {
-    Case c = randomCase(boom_.chain(), random);
-    c.motion.velocity.setZero(), c.motion.acceleration.setZero();
-    boom_.move(c.motion, c.g);
-    SteelLoads loads;
-    ASSERT_TRUE(boom_.steelLoads(c.w, true, loads));
-    const std::vector<Place> places = row_.places(c.motion, 0);
-    for (std::size_t k = 0; k < boom_.sections().size(); ++k) {
-      const Section& section = boom_.sections()[k];
-      const auto link = static_cast<std::size_t>(section.link());
-      const Vector origin = places[link].at(section.parameters().origin.cast<Real>());
-      std::vector<Point> part;
-      Row::addBody(section.link(), section.part(), 1.0, part);
-      for (int axis = 0; axis < 6; ++axis) {
-        const Vector along = places[link].R.col(axis % 3);  // pitch of the shipped cuts is zero
-        /// Where a point beyond goes.
-        const auto moved = [&](const Vector& p, Real step) -> Vector {
-          if (axis < 3) return p + step * along;
-          return origin + Eigen::AngleAxis<Real>(step, along).toRotationMatrix() * (p - origin);
-        };
-        const auto work = [&](Real step) {
-          Real sum = 0;
-          const auto weight = [&](const Point& point) {
-            const Vector p = places[static_cast<std::size_t>(point.link)].at(point.p);
-            sum += point.mass * c.g.cast<Real>().dot(moved(p, step) - p);
-          };
-          for (const Point& point : part) weight(point);
-          for (const Point& point : row_.points())
-            if (point.link > section.link()) weight(point);
-          for (std::size_t n = 0; n < 3; ++n) {
-            const Held held = this->held(c, boom_.parameters().cylinders[n]);
-            const auto isBeyond = [&](const Pin& pin) {
-              return pin.link > section.link() ||
-                     (pin.link == section.link() && pin.on_link.x() > section.parameters().origin.x());
-            };
-            // Those before stay; the linkage's own links go with those beyond, as their pins do.
-            for (const Pin& pin : held.pins)
-              if (!isBeyond(pin)) sum -= pin.force.dot(moved(pin.place, step) - pin.place);
-          }
-          return sum;
-        };
-        constexpr Real h = 1e-3L;
-        const Real slope = (8 * (work(h) - work(-h)) - (work(2 * h) - work(-2 * h))) / (12 * h);
-        // The hammer's share, linear in the step.
-        const Vector f = places.back().R * c.w.force.cast<Real>(), t = places.back().R * c.w.torque.cast<Real>();
-        const Real hammer = axis < 3 ? along.dot(f) : along.dot(t + (places.back().p - origin).cross(f));
-        const Wrench& w = loads.section[k];
-        const double got = axis < 3 ? w.force[axis] : w.torque[axis - 3];
-        EXPECT_NEAR(got, static_cast<double>(slope + hammer), axis < 3 ? 5e-5 : 1e-4) << section.name() << " " << axis;
-      }
-    }
-  }
-}
-
 TEST_F(Steel, VibrationCountsAsWhatItAccelerates) {
   const JointVector zero = JointVector::Zero(4);
   boom_.moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});

@@ -135,20 +135,5 @@ TEST_F(Model, HasThePublishedFigures) {
   EXPECT_LE(arm, model_->getJoint("arm_joint")->limits->upper);
 }
 
-TEST_F(Model, StaysWithinThePublishedSize) {
-  for (const urdf::VisualSharedPtr& visual : model_->getLink("body")->visual_array) {
-    const urdf::Vector3& p = visual->origin.position;
-    double x = 0.0, y = 0.0, z = 0.0;
-    if (const auto box = std::dynamic_pointer_cast<urdf::Box>(visual->geometry)) {
-      x = box->dim.x, y = box->dim.y, z = box->dim.z;
-    } else if (const auto wheel = std::dynamic_pointer_cast<urdf::Cylinder>(visual->geometry)) {
-      x = z = 2.0 * wheel->radius, y = wheel->length;
-    }
-    EXPECT_LE(std::abs(p.y) + 0.5 * y, 1.1 + 1e-9);
-    EXPECT_LE(p.z + 0.5 * z, 3.8);
-    EXPECT_GE(p.x - 0.5 * x, -6.48);
-  }
-}
-
 }  // namespace
 }  // namespace hammer_loads

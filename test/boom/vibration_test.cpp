@@ -69,19 +69,6 @@ TEST_F(ShippedBoom, StrikeGivesTheImpulseAsMomentum) {
   EXPECT_TRUE(vibration().displacement().isZero(0.0));
 }
 
-TEST_F(ShippedBoom, EnergyNeverGrowsWithoutLoad) {
-  std::mt19937 random(42);
-  steadyLoad(0.02, boom_.hammerTorque(push_));
-  double before = vibration().energy();
-  EXPECT_GT(before, 0.0);
-  for (int i = 0; i < 2000; ++i) {
-    steadyLoad(std::exp(test::between(random, -9.0, 1.0)), kZero);
-    const double now = vibration().energy();
-    ASSERT_LE(now, before * (1.0 + 1e-15) + 1e-300);
-    before = now;
-  }
-}
-
 TEST_F(ShippedBoom, EnergyComesBackWithThePose) {
   // A slowly moving pose takes and gives energy (with omega); back where it was, none was made. Damping next to none.
   VibrationSettings settings = boom_.parameters().vibration;
@@ -104,20 +91,6 @@ TEST_F(ShippedBoom, EnergyComesBackWithThePose) {
   EXPECT_GT(least, start * softest / omega * 0.9);
   EXPECT_LT(most, start * hardest / omega * 1.1);
   EXPECT_GT(hardest / softest, 1.05);
-}
-
-TEST_F(ShippedBoom, HugeStepsStayBounded) {
-  std::mt19937 random(43);
-  const double step = 100.0 * 2.0 * kPi / modes().omega[2];
-  const JointVector size = boom_.hammerTorque(push_);
-  JointVector torque = kZero;
-  const double softest = size.tail<3>().norm() / modes().stiffness.minCoeff();
-  for (int i = 0; i < 20000; ++i) {
-    const JointVector next = test::between(random, -1.0, 1.0) * size;
-    vibration().advance(step, {torque, next, 0.5 * (torque + next)});
-    torque = next;
-    ASSERT_LT(vibration().displacement().norm(), 10.0 * softest);
-  }
 }
 
 TEST_F(ShippedBoom, TipMovesWithTheJoints) {

@@ -30,34 +30,6 @@ TEST(WrenchShift, ForceAtALeverGivesItsMoment) {
   EXPECT_EQ(w_Q.torque, Eigen::Vector3d(0.0, -50e3, 0.0));
 }
 
-TEST(WrenchShift, PureCoupleIsOnlyTurned) {
-  std::mt19937 random(1);
-  for (int i = 0; i < 1000; ++i) {
-    const Pose X = randomPose(random);
-    const Eigen::Vector3d couple = test::randomVector(random, 1e4);
-    const Wrench w = shifted(X, {Eigen::Vector3d::Zero(), couple});
-    EXPECT_EQ(w.force, Eigen::Vector3d::Zero());
-    EXPECT_EQ(w.torque, X.linear() * couple);
-    Pose no_turn = Pose::Identity();
-    no_turn.translation() = X.translation();
-    EXPECT_EQ(shifted(no_turn, {Eigen::Vector3d::Zero(), couple}).torque, couple);
-  }
-}
-
-TEST(WrenchShift, IsUndoneByTheShiftBack) {
-  std::mt19937 random(2);
-  double worst = 0.0;
-  for (int i = 0; i < 10000; ++i) {
-    const Pose X = randomPose(random);
-    const Wrench w = test::randomWrench(random);
-    const Wrench back = shifted(X.inverse(), shifted(X, w));
-    const double force = w.force.norm(), torque = w.torque.norm() + X.translation().norm() * force;
-    worst = std::max({worst, (back.force - w.force).norm() / force, (back.torque - w.torque).norm() / torque});
-  }
-  RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
-  EXPECT_LT(worst, 1e-15);
-}
-
 /// The shift as a matrix on (force, torque): [R 0; [p]x R  R].
 Eigen::Matrix<double, 6, 6> shiftMatrix(const Pose& X_QP) {
   const Eigen::Matrix3d R = X_QP.linear();
