@@ -79,41 +79,6 @@ TEST_P(EveryHammerKey, IsAloneAccusedBesideRightDeviations) {
 INSTANTIATE_TEST_SUITE_P(Hammer, EveryHammerKey, testing::ValuesIn(hammerKeys()),
                          [](const testing::TestParamInfo<std::string>& key) { return key.param; });
 
-TEST(HammerParameters, ShippedFileIsTheMo100) {
-  const Checked<Settings> settings = loadFiles(configDirectory(), {configDirectory() + "/hammer_mo100.yaml"});
-  ASSERT_EQ(settings.problems, Lines{});
-  const HammerParameters& read = settings.value->mechanism.parameters();
-  const HammerParameters right = test::mo100LinkageParameters();
-  EXPECT_EQ(read.lengths.crank, right.lengths.crank);
-  EXPECT_NEAR(read.lengths.rod, right.lengths.rod, 1e-15);
-  EXPECT_EQ(read.lengths.rocker, right.lengths.rocker);
-  EXPECT_EQ(read.lengths.pivot_distance, right.lengths.pivot_distance);
-  EXPECT_EQ(read.rocker_com_distance, right.rocker_com_distance);
-  EXPECT_NEAR(read.rocker_com_angle, right.rocker_com_angle, 1e-15);
-  EXPECT_EQ(read.rocker_mass, right.rocker_mass);
-  EXPECT_EQ(read.rocker_inertia_about_pivot, right.rocker_inertia_about_pivot);
-  EXPECT_NEAR(read.striking_distance, right.striking_distance, 5e-5);  // given to four digits
-  EXPECT_EQ(read.striking_friction, 0.0);
-  EXPECT_EQ(read.crank_mass, right.crank_mass);
-  EXPECT_EQ(read.crank_com_along, right.crank_com_along);
-  EXPECT_EQ(read.crank_com_across, right.crank_com_across);
-  EXPECT_EQ(read.crank_inertia_about_com, right.crank_inertia_about_com);
-  EXPECT_EQ(read.rod_mass, right.rod_mass);
-  EXPECT_EQ(read.rod_com_along, right.rod_com_along);
-  EXPECT_EQ(read.rod_com_across, right.rod_com_across);
-  EXPECT_EQ(read.rod_inertia_about_com, right.rod_inertia_about_com);
-  EXPECT_EQ(read.drive_inertia, 0.6);
-}
-
-TEST(HammerParameters, KeysAreTheContracts) {
-  EXPECT_EQ(
-      hammerKeys(),
-      (Lines{"crank_length_m", "rod_length_m", "rocker_length_m", "pivot_distance_m", "rocker_com_distance_m",
-             "rocker_com_angle_deg", "rocker_mass_kg", "rocker_inertia_about_pivot_kg_m2", "striking_distance_m",
-             "crank_mass_kg", "crank_com_along_m", "crank_com_across_m", "crank_inertia_about_com_kg_m2", "rod_mass_kg",
-             "rod_com_along_m", "rod_com_across_m", "rod_inertia_about_com_kg_m2", "drive_inertia_kg_m2"}));
-}
-
 TEST(HammerParameters, StrikingOffsetAndFrictionAreOptional) {
   const auto parametersWith = [](const std::string& added) {
     const TemporaryFile file(hammerYaml() + added);

@@ -104,30 +104,6 @@ TEST_F(LoadBoom, RefusesAFileOrAModelWithoutDescription) {
   expectOne(loaded("", "boom: compliant\n"), "robot_description: missing, must be given (a URDF)");
 }
 
-TEST_F(LoadBoom, EachFaultIsOneLine) {
-  expectOne(loaded("no URDF", boom_), "robot_description: ");
-  expectOne(loaded(withFirstReplaced(urdf_, "</robot>", ""), boom_), "robot_description: ");
-  expectOne(loaded(urdf_, withFirstReplaced(boom_, "tip_link: hammer_hull", "tip_link: hammer")),
-            "robot_description: link hammer: not in the model");
-  expectOne(loaded(urdf_, withFirstReplaced(boom_, "root_link: base_link", "root_link: hammer_tool")),
-            "robot_description: link hammer_hull: hangs on");
-  expectOne(loaded(withFirstReplaced(urdf_, "<mass value=\"230\"/>", "<mass value=\"-230\"/>"), boom_),
-            "robot_description: mass of link arm_link: -230 kg");
-  expectOne(loaded(urdf_, withFirstReplaced(boom_, "arm_cylinder_joint: arm_joint", "arm_cylinder_joint: elbow")),
-            "arm_cylinder_joint: elbow, must be a revolute joint of the chain");
-  expectOne(loaded(urdf_, withFirstReplaced(boom_, "arm_cylinder_stroke_m: 0.73", "arm_cylinder_stroke_m: 0.5")),
-            "arm_cylinder_closed_length_m: 1 m, cannot close the triangle");
-  expectOne(
-      loaded(urdf_, withFirstReplaced(boom_, "damping_ratio: 0.05", "dampening_ratio: 0.05") + "damping_ratio: 0.05"),
-      "dampening_ratio: unknown key, perhaps damping_ratio was meant");
-}
-
-TEST_F(LoadBoom, FaultsOfOneDescriptionComeTogether) {
-  std::string urdf = withFirstReplaced(urdf_, "<mass value=\"230\"/>", "<mass value=\"-230\"/>");
-  urdf = withFirstReplaced(urdf, "<mass value=\"400\"/>", "<mass value=\"-400\"/>");
-  EXPECT_EQ(loaded(urdf, boom_, "stale_after_s: -1").problems.size(), 3U);
-}
-
 TEST_F(LoadBoom, AcceptsItsLoadsAsCountedChannels) {
   const std::string arm = "hull_x_channel: joint_loads/arm_joint/total_torque\n";
   EXPECT_EQ(loaded(urdf_, boom_, arm).problems, Lines{});

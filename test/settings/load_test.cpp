@@ -14,24 +14,6 @@ using test::loadShippedWith;
 using test::problemsOf;
 using test::TemporaryFile;
 
-TEST(Load, ShippedFilesAreValid) {
-  const Checked<Settings> settings = loadShippedWith({});
-  ASSERT_EQ(settings.problems, Lines{});
-  const PipelineSettings& p = settings.value->pipeline;
-  EXPECT_EQ(p.level, Level::kLinkage);
-  EXPECT_EQ(p.crank_joint, "hammer_crank_joint");
-  EXPECT_EQ(p.pitch_joints, (Lines{"boom_joint", "arm_joint", "hammer_joint"}));
-  EXPECT_EQ(p.gravity, 9.80665);
-  EXPECT_EQ(p.crank_angle_resolution, 0.0);
-  EXPECT_EQ(p.stale_after, 0.25);
-  EXPECT_EQ(p.withhold_above, 0.1);
-  const LogSettings& log = settings.value->log;
-  EXPECT_TRUE(log.enabled);
-  EXPECT_FALSE(log.directory.empty());
-  EXPECT_EQ(log.split_size, 512000000U);
-  EXPECT_EQ(filePrefix(forNode(log, "/left/hammer_loads")), "left_hammer_loads");
-}
-
 TEST(Load, ShippedFilesOfOneKindEachLoadOverThemselves) {
   for (const char* name : {"hammer_mo100.yaml", "pipeline.yaml", "log.yaml", "life.yaml"}) {
     const Checked<Settings> settings = loadShippedWith({configDirectory() + "/" + name});

@@ -72,11 +72,5 @@ TEST(RosParameters, ProblemsNameTheNameSpace) {
                                                  "excavator: unknown key (/node)"}));
 }
 
-TEST(RosParameters, OneHammerKeyMeansThatAllMustBeGiven) {
-  XmlRpcValue parameters;
-  parameters["rocker_mass_kg"] = 35.2;
-  EXPECT_EQ(problemsOnServer(parameters).size(), hammerKeys().size() - 1);
-}
-
 }  // namespace
 }  // namespace hammer_loads
