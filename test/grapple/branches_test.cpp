@@ -66,19 +66,6 @@ TEST(Branches, ClaimsSetHasTwoModesBetweenItsFoldsAndNoneBeyond) {
   }
 }
 
-TEST(Branches, AreTwoForTheClaimsSet) {
-  const GrappleParameters p = test::claimsParameters();
-  const LeverGroup group(p);
-  const Branches closed = enumerateBranches(group, pinA(p, -1.30230276491399));
-  ASSERT_EQ(closed.count, 2);
-  EXPECT_TRUE(contains(closed, {0.24653692069594, -0.95630710126589}, 1e-12));
-  EXPECT_TRUE(contains(closed, {-0.3906348813625, -1.0095542441429}, 1e-12));
-  const Branches middle = enumerateBranches(group, pinA(p, -0.731183698512905));
-  ASSERT_EQ(middle.count, 2);
-  EXPECT_TRUE(contains(middle, {0.378626426521639, -0.648948854844813}, 1e-12));
-  EXPECT_TRUE(contains(middle, {-0.3102260546742, -0.7598561787355}, 1e-12));
-}
-
 TEST(Branches, EveryPoseClosesAndNoPoseIsListedTwice) {
   test::Random random(21);
   int poses = 0;
@@ -131,7 +118,7 @@ int modesByScan(const GrappleParameters& p, double distance, int samples) {
 TEST(Branches, AreAsManyAsAScanOfTheConfigurationCurveFinds) {
   test::Random random(22);
   int with_six = 0, differing = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 800; ++i) {
     const GrappleParameters p = test::randomLinkage(random);
     const Planar a = pinA(p, random(-kPi, kPi));
     const Branches found = enumerateBranches(LeverGroup(p), a);
@@ -141,13 +128,13 @@ TEST(Branches, AreAsManyAsAScanOfTheConfigurationCurveFinds) {
     ++differing;
     EXPECT_GT(found.count, modesByScan(p, norm(a), 200000)) << "linkage " << i << ": a mode is missing";
   }
-  EXPECT_GT(with_six, 5);
-  EXPECT_LE(differing, 15);  // the scan's own losses at the ends of its sides
+  EXPECT_GT(with_six, 1);
+  EXPECT_LE(differing, 5);  // the scan's own losses at the ends of its sides
 }
 
 TEST(Branches, SpecialTrianglesLoseNoMode) {
   test::Random random(23);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 500; ++i) {
     GrappleParameters p = test::randomLinkage(random);
     const int kind = i % 4;
     const double scale = kind == 0 ? random(0.5, 2.0) : 1.0;  // similar, else congruent

@@ -29,45 +29,6 @@ double concurrency(const FirstRocker& rocker, const GroupPose& pose, double thet
          l3.offset * cross(l1.normal, l2.normal);
 }
 
-TEST(Folds, AreThoseOfTheClaimsSet) {
-  const GrappleParameters p = test::claimsParameters();
-  const LeverGroup group(p);
-  const FirstRocker rocker = rockerOf(p);
-  const CurvePoint start{-0.731183698512905, 0.378626426521639, -0.648948854844813};
-  const BranchEnd upper = findBranchEnd(group, rocker, start, +1, 7.0);
-  ASSERT_EQ(upper.kind, BranchEnd::Kind::kFold);
-  EXPECT_NEAR(upper.point.theta1, -0.0546685648351, 1e-12);
-  EXPECT_NEAR(upper.point.theta2, -0.0780585291036, 1e-12);
-  EXPECT_NEAR(upper.point.theta5, -0.3977931336716, 1e-12);
-  const GroupPose pose =
-      group.pose(rocker.o1 + rocker.armAt(upper.point.theta1), upper.point.theta2, upper.point.theta5);
-  EXPECT_NEAR(group.closure(pose).determinant, 0.0, 1e-15);
-  EXPECT_NEAR(concurrency(rocker, pose, upper.point.theta1), 0.0, 1e-14);
-  const Planar edge = group.edge(rocker.o1 + rocker.armAt(upper.point.theta1), pose, group.closure(pose));
-  EXPECT_NEAR(edge.re, 2.6622014818, 1e-10);
-  EXPECT_NEAR(edge.im, -2.1372154339, 1e-10);
-  const BranchEnd lower = findBranchEnd(group, rocker, start, -1, 7.0);
-  ASSERT_EQ(lower.kind, BranchEnd::Kind::kFold);
-  EXPECT_NEAR(lower.point.theta1 * 180.0 / kPi, -176.87, 5e-3);
-  EXPECT_EQ(findBranchEnd(group, rocker, start, +1, 0.1).kind, BranchEnd::Kind::kNone);
-}
-
-TEST(Folds, AreThoseOfTheStraightSet) {
-  const GrappleParameters p = test::straightParameters();
-  const Grapple grapple = test::grappleOf(p);
-  const GrappleMotion m = *grapple.at(-0.266);
-  const CurvePoint start{grapple.linkDirections(m)[0].angle, m.theta2, m.theta5};
-  const LeverGroup group(p);
-  const FirstRocker rocker = rockerOf(p);
-  const CurvePoint fold = findBranchEnd(group, rocker, start, +1, 7.0).point;
-  EXPECT_NEAR(fold.theta1, -0.766118411260, 1e-12);
-  const Planar a = rocker.o1 + rocker.armAt(fold.theta1);
-  const GroupPose pose = group.pose(a, fold.theta2, fold.theta5);
-  EXPECT_NEAR(group.edge(a, pose, group.closure(pose)).re, 1.552899051827, 1e-11);
-  EXPECT_NEAR(group.edge(a, pose, group.closure(pose)).im, -2.781501100805, 1e-11);
-  EXPECT_NEAR(findBranchEnd(group, rocker, start, -1, 7.0).point.theta1, -2.375474242330, 1e-12);
-}
-
 TEST(Folds, AreSingularAndEndTheBranchOfRandomLinkages) {
   test::Random random(31);
   int folds = 0, full_turns = 0, singular = 0;
@@ -132,7 +93,7 @@ TEST(SliderLimits, FoldsEqualTheExplicitCurveToFiftyDigits) {
 TEST(SliderLimits, FoldsOfRandomGrapplesEqualTheExplicitCurve) {
   test::Random random(32);
   int checked = 0, tried = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     const auto grapple = test::randomGrapple(random);
     if (!grapple) continue;
     const double width = grapple->upperLimit().slider - grapple->lowerLimit().slider;
@@ -150,7 +111,7 @@ TEST(SliderLimits, FoldsOfRandomGrapplesEqualTheExplicitCurve) {
       ++checked;
     }
   }
-  EXPECT_GT(checked, 100);
+  EXPECT_GT(checked, 50);
   EXPECT_GT(checked, 0.9 * tried);
 }
 

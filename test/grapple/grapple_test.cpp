@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <limits>
 
 #include "grapple/grapples.h"
@@ -12,14 +11,10 @@
 namespace hammer_loads {
 namespace {
 
-std::string configFile(const std::string& name) {
-  return std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/" + name;
-}
-
 /// With one or more lines laid over the claims set.
 auto loadClaimsWith(const std::string& lines) {
   const test::TemporaryFile over(lines + '\n');
-  return loadGrapple({configFile("grapple_claims.yaml"), over.path()});
+  return loadGrapple({test::shippedFile("grapple_claims.yaml"), over.path()});
 }
 
 bool mentions(const std::vector<std::string>& problems, const std::string& text) {
@@ -27,52 +22,6 @@ bool mentions(const std::vector<std::string>& problems, const std::string& text)
     if (problem.find(text) != std::string::npos) return true;
   }
   return false;
-}
-
-void expectSame(const GrappleParameters& a, const GrappleParameters& b) {
-  for (const auto& [x, y] : {std::pair{a.o1.re, b.o1.re},
-                             {a.o1.im, b.o1.im},
-                             {a.slider_x, b.slider_x},
-                             {a.o1h, b.o1h},
-                             {a.o1a, b.o1a},
-                             {a.ho1a, b.ho1a},
-                             {a.gh, b.gh},
-                             {a.ab, b.ab},
-                             {a.ac, b.ac},
-                             {a.bac, b.bac},
-                             {a.bd, b.bd},
-                             {a.bp, b.bp},
-                             {a.dbp, b.dbp},
-                             {a.ce, b.ce},
-                             {a.od, b.od},
-                             {a.oe, b.oe},
-                             {a.doe, b.doe},
-                             {a.slider_closed, b.slider_closed},
-                             {a.slider_open, b.slider_open},
-                             {a.slider_margin, b.slider_margin},
-                             {a.reference_slider, b.reference_slider},
-                             {a.reference_ab, b.reference_ab},
-                             {a.reference_od, b.reference_od}})
-    EXPECT_EQ(x, y);
-  EXPECT_EQ(a.drive_sign, b.drive_sign);
-}
-
-TEST(GrappleFile, ShippedFilesHoldTheTwoSets) {
-  const Checked<Grapple> claims = loadGrapple({configFile("grapple_claims.yaml")});
-  ASSERT_TRUE(claims.value) << claims.problems.front();
-  expectSame(claims.value->parameters(), test::claimsParameters());
-  const Checked<Grapple> straight = loadGrapple({configFile("grapple_straight.yaml")});
-  ASSERT_TRUE(straight.value) << straight.problems.front();
-  expectSame(straight.value->parameters(), test::straightParameters());
-}
-
-TEST(GrappleFile, ShippedFilesStateWhatTheyAre) {
-  for (const char* name : {"grapple_claims.yaml", "grapple_straight.yaml"}) {
-    std::ifstream file(configFile(name));
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    EXPECT_NE(text.find("RECONSTRUCTION, not the author's data"), std::string::npos) << name;
-    EXPECT_NE(text.find("FITTED here"), std::string::npos) << name;
-  }
 }
 
 TEST(GrappleFile, ReportsEveryProblemAtOnce) {

@@ -92,17 +92,5 @@ TEST(GrappleTracker, NeverLeavesTheBranchUpToTheFold) {
   EXPECT_EQ(tracker.refused(), 0u);
 }
 
-TEST(GrappleTracker, JawsAreInTime) {
-  GrappleTracker tracker = trackerOf(test::claimsParameters());
-  ASSERT_EQ(tracker.update({0.332, 0.5, -2.0}), SliderRefusal::kNone);
-  const GrappleMotion& m = tracker.motion();
-  const JawMotion right = tracker.right(), left = tracker.left();
-  EXPECT_DOUBLE_EQ(right.edge_velocity.re, 0.5 * m.dp.re);
-  EXPECT_DOUBLE_EQ(right.edge_acceleration.re, 0.25 * m.ddp.re - 2.0 * m.dp.re);
-  EXPECT_DOUBLE_EQ(right.turning_speed, 0.5 * m.jaw.d);
-  EXPECT_EQ(left.edge.re, -right.edge.re);
-  EXPECT_EQ(left.edge_velocity.im, right.edge_velocity.im);
-}
-
 }  // namespace
 }  // namespace hammer_loads

@@ -6,55 +6,27 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <string>
 
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple.h"
+#include "hammer_loads/grapple/read_grapple.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::test {
 
-/// Published ten lengths and the angles fitted to the paper's claims; the same numbers as config/grapple_claims.yaml.
-inline GrappleParameters claimsParameters() {
-  GrappleParameters p;
-  p.o1 = {0.0, -0.94};
-  p.slider_x = 0.0;
-  p.o1h = 0.58;
-  p.o1a = 0.94;
-  p.ho1a = 1.0;
-  p.gh = 1.25;
-  p.drive_sign = -1;
-  p.ab = 0.94;
-  p.ac = 0.52;
-  p.bac = 0.0;
-  p.bd = 0.29;
-  p.bp = 1.33;
-  p.dbp = -1.614;
-  p.ce = 0.45;
-  p.od = 2.28;
-  p.oe = 2.02;
-  p.doe = -0.421;
-  p.slider_closed = 0.006695608517900151;
-  p.slider_open = 0.656;
-  p.slider_margin = 0.001;
-  p.reference_slider = 0.332;
-  p.reference_ab = 0.379;
-  p.reference_od = -0.649;
-  return p;
+inline std::string shippedFile(const std::string& name) {
+  return std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/" + name;
 }
 
-/// The same with the angles fitted to the straightest path; the same numbers as config/grapple_straight.yaml.
+/// Published ten lengths and the angles fitted to the paper's claims.
+inline GrappleParameters claimsParameters() {
+  return loadGrapple({shippedFile("grapple_claims.yaml")}).value.value().parameters();
+}
+
+/// The same with the angles fitted to the straightest path.
 inline GrappleParameters straightParameters() {
-  GrappleParameters p = claimsParameters();
-  p.ho1a = 1.3;
-  p.gh = 0.8;
-  p.dbp = -2.105;
-  p.doe = -0.513;
-  p.slider_closed = -0.5046349008511198;
-  p.slider_open = -0.028;
-  p.reference_slider = -0.266;
-  p.reference_ab = 0.206;
-  p.reference_od = -0.773;
-  return p;
+  return loadGrapple({shippedFile("grapple_straight.yaml")}).value.value().parameters();
 }
 
 inline Grapple grappleOf(const GrappleParameters& parameters) {

@@ -5,7 +5,6 @@
 #include "grapple/explicit_curve.h"
 #include "grapple/grapples.h"
 #include "hammer_loads/grapple/grapple_motion.h"
-#include "support/csv.h"
 
 namespace hammer_loads {
 namespace {
@@ -21,98 +20,6 @@ void expectClose(double value, double expected, double tolerance, const std::str
 void expectClose(Planar value, Planar expected, double tolerance, const std::string& what) {
   expectClose(value.re, expected.re, tolerance, what + ".x");
   expectClose(value.im, expected.im, tolerance, what + ".y");
-}
-
-void expectTableRow(const test::Csv& csv, std::size_t row, const Grapple& grapple, const GrappleMotion& m) {
-  const std::string where = "row " + std::to_string(row) + ' ';
-  const auto at = [&](const char* column) { return csv.number(row, column); };
-  const auto point = [&](const std::string& name) {
-    return Planar{csv.number(row, name + "x"), csv.number(row, name + "y")};
-  };
-  for (const auto& [name, pin] : {std::pair<const char*, Planar>{"H", m.h},
-                                  {"A", m.a},
-                                  {"B", m.b},
-                                  {"C", m.c},
-                                  {"D", m.d},
-                                  {"E", m.e},
-                                  {"P", m.p}})
-    expectClose(pin, point(name), kPositions, where + name);
-  const auto links = grapple.linkDirections(m);
-  expectClose(links[0].angle, at("theta1"), kPositions, where + "theta1");
-  expectClose(m.theta2, at("theta2"), kPositions, where + "theta2");
-  expectClose(links[2].angle, at("theta3"), kPositions, where + "theta3");
-  expectClose(m.theta5, at("theta5"), kPositions, where + "theta5");
-  expectClose(m.determinant, at("detJ"), kPositions, where + "det J");
-  expectClose(m.dp, {at("dPx_ds"), at("dPy_ds")}, kFirst, where + "dP/ds");
-  expectClose(m.link1.d, at("dtheta1_ds"), kFirst, where + "dtheta1");
-  expectClose(m.link2.d, at("dtheta2_ds"), kFirst, where + "dtheta2");
-  expectClose(m.link5.d, at("dtheta5_ds"), kFirst, where + "dtheta5");
-  expectClose(m.ddp, {at("d2Px_ds2"), at("d2Py_ds2")}, kSecond, where + "d2P/ds2");
-  expectClose(m.link1.dd, at("d2theta1"), kSecond, where + "d2theta1");
-  expectClose(m.link2.dd, at("d2theta2"), kSecond, where + "d2theta2");
-  expectClose(m.link5.dd, at("d2theta5"), kSecond, where + "d2theta5");
-}
-
-TEST(GrappleMotion, EqualsTheReferenceTableColdAndWarm) {
-  const test::Csv csv = test::dataCsv("grapple_table.csv");
-  ASSERT_EQ(csv.size(), 41u);
-  const Grapple grapple = test::grappleOf(test::claimsParameters());
-  std::optional<GrappleMotion> warm = grapple.at(0.1);
-  for (std::size_t i = 0; i < csv.size(); ++i) {
-    const double slider = csv.number(i, "s");
-    const auto cold = grapple.at(slider);
-    ASSERT_TRUE(cold);
-    expectTableRow(csv, i, grapple, *cold);
-    warm = grapple.follow(*warm, slider);
-    ASSERT_TRUE(warm);
-    expectTableRow(csv, i, grapple, *warm);
-  }
-}
-
-TEST(GrappleMotion, EqualsTheSecondSetsValues) {
-  const auto m = test::grappleOf(test::straightParameters()).at(-0.266);
-  ASSERT_TRUE(m);
-  expectClose(m->p, {0.64431532902089, -2.72049994480821}, kPositions, "P");
-  expectClose(m->dp, {2.55993693874449, 0.0131904413153937}, kFirst, "dP/ds");
-  expectClose(m->ddp, {1.14893271524777, -0.191314961926509}, kSecond, "d2P/ds2");
-}
-
-TEST(GrappleMotion, JawEdgesMeetInTheClosedPose) {
-  const auto claims = test::grappleOf(test::claimsParameters()).at(0.006695608517900151);
-  EXPECT_NEAR(claims->p.re, 0.0, 1e-12);
-  EXPECT_NEAR(norm(claims->p), 2.271576202262, 1e-12);
-  const auto straight = test::grappleOf(test::straightParameters()).at(-0.5046349008511198);
-  EXPECT_NEAR(straight->p.re, 0.0, 1e-12);
-  EXPECT_NEAR(norm(straight->p), 2.719955738359, 1e-12);
-}
-
-TEST(GrappleMotion, LinksKeepTheirLengths) {
-  constexpr double kLength = 1e-14;
-  for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
-    const Grapple grapple = test::grappleOf(p);
-    const double low = grapple.lowerLimit().slider, high = grapple.upperLimit().slider;
-    std::optional<GrappleMotion> warm = grapple.at(0.5 * (low + high));
-    for (int i = 1; i < 5000; ++i) {
-      const double slider = low + (high - low) * i / 5000.0;
-      warm = grapple.follow(*warm, slider);
-      ASSERT_TRUE(warm);
-      const auto cold = grapple.at(slider);
-      ASSERT_TRUE(cold);
-      for (const GrappleMotion& m : {*warm, *cold}) {
-        EXPECT_NEAR(norm(m.h - p.o1), p.o1h, kLength);
-        EXPECT_NEAR(norm(m.h - m.g), p.gh, kLength);
-        EXPECT_NEAR(norm(m.a - p.o1), p.o1a, kLength);
-        EXPECT_NEAR(norm(m.b - m.a), p.ab, kLength);
-        EXPECT_NEAR(norm(m.c - m.a), p.ac, kLength);
-        EXPECT_NEAR(norm(m.d - m.b), p.bd, kLength);
-        EXPECT_NEAR(norm(m.p - m.b), p.bp, kLength);
-        EXPECT_NEAR(norm(m.e - m.c), p.ce, kLength);
-        EXPECT_NEAR(norm(m.d), p.od, kLength);
-        EXPECT_NEAR(norm(m.e), p.oe, kLength);
-        if (HasFailure()) FAIL() << "slider " << slider;
-      }
-    }
-  }
 }
 
 /// Largest error of a jet's components against the motion, relative to max(1, |value|): position, first, second.
@@ -170,13 +77,6 @@ TEST(GrappleMotion, DerivativesGrowAsTheyMustBesideTheFold) {
     EXPECT_LT(errors.first, 1e-13 / distance) << distance;
     EXPECT_LT(errors.second, 1e-13 / distance) << distance;
   }
-}
-
-TEST(GrappleMotion, IsStillRegularBesideTheDeadCentre) {
-  const auto m = test::grappleOf(test::claimsParameters()).at(-0.26);
-  ASSERT_TRUE(m);
-  expectClose(m->p, {-1.0858388224, -2.1317411179}, 1e-10, "P");
-  expectClose(m->dp, {12.6525938643, 0.0110595781}, 1e-10, "dP/ds");
 }
 
 TEST(GrappleMotion, TheOtherBranchIsReachedOnlyByItsOwnReference) {
@@ -243,21 +143,6 @@ TEST(GrappleMotion, LinkDirectionsFollowTheirDerivatives) {
   const auto after = grapple.linkDirections(*grapple.at(slider + step));
   for (std::size_t i = 0; i < now.size(); ++i)
     EXPECT_NEAR(now[i].d, (after[i].angle - before[i].angle) / (2.0 * step), 1e-8) << "link " << i + 1;
-}
-
-TEST(GrappleMotion, IsRegularWhereATriangleFormulaWouldChangeSign) {
-  // theta1 = -90 deg: A on the line O-O1.
-  const Grapple grapple = test::grappleOf(test::claimsParameters());
-  double low = grapple.lowerLimit().slider + 1e-6, high = 0.332;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (grapple.at(middle)->a.re < 0.0 ? low : high) = middle;
-  }
-  const GrappleMotion m = *grapple.at(low);
-  EXPECT_NEAR(m.a.re, 0.0, 1e-12);
-  const auto before = grapple.at(low - 1e-6), after = grapple.at(low + 1e-6);
-  EXPECT_NEAR(m.dp.re, (after->p.re - before->p.re) / 2e-6, 1e-6);
-  EXPECT_NEAR(m.dp.im, (after->p.im - before->p.im) / 2e-6, 1e-6);
 }
 
 }  // namespace

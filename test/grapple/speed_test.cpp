@@ -8,7 +8,6 @@
 #include "grapple/grapples.h"
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple_tracker.h"
-#include "support/counting_new.h"
 #include "support/wall_clock.h"
 
 namespace hammer_loads {
@@ -84,23 +83,6 @@ TEST(Speed, StaysBelowItsBoundInAColdEnumeration) {
               1e-3 * six_modes, sum);
   test::expectTimeWithin(two_modes, kColdLimit, "[ns] a cold pose");
   test::expectTimeWithin(six_modes, kColdLimit, "[ns] enumeration of six modes");
-}
-
-TEST(Heap, NeitherWarmNorColdNorRefusedSamplesAllocate) {
-  const GrappleParameters p = test::claimsParameters();
-  GrappleTracker tracker(test::grappleOf(p));
-  const std::size_t before = test::allocations;
-  double sum = 0.0;
-  for (const double slider : {0.1, 0.1001, 0.5, 0.74, 0.9, std::nan(""), 0.0067, 0.655}) {
-    tracker.update({slider, 0.1, 0.2});
-    sum += tracker.right().edge.re + tracker.left().edge_velocity.re;
-    if (const auto cold = tracker.grapple().at(slider)) sum += cold->p.re;
-  }
-  EXPECT_EQ(test::allocations, before);
-  EXPECT_EQ(tracker.refused(), 3u);
-  EXPECT_GT(sum, 0.0);
-  const std::vector<double> counted(10, 1.0);  // the counter counts
-  EXPECT_EQ(test::allocations, before + (counted.empty() ? 0 : 1));
 }
 
 }  // namespace

@@ -129,19 +129,6 @@ TEST_F(GrappleFlowTest, RefusesEachBadSampleCountsItAndStaysOnItsBranch) {
   EXPECT_EQ(last("short array"), "");
 }
 
-TEST_F(GrappleFlowTest, AJumpAcrossTheFoldIsNeverFollowed) {
-  send(0.656, 0.1);
-  const double x = kept_.edges[kRight].back().second.point.x;
-  for (const double beyond : {0.7331923934970, 0.74, 0.85}) {  // up to 0.89 the drive closes, so other branches exist
-    send(beyond, 0.1);
-    EXPECT_EQ(kept_.edges[kRight].size(), 1u);
-    EXPECT_EQ(flow_.tracker().motion().p.re, x);
-  }
-  EXPECT_EQ(count("across fold"), 3u);
-  send(0.656, 0.1);
-  EXPECT_NEAR(kept_.edges[kRight].back().second.point.x, x, kRounding);
-}
-
 TEST_F(GrappleFlowTest, ReportsMissingVelocityAndPublishesNeitherTwistNorAccel) {
   send(0.3, std::nullopt);
   EXPECT_EQ(kept_.edges[kRight].size(), 1u);
@@ -163,36 +150,6 @@ TEST_F(GrappleFlowTest, AcceptsTimeThatRunsBackFromTheSecondSampleOn) {
   send(0.31, 0.1);
   send(0.32, 0.1);
   EXPECT_EQ(flow_.accepted(), 3u);
-}
-
-TEST_F(GrappleFlowTest, EqualsAFreshOneBitForBitAfterReset) {
-  for (int i = 0; i < 50; ++i) send(0.6 - 0.01 * i, 0.1);
-  flow_.reset();
-  stamp_ -= ros::Duration(10.0);
-  KeptMessages fresh_kept;
-  GrappleFlow fresh(test::grappleSettings());
-  fresh_kept.attachTo(fresh.outputs());
-  for (int i = 0; i < 20; ++i) {
-    send(0.2 + 0.013 * i, 0.2);
-    fresh.jointStates(sliderMessage(stamp_, 0.2 + 0.013 * i, 0.2), recordTime());
-    EXPECT_EQ(kept_.edges[kRight].back().second.point.x, fresh_kept.edges[kRight].back().second.point.x);
-    EXPECT_EQ(kept_.mechanisms.back().second.position, fresh_kept.mechanisms.back().second.position);
-  }
-  EXPECT_EQ(flow_.accepted(), 70u) << "counts stay";
-}
-
-TEST_F(GrappleFlowTest, AnOutputThatNothingIsAttachedToChangesNoOther) {
-  KeptMessages one;
-  GrappleFlow other(test::grappleSettings());
-  other.outputs().right.edge.attach(
-      [&one](const auto& message, const ros::Time& time) { one.edges[kRight].emplace_back(time, message); });
-  for (int i = 0; i < 20; ++i) {
-    send(0.2 + 0.013 * i, 0.2);
-    other.jointStates(sliderMessage(stamp_, 0.2 + 0.013 * i, 0.2), recordTime());
-    ASSERT_EQ(one.edges[kRight].size(), kept_.edges[kRight].size());
-    EXPECT_EQ(one.edges[kRight].back().second.point.x, kept_.edges[kRight].back().second.point.x);
-  }
-  EXPECT_EQ(other.accepted(), flow_.accepted());
 }
 
 TEST_F(GrappleFlowTest, RunInfoComesOnceAndItsParametersGiveTheSameSettings) {
@@ -229,25 +186,6 @@ TEST(SliderAccelerationTest, DifferenceIsThatOfTheLastTwoVelocities) {
   send(12.3, 0.36, 0.1);
   EXPECT_EQ(kept.accels[kRight].size(), 2u);
   EXPECT_EQ(flow.withoutAcceleration(), 4u);
-}
-
-TEST(GrappleSettingsTest, ReportsEveryProblemOnOneLineEach) {
-  std::vector<std::string> problems;
-  ParameterMap given = *readParameterFile(test::claimsFile(), problems);
-  given["slider_acceleration"].value = YAML::Node("guess");
-  given["bd_length_m"].value = YAML::Node("-0.29");
-  given["stale_after_s"].value = YAML::Node("0");
-  given["slider_jiont"].value = YAML::Node("x");
-  const auto settings = loadGrappleSettings(configDirectory(), given);
-  EXPECT_FALSE(settings.value);
-  ASSERT_EQ(settings.problems.size(), 4u);
-  for (const std::string& problem : settings.problems) EXPECT_EQ(problem.find('\n'), std::string::npos) << problem;
-}
-
-TEST(GrappleSettingsTest, AGrappleHasNoDefault) {
-  const auto settings = loadGrappleSettings(configDirectory(), ParameterMap{});
-  EXPECT_FALSE(settings.value);
-  EXPECT_EQ(settings.problems.size(), 24u) << "every key of the grapple is missing";
 }
 
 }  // namespace

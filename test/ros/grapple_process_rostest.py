@@ -50,17 +50,6 @@ class GrappleProcessTest(unittest.TestCase):
         self.assertEqual([line.split(':')[0] for line in lines],
                          ['bd_length_m', 'slider_acceleration', 'slider_opne_m'], lines)
 
-    def test_a_grapple_must_be_whole(self):
-        parameters = dict(claims(), log_enabled=False)
-        del parameters['ce_length_m']
-        lines = self.expect_refused('incomplete', parameters)
-        self.assertEqual([line.split(':')[0] for line in lines], ['ce_length_m'], lines)
-
-    def test_a_stroke_across_the_fold(self):
-        lines = self.expect_refused('across', dict(claims(), log_enabled=False, slider_open_m=0.8))
-        self.assertEqual(len(lines), 1, lines)
-        self.assertIn('fold at 0.733192393', lines[0])
-
     def test_an_impossible_log_directory_is_refused(self):
         lines = self.expect_refused('bad_log', dict(claims(), log_enabled=True, log_directory='/proc/no/such'))
         self.assertEqual(len(lines), 1, lines)

@@ -2,8 +2,6 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
 
-#include <map>
-
 #include "grapple/grapples.h"
 #include "ros/eventually.h"
 #include "ros/grapple_messages.h"
@@ -26,7 +24,6 @@ class GrappleNodeTest : public testing::Test {
     subscribers_ = {keep("jaw_edge/left", left_), keep("jaw_edge/right", right_),
                     keep("jaw_edge/right_twist", right_twist_), keep("jaw_edge/left_accel", left_accel_),
                     keep("mechanism", mechanism_)};
-    info_ = node_.subscribe<RunInfo>("grapple/run_info", 1, [this](const auto& m) { run_info_ = *m; });
     diagnostics_ = node_.subscribe<diagnostic_msgs::DiagnosticArray>("/diagnostics", 100, [this](const auto& m) {
       for (const auto& status : m->status) {
         if (status.name.find("slider") != std::string::npos) slider_status_ = status;
@@ -59,22 +56,14 @@ class GrappleNodeTest : public testing::Test {
                                        : ::testing::AssertionFailure() << "more than one jaw edge";
   }
 
-  std::string diagnostic(const std::string& key) const {
-    for (const auto& value : slider_status_.values) {
-      if (value.key == key) return value.value;
-    }
-    return {};
-  }
-
   ros::NodeHandle node_;
   ros::Publisher joints_;
   std::vector<ros::Subscriber> subscribers_;
-  ros::Subscriber info_, diagnostics_;
+  ros::Subscriber diagnostics_;
   std::vector<geometry_msgs::PointStamped> left_, right_;
   std::vector<geometry_msgs::TwistStamped> right_twist_;
   std::vector<geometry_msgs::AccelStamped> left_accel_;
   std::vector<sensor_msgs::JointState> mechanism_;
-  std::optional<RunInfo> run_info_;
   DiagnosticStatus slider_status_;
   ros::Time stamp_;
 };
@@ -109,35 +98,6 @@ TEST_F(GrappleNodeTest, GivesTheLibrarysValuesForEverySample) {
   }
 }
 
-TEST_F(GrappleNodeTest, RefusesEachBadSampleReportsItAndKeepsItsBranch) {
-  ASSERT_TRUE(goodSamplePasses(0.5));
-  ASSERT_TRUE(eventually([&] { return !diagnostic("refused: duplicate").empty(); }));
-  const double x = right_.back().point.x;
-  const ros::Time first = stamp_;
-  std::map<std::string, std::uint64_t> expected;
-  for (const test::BadSample& bad : test::badSamples(first, 0.5)) {
-    SCOPED_TRACE(bad.reason);
-    const std::string key = std::string("refused: ") + bad.reason;
-    if (expected.count(key) == 0) expected[key] = std::stoul(diagnostic(key));
-    ++expected[key];
-    ASSERT_TRUE(goodSamplePasses(0.5));
-    const std::size_t before = right_.size(), twists = right_twist_.size();
-    sensor_msgs::JointState message = bad.message;
-    message.header.stamp += stamp_ - first;
-    joints_.publish(message);
-    stamp_ += ros::Duration(0.01);
-    ASSERT_TRUE(goodSamplePasses(0.5));  // on the same topic, so the bad one has been seen
-    EXPECT_EQ(right_.size(), before + 1);
-    EXPECT_TRUE(eventually([&] { return right_twist_.size() == twists + 1; }));
-    EXPECT_NEAR(right_.back().point.x, x, 1e-13) << "the same branch";
-  }
-  for (const auto& [key, count] : expected)
-    EXPECT_TRUE(eventually([&] { return std::stoul(diagnostic(key)) == count; })) << key << ' ' << diagnostic(key);
-  EXPECT_NE(diagnostic("last refused: across fold").find("the fold at 0.7331923934967 m"), std::string::npos)
-      << diagnostic("last refused: across fold");
-  EXPECT_NE(diagnostic("upper limit [m]").find("0.733192393"), std::string::npos);
-}
-
 TEST_F(GrappleNodeTest, ReportsASliderThatIsStaleOrWithoutVelocity) {
   ASSERT_TRUE(goodSamplePasses(0.4));
   EXPECT_TRUE(eventually([&] {
@@ -158,13 +118,6 @@ TEST_F(GrappleNodeTest, ReportsASliderThatIsStaleOrWithoutVelocity) {
   })) << slider_status_.message;
   EXPECT_EQ(right_twist_.size(), twists);
   ASSERT_TRUE(mechanism_.back().velocity.empty());
-}
-
-TEST_F(GrappleNodeTest, ExplainsItselfInRunInfo) {
-  ASSERT_TRUE(eventually([&] { return run_info_.has_value(); }));
-  EXPECT_NE(run_info_->parameters_yaml.find("doe_angle_rad: -0.421"), std::string::npos);
-  EXPECT_NE(run_info_->parameters_yaml.find("slider_acceleration"), std::string::npos);
-  EXPECT_FALSE(run_info_->version.empty());
 }
 
 }  // namespace
