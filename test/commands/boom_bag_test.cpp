@@ -53,34 +53,5 @@ TEST_F(BoomBag, HoldsEveryOutputAsTheLiveFlowGivesItAndIsByteIdenticalOnASecondR
   EXPECT_TRUE(bytes == test::contentOf(path("again.bag")));
 }
 
-/// By hand: from the gauge's frame to D, on the hammer joint's angle between its two states.
-TEST_F(BoomBag, StatesTheLoadAtATfFrameWithItsLeverArm) {
-  const simulation::Session session = simulation::recordSession(machineOfBag(true));
-  InputBag(path("in.bag"), session);
-  ASSERT_EQ(process("out.bag", "boom_wrench_links: [strain_gauge]\n").exit_code, 0);
-  const auto hull = test::wrenchesIn(path("out.bag"), "/hammer_loads/hull_wrench");
-  const auto gauge = test::wrenchesIn(path("out.bag"), "/hammer_loads/boom_wrench/strain_gauge");
-  ASSERT_GT(gauge.size(), 2400U);
-  double largest = 0.0;
-  std::size_t next = 1;
-  for (const auto& [stamp, told] : gauge) {
-    while (next + 1 < session.joints.size() && session.joints[next].stamp < stamp) ++next;
-    const simulation::JointReading &before = session.joints[next - 1], &after = session.joints[next];
-    const double part = static_cast<double>(stamp - before.stamp) / static_cast<double>(after.stamp - before.stamp);
-    const double angle = before.position[3] + part * (after.position[3] - before.position[3]);
-    const double c = std::cos(angle), s = std::sin(angle);
-    const geometry_msgs::Wrench& w = hull.at(stamp);
-    const double force_x = c * w.force.x + s * w.force.z, force_z = -s * w.force.x + c * w.force.z;
-    const double x = kSide + 1.70 + 0.10 * c - 0.55 * s, z = -0.10 * s - 0.55 * c;
-    const double torque = w.torque.y + z * force_x - x * force_z;
-    // Slerp of half angles 0.02 rad apart and quaternions that TF rounds: 1e-12 of the load.
-    ASSERT_NEAR(told.force.x, force_x, 1e-8) << stamp;
-    ASSERT_NEAR(told.force.z, force_z, 1e-8) << stamp;
-    ASSERT_NEAR(told.torque.y, torque, 1e-8) << stamp;
-    largest = std::max(largest, std::abs(torque));
-  }
-  EXPECT_GT(largest, 1e4) << "some 8 kN at some 2.5 m";
-}
-
 }  // namespace
 }  // namespace hammer_loads

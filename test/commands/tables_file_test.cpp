@@ -1,13 +1,6 @@
 /// The file of process_bag --db: the same bytes each time, whole or not there, and nothing else is lost for it.
 
-#include <fcntl.h>
-#include <signal.h>
 #include <sys/mount.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <thread>
 
 #include "commands/bag_tables.h"
 
@@ -30,18 +23,6 @@ TEST_F(Tables, GivesEqualBytesForEqualInputWithAndWithoutABag) {
   ASSERT_EQ(third.exit_code, 0) << third.err;
   EXPECT_TRUE(contentOf(path("one.sqlite")) == contentOf(path("two.sqlite")));
   EXPECT_TRUE(contentOf(path("one.sqlite")) == contentOf(path("three.sqlite")));
-}
-
-TEST_F(Tables, ABagWithoutAnyWrenchLeavesNoFile) {
-  {
-    rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);
-    sensor_msgs::JointState m;
-    m.name = {"hammer_crank_joint"};
-    m.position = {std::nan("")};
-    for (int i = 1; i < 50; ++i) bag.write("/hammer/crank", m.header.stamp = ros::Time(1.0 + 0.01 * i), m);
-  }
-  expectRefused(tables(path("in.bag"), "out.sqlite"), {"no wrench", "not finite 49"});
-  EXPECT_EQ(names(), std::vector<std::string>{"in.bag"});
 }
 
 TEST_F(Tables, ForceReplacesTheirOwnKindAlone) {
@@ -87,32 +68,6 @@ TEST_F(Tables, AFullDiskIsOneLineAndLeavesNothing) {
   umount(path("disk").c_str());
   expectRefused(outcome, {path("disk/out.sqlite"), "cannot be written", "full"});
   EXPECT_TRUE(empty);
-}
-
-TEST_F(Tables, AnInterruptionLeavesNothing) {
-  {
-    rosbag::Bag bag(path("long.bag"), rosbag::bagmode::Write);
-    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
-      for (int i = 0; i < 40; ++i) bag.write(item.getTopic(), item.getTime() + ros::Duration(100.0 * i), item);
-    });
-  }
-  const pid_t child = fork();
-  if (child == 0) {
-    signal(SIGINT, SIG_DFL);
-    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-    execl(HAMMER_LOADS_PROCESS_BAG, "process_bag", "--no-bag", path("long.bag").c_str(), "--db",
-          path("out.sqlite").c_str(), nullptr);
-    _exit(127);
-  }
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (names().size() < 2 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  ASSERT_EQ(names().size(), 2U) << "the unfinished file";
-  kill(child, SIGINT);
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_EQ(names(), std::vector<std::string>{"long.bag"});
 }
 
 }  // namespace

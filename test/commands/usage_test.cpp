@@ -35,6 +35,26 @@ TEST(Usage, IsPrintedOnRequestAndNothingElseIsDone) {
   }
 }
 
+TEST(Usage, AnUnknownOptionIsOneLineAndExitCode2) {
+  for (const std::string& program : kCommands) {
+    const test::Outcome outcome = test::runCommand(program, "--no-such-option");
+    EXPECT_EQ(outcome.exit_code, 2) << program;
+    EXPECT_EQ(outcome.out, "") << program;
+    EXPECT_EQ(test::linesOf(outcome.err).size(), 1U) << outcome.err;
+  }
+}
+
+TEST(Usage, OutputThatCannotBeWrittenIsAnError) {
+  const test::TemporaryFile states(
+      "crank_angle_rad,crank_speed_rad_s,crank_accel_rad_s2,hull_pitch_rad,gravity_m_s2\n1,2,3,4,5\n", ".csv");
+  for (const char* program : {HAMMER_LOADS_TURN_TABLE, HAMMER_LOADS_EVALUATE}) {
+    const test::TemporaryFile err({}, ".err");
+    const std::string command = std::string(program) + " <" + states.path() + " >/dev/full 2>" + err.path();
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << program;
+    EXPECT_EQ(test::contentOf(err.path()), "stdout: cannot be written\n") << program;
+  }
+}
+
 /// The ledger's library, and SQLite with it, is loaded when a ledger is asked for (ros/ledger.test).
 TEST(HammerLoadsNode, LinksNeitherGrappleNorSqliteNorOpenssl) {
   const test::Outcome linked = test::runCommand("ldd", HAMMER_LOADS_HAMMER_LOADS_NODE);

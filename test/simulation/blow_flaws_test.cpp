@@ -102,17 +102,6 @@ TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
   EXPECT_GT(strike.linkage_loss, 0.0);
 }
 
-TEST(Blows, RestitutionThatKeepsTheSpeedIsThePlainBlow) {
-  const MachineSettings s = flawedRun();
-  const MovingLinks links(*Mechanism::make(s.hammer).value, s.level);
-  const Strike plain = links.strike(13.6);
-  const Strike drawn = links.strike(13.6, -plain.rocker_speed_after / plain.rocker_speed_before, 0.6);
-  EXPECT_NEAR(drawn.crank_speed_after, 13.6, 1e-13);
-  EXPECT_NEAR(drawn.energy, plain.energy, 1e-9);
-  EXPECT_NEAR(drawn.tool_impulse, plain.tool_impulse, 1e-9);
-  EXPECT_NEAR(drawn.linkage_loss, 0.0, 1e-9);
-}
-
 TEST(Blows, RestitutionIsDrawnBetweenItsBounds) {
   MachineSettings s = flawedRun();
   s.duration = 20.0;

@@ -111,18 +111,6 @@ TEST(MovingLinks, SlopeIsTheInertiasDerivative) {
   }
 }
 
-TEST(MovingLinks, LinkageWithoutCrankAndRodMassIsRocker) {
-  const MovingLinks rocker = make(workingMo100().hammer, Level::kRocker);
-  const MovingLinks linkage = make(workingMo100().hammer, Level::kLinkage);
-  for (const TurnAngle angle : angles()) {
-    const Load a = rocker.load(rocker.at(angle), 30.0, 200.0, kTilted);
-    const Load b = linkage.load(linkage.at(angle), 30.0, 200.0, kTilted);
-    EXPECT_EQ(a.force_x, b.force_x);
-    EXPECT_EQ(a.force_z, b.force_z);
-    EXPECT_EQ(a.torque_y, b.torque_y);
-  }
-}
-
 /// Lagrange's equation of the shaft must follow from Newton-Euler: the drive torque that the hull's load implies by
 /// power balance, for a hull at rest, is d/dt(kinetic) - weight power.
 TEST(MovingLinks, ShaftEquationFollowsFromEnergy) {

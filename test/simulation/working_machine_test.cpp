@@ -28,19 +28,6 @@ void expectBalanced(const EnergyAccount& e) {
   EXPECT_GE(e.valves, 0.0);
 }
 
-TEST(WorkingMachine, SupplyWorkBecomesBlowsAndLosses) {
-  WorkingMachine machine(shortRun());
-  for (int i = 1; i <= 60; ++i) {
-    machine.advanceTo(0.1 * i);
-    expectBalanced(machine.energy());
-  }
-  double blows = 0.0;
-  for (const BlowTruth& blow : machine.takeBlows()) blows += blow.strike.energy;
-  EXPECT_NEAR(machine.energy().blows, blows, 1e-6);
-  EXPECT_GT(blows, 10e3);
-  EXPECT_GT(machine.energy().stops, 0.1);  // fell back onto the tool at first
-}
-
 TEST(WorkingMachine, WorksLikeTheMachineInTheField) {
   WorkingMachine machine(workingMo100());
   machine.advanceTo(18.0);
@@ -79,22 +66,6 @@ TEST(WorkingMachine, FallsBackStartsWorksAndStops) {
   machine.advanceTo(20.0);
   EXPECT_LT(std::abs(machine.truth().speed), 0.05);
   expectBalanced(machine.energy());
-}
-
-TEST(WorkingMachine, HalfTheStepGivesTheSame) {
-  MachineSettings fine = shortRun();
-  fine.step *= 0.5;
-  WorkingMachine coarse_machine(shortRun()), fine_machine(fine);
-  coarse_machine.advanceTo(4.5);
-  fine_machine.advanceTo(4.5);
-  const std::vector<BlowTruth> a = coarse_machine.takeBlows(), b = fine_machine.takeBlows();
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_NEAR(a[i].time, b[i].time, 1e-7);
-    EXPECT_NEAR(a[i].crank_speed, b[i].crank_speed, 1e-6);
-    EXPECT_NEAR(a[i].turn_peak_force_z, b[i].turn_peak_force_z, 0.01);
-    EXPECT_NEAR(a[i].last_lobe_impulse_z, b[i].last_lobe_impulse_z, 1e-4);
-  }
 }
 
 /// Largest difference of the force, over its peak.
@@ -155,21 +126,6 @@ TEST(WorkingMachine, AccelerationIsTheSpeedsDerivative) {
   }
 }
 
-TEST(WorkingMachine, BlowIsWhereTheAngleWraps) {
-  WorkingMachine machine(shortRun());
-  machine.advanceTo(4.0);
-  const std::vector<BlowTruth> blows = machine.takeBlows();
-  ASSERT_GT(blows.size(), 8U);
-  WorkingMachine again(shortRun());
-  for (const BlowTruth& blow : blows) {
-    again.advanceTo(blow.time - 1e-6);
-    EXPECT_NEAR(again.truth().angle, 2.0 * kPi - 1e-6 * blow.crank_speed, 1e-8);
-    again.advanceTo(blow.time + 1e-6);
-    EXPECT_NEAR(again.truth().angle, 1e-6 * blow.crank_speed, 1e-8);
-    EXPECT_NEAR(again.truth().speed, blow.crank_speed, 1e-3);
-  }
-}
-
 /// The rocker's centre of mass has a low point at the far end of its swing: without drive and friction the crank
 /// swings about it for ever.
 TEST(WorkingMachine, SwingsByWeightWithoutLoss) {
@@ -196,20 +152,6 @@ TEST(WorkingMachine, SwingsByWeightWithoutLoss) {
   EXPECT_LT(greatest, 2.0 * kPi);
   EXPECT_GT(reversals, 5);
   EXPECT_NEAR(machine.energy().kinetic, machine.energy().weight, 1e-9);
-}
-
-TEST(WorkingMachine, HeavyLinksBalanceToo) {
-  MachineSettings s = shortRun();
-  s.level = Level::kLinkage;
-  s.hammer.rod_mass = 9.0;
-  s.hammer.rod_com_along = 0.07;
-  s.hammer.rod_inertia_about_com = 0.03;
-  s.hammer.crank_mass = 6.0;
-  s.hammer.crank_com_across = 0.004;
-  WorkingMachine machine(s);
-  machine.advanceTo(6.0);
-  expectBalanced(machine.energy());
-  EXPECT_GT(machine.takeBlows().size(), 12U);
 }
 
 TEST(WorkingMachine, ImpossibleLinkageIsRefused) {
