@@ -8,8 +8,8 @@
 
 #include "boom/booms.h"
 #include "commands/bag_files.h"
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/settings/load.h"
+#include "support/known_zero.h"
 
 namespace hammer_loads {
 namespace {
@@ -95,22 +95,6 @@ TEST_F(BagWarnings, TwoPublishersOnOneTopicAreNamed) {
     test::writeFrom(bag, node, item.getTopic(), item.getTime(), *item.instantiate<sensor_msgs::JointState>());
   });
   expectWarned(warnings(in), {"warning: /hammer/crank: several publishers: /driver, /old_driver"});
-}
-
-TEST_F(BagWarnings, DegreesAreNamed) {
-  const auto scaled = [&](const std::string& name, const std::string& topic) {
-    return session(name, [&](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
-      sensor_msgs::JointState m = *item.instantiate<sensor_msgs::JointState>();
-      for (double& angle : m.position) angle *= item.getTopic() == topic ? 57.29577951308232 : 1.0;
-      bag.write(item.getTopic(), item.getTime(), m);
-    });
-  };
-  const test::Outcome boom = run(scaled("boom.bag", "/joint_states") + " " + path("boom_out.bag"));
-  EXPECT_EQ(boom.exit_code, 1) << "everything is withheld";
-  EXPECT_NE(boom.err.find("in degrees, must be in radians"), std::string::npos) << boom.err;
-  const test::Outcome crank = run(scaled("crank.bag", "/hammer/crank") + " " + path("crank_out.bag"));
-  EXPECT_NE(crank.err.find(crank.exit_code == 0 ? "in degrees, must be in radians" : "no wrench"), std::string::npos)
-      << crank.err;
 }
 
 /// Half of the day is good: its loads come out as the node had them, and neither ledger nor tables take the day.

@@ -6,8 +6,8 @@
 
 #include "commands/bag_files.h"
 #include "commands/recording_sink.h"
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/ros/stamp.h"
+#include "support/known_zero.h"
 #include "support/session_player.h"
 
 namespace hammer_loads::test {

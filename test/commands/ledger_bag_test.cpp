@@ -1,8 +1,8 @@
 /// process_bag --ledger: what it adds, what it refuses, what it leaves as it was.
 #include "commands/bag_files.h"
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/life/ledger_reader.h"
 #include "hammer_loads/settings/load.h"
+#include "support/known_zero.h"
 
 namespace hammer_loads {
 namespace {

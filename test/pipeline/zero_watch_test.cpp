@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "pipeline/drawn_machine.h"
+#include "support/known_zero.h"
 
 namespace hammer_loads {
 namespace {

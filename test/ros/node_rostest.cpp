@@ -14,11 +14,11 @@
 #include <map>
 #include <mutex>
 
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "ros/eventually.h"
+#include "support/known_zero.h"
 
 namespace hammer_loads {
 namespace {

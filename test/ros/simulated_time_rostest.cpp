@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <map>
 
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/stamp.h"
 #include "ros/eventually.h"
+#include "support/known_zero.h"
 
 namespace hammer_loads {
 namespace {

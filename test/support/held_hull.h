@@ -1,8 +1,8 @@
 /// Settings for simulated machines whose hull is held and whose encoder has a known zero.
 #pragma once
 
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/settings/load.h"
+#include "support/known_zero.h"
 
 namespace hammer_loads::test {
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "boom/booms.h"
-#include "hammer_loads/bench/known_zero.h"
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "settings/temporary_file.h"
 #include "support/constants.h"
 #include "support/imu_on_hull.h"
+#include "support/known_zero.h"
 
 namespace hammer_loads::test {
 

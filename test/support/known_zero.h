@@ -1,4 +1,4 @@
-/// Zero of the crank's sensor as `calibrate` finds it, for tables and tests without the first turns' search.
+/// Zero of the crank's sensor as `calibrate` finds it, for tests without the first turns' search.
 #pragma once
 
 namespace hammer_loads {
