@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
-#include "support/counting_new.h"
 
 namespace hammer_loads {
 namespace {
@@ -151,21 +150,6 @@ TEST_F(Messages, HoldTheLoadAtALinkOfTheChain) {
   EXPECT_EQ(arm.wrench.force.x, expected.force.x());
   EXPECT_EQ(arm.wrench.force.z, expected.force.z());
   EXPECT_EQ(arm.wrench.torque.y, expected.torque.y());
-}
-
-TEST_F(Messages, AllocateNothing) {
-  sample(kStamp);
-  follower_.turnEnded(pulse(), 300.0);
-  const std::size_t before = test::allocations;
-  geometry_msgs::WrenchStamped wrench;
-  double sum = 0.0;
-  for (int i = 1; i < 1000; ++i) {
-    sample(kStamp + i * 1000000);
-    fillWrench(kStamp, follower_.wrenchAtLink(2, kLoad), wrench);
-    sum += jointLoads().joint[1].total_torque + vibration().reduced_mass + wrench.wrench.torque.y;
-  }
-  EXPECT_EQ(test::allocations, before);
-  EXPECT_TRUE(std::isfinite(sum));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The ledger of live nodes: the numbers of their bags; several writers; its trouble is not the node's."""
+"""The ledger of live nodes: the numbers of their bags; its trouble is not the node's."""
 import glob
 import os
 import shutil
@@ -110,26 +110,6 @@ class LedgerTest(unittest.TestCase):
         self.assertEqual(contents(again), live)
         self.assertIn('is in it already, not counted again', self.count_bag_of('counted', self.ledger))
         self.assertEqual(contents(self.ledger), live)
-
-    def test_two_nodes_count_into_one_ledger_and_lose_nothing(self):
-        first = self.node('first', self.ledger, log=True)
-        self.feed('first', 0.0, 3.0)
-        second = self.node('second', self.ledger, log=True)
-        counts = self.feed('second', 5.0, 9.0)
-        self.feed('first', 3.0, 5.0)
-        for node in first, second:
-            code, _, err = node.end()
-            self.assertEqual(code, 0, err)
-        ledger = contents(self.ledger)
-        with sqlite3.connect('file:%s?mode=ro' % self.ledger, uri=True) as database:
-            turns = database.execute('SELECT sum(turns) FROM days GROUP BY run ORDER BY run').fetchall()
-        self.assertEqual(len(turns), 2, 'runs stay apart')
-        self.assertGreater(turns[0][0], 10)
-        self.assertGreaterEqual(turns[1][0], counts[-1].turns)
-        one_after_another = os.path.join(self.directory, 'again.sqlite')
-        for name in 'first', 'second':
-            self.count_bag_of(name, one_after_another)
-        self.assertEqual(contents(one_after_another), ledger)
 
     def test_a_ledger_that_cannot_be_costs_the_ledger_alone(self):
         os.mkdir(self.ledger)

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <hammer_loads/Blow.h>
 #include <hammer_loads/Pulse.h>
-#include <hammer_loads/RunInfo.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
@@ -43,7 +42,6 @@ class NodeTest : public testing::Test {
                                                             [this](const auto& m) { wrenches_.push_back(*m); });
     blow_ = node_.subscribe<Blow>("hammer_loads/blow", 100, [this](const auto& m) { blows_.push_back(*m); });
     pulse_ = node_.subscribe<Pulse>("hammer_loads/pulse", 100, [this](const auto& m) { pulses_.push_back(*m); });
-    info_ = node_.subscribe<RunInfo>("hammer_loads/run_info", 1, [this](const auto& m) { run_info_ = *m; });
     diagnostics_ = node_.subscribe<diagnostic_msgs::DiagnosticArray>("/diagnostics", 100, [this](const auto& m) {
       for (const auto& status : m->status) statuses_[status.name] = status;
     });
@@ -107,11 +105,10 @@ class NodeTest : public testing::Test {
 
   ros::NodeHandle node_;
   ros::Publisher crank_, joints_;
-  ros::Subscriber wrench_, blow_, pulse_, info_, diagnostics_;
+  ros::Subscriber wrench_, blow_, pulse_, diagnostics_;
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
   std::vector<Blow> blows_;
   std::vector<Pulse> pulses_;
-  std::optional<RunInfo> run_info_;
   std::map<std::string, diagnostic_msgs::DiagnosticStatus> statuses_;
   ros::Time start_;
   double time_{};
@@ -208,56 +205,6 @@ TEST_F(NodeTest, ReportsAStaleCrankAndGoesOnWhenItIsBack) {
   EXPECT_EQ(wrenches_.size(), before + 20);
   statuses_.clear();
   EXPECT_TRUE(eventually([&] { return !statuses_.empty(); }));
-}
-
-TEST_F(NodeTest, ReportsAnAngleThatStandsStillWhileTheSpeedGoesOn) {
-  settle();
-  ASSERT_FALSE(crankError("stands still"));
-  const std::size_t before = wrenches_.size();
-  const double angle = 5.0 * (time_ - 1e-3);
-  EXPECT_TRUE(eventually([&] {
-    crank_.publish(crankMessage(start_ + ros::Duration(time_ += 2e-3), angle, 30.0));
-    return crankError("the angle stands still while the speed goes on");
-  }));
-  EXPECT_EQ(wrenches_.size(), before);
-  time_ += 10.0;
-  settle();
-  EXPECT_TRUE(eventually([this] { return !crankError("stands still"); }));
-}
-
-TEST_F(NodeTest, ReportsACrankThatSeemsToBeInDegrees) {
-  settle();
-  ASSERT_FALSE(crankError("degrees"));
-  constexpr double kDegrees = 57.29577951308232;
-  EXPECT_TRUE(eventually([&] {
-    time_ += 1e-3;
-    crank_.publish(crankMessage(start_ + ros::Duration(time_), kDegrees * 30.0 * time_, kDegrees * 30.0));
-    return crankError("degrees");
-  }));
-  time_ += 10.0;
-  EXPECT_TRUE(eventually([this] {
-    publishGoodSamples(1);
-    return !crankError("degrees");
-  }));
-}
-
-TEST_F(NodeTest, TakesAnglesWithoutSpeeds) {
-  ros::Time stamp;
-  for (int i = 0; i < 200; ++i) {
-    stamp = start_ + ros::Duration(1e-3 * i);
-    sensor_msgs::JointState m = crankMessage(stamp, 0.5 + 0.02 * i, 0.0);
-    m.velocity.clear();
-    crank_.publish(m);
-  }
-  EXPECT_TRUE(eventually([&] { return !wrenches_.empty() && wrenches_.back().header.stamp == stamp; }));
-  EXPECT_GT(wrenches_.size(), 150u);
-}
-
-TEST_F(NodeTest, ExplainsItselfInRunInfo) {
-  ASSERT_TRUE(eventually([&] { return run_info_.has_value(); }));
-  EXPECT_NE(run_info_->parameters_yaml.find("rocker_mass_kg"), std::string::npos);
-  EXPECT_FALSE(run_info_->version.empty());
-  EXPECT_FALSE(run_info_->revision.empty());
 }
 
 }  // namespace
