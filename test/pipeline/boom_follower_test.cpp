@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "hammer_loads/pipeline/boom_warnings.h"
 #include "pipeline/standing_boom.h"
-#include "support/counting_new.h"
-#include "support/wall_clock.h"
 
 namespace hammer_loads::test {
 namespace {
@@ -199,70 +196,6 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanHoldDownForceAtTheTool) {
   bare.sample({});
   bare.follower.turnEnded(std::nullopt, 3000.0);
   EXPECT_EQ(bare.follower.firstToGive(), "rear edge");
-}
-
-/// A kilohertz session of a moving boom, 50 joint states and 5 turns a second, wrenches at four links.
-class BoomSession {
- public:
-  BoomSession() : follower_(shippedBoom(), modelled(BoomModel::kAuto), kStrikingDistance) {
-    step_.count = 1;
-    step_.pieces[0].duration = 1e-3;
-  }
-  void sample() {
-    const double time = 1e-3 * static_cast<double>(count_);
-    if (count_ % 20 == 0) {
-      for (std::size_t j = 0; j < 4; ++j) {
-        const double rate = 0.4 + 0.1 * static_cast<double>(j), angle = rate * time + static_cast<double>(j);
-        position_[j] = kWorking[j] + 0.1 * std::sin(angle);
-        velocity_[j] = 0.1 * rate * std::cos(angle);
-      }
-      follower_.jointStates(count_ * kMs, kFour, position_, velocity_);
-    }
-    const double phase = std::fmod(time * 5.0, 1.0);
-    const double pulse = phase > 0.9 ? 8e3 * std::sin(31.4 * (phase - 0.9)) : 0.0;
-    SmoothPiece& piece = step_.pieces[0];
-    piece.from = piece.to;
-    piece.to = {0.3 * pulse, pulse, -0.1 * pulse};
-    piece.mean = {0.5 * (piece.from.force_x + piece.to.force_x), 0.5 * (piece.from.force_z + piece.to.force_z),
-                  0.5 * (piece.from.torque_y + piece.to.torque_y)};
-    if (count_ > 0 && count_ % 200 == 0) follower_.turnEnded(pulseOf(0.018), 300.0);
-    const BoomState& state = follower_.sample({count_ * kMs, piece.to}, step_);
-    for (int link = 1; link < 5; ++link) sum_ += follower_.wrenchAtLink(link, piece.to).torque.y();
-    sum_ += state.loads.total.sum() + state.loads.cylinder[0].force + state.tip.acceleration[2] + state.reduced.mass;
-    ++count_;
-  }
-  double sum() const { return sum_; }
-
- private:
-  BoomFollower follower_;
-  WrenchHistory step_;
-  std::vector<double> position_ = std::vector<double>(4), velocity_ = std::vector<double>(4);
-  std::int64_t count_{};
-  double sum_{};
-};
-
-TEST(BoomFollower, AllocatesNothing) {
-  BoomSession session;
-  session.sample();
-  const std::size_t before = allocations;
-  for (int i = 0; i < 5000; ++i) session.sample();
-  EXPECT_EQ(allocations, before);
-  EXPECT_TRUE(std::isfinite(session.sum()));
-}
-
-TEST(BoomFollower, TakesAtMostThreeMicrosecondsASample) {
-  BoomSession session;
-  double least = 1e9;
-  constexpr int kBatches = 100, kSamples = 200;  // a turn
-  for (int batch = 0; batch < kBatches; ++batch) {
-    const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < kSamples; ++i) session.sample();
-    const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - start;
-    least = std::min(least, spent.count() / kSamples);
-  }
-  RecordProperty("least_us", format("%.2f", least));
-  EXPECT_TRUE(std::isfinite(session.sum()));
-  expectTimeWithin(least, 3.0, "[us] a sample of the quickest batch");
 }
 
 }  // namespace

@@ -75,40 +75,6 @@ TEST(Stamps, AreRefusedBeyondEveryClockAndTheLastGoodOneIsNot) {
   EXPECT_EQ(pipeline.counts().refusedFor(Refusal::kBadStamp), 3U);
 }
 
-struct Units {
-  double angle, speed;
-  bool has_speed;
-};
-
-class CrankInDegrees : public testing::TestWithParam<Units> {};
-
-TEST_P(CrankInDegrees, IsWithheldNamedAndGivesNothingAbsurdBefore) {
-  const Units units = GetParam();
-  const Settings settings = settingsWith("boom: none\n", false);
-  Pipeline pipeline = pipelineOf(settings);
-  double largest = 0.0;
-  std::uint64_t after = 0;
-  for (const auto& r : session().crank) {
-    const std::optional<double> speed = units.has_speed ? std::make_optional(*r.speed * units.speed) : std::nullopt;
-    const SampleResult& result = pipeline.crankSample(r.stamp, {r.angle * units.angle, speed});
-    if (result.refusal) continue;
-    largest = std::max(largest, std::hypot(result.wrench.force_x, result.wrench.force_z));
-    after += (pipeline.crank().unit() == CrankUnit::kDegrees);
-  }
-  EXPECT_EQ(after, 0U);
-  EXPECT_LE(largest, 0.5 * 40558.1) << "half the peak of the nameplate's turn at constant speed";
-  const auto warnings = warningsOf(pipeline);
-  ASSERT_FALSE(warnings.empty());
-  EXPECT_STREQ(warnings.front().key, "degrees");
-  EXPECT_NE(warnings.front().text.find("must be in radians"), std::string::npos);
-}
-
-INSTANTIATE_TEST_SUITE_P(AngleSpeedOrBoth, CrankInDegrees,
-                         testing::Values(Units{test::kDegreesPerRadian, 1.0, true},
-                                         Units{1.0, test::kDegreesPerRadian, true},
-                                         Units{test::kDegreesPerRadian, test::kDegreesPerRadian, true},
-                                         Units{test::kDegreesPerRadian, 1.0, false}));
-
 TEST(BoomInDegrees, IsWithheldUntilItIsOver) {
   const Settings settings = settingsWith("boom: auto\n");
   const auto each = [](Pipeline& pipeline, const auto& r, auto& wrenches) {
@@ -125,18 +91,6 @@ TEST(BoomInDegrees, IsWithheldUntilItIsOver) {
   EXPECT_STREQ(warningsOf(pipeline).front().key, "degrees");
   pipeline.boomJoints(stamp + 1, kJoints, {0.2, -0.35, 1.2, -0.85}, {});
   EXPECT_EQ(sample(), std::nullopt);
-}
-
-TEST(Backward, IsNamed) {
-  const Settings settings = settingsWith("boom: none\n", false);
-  for (const double sign : {1.0, -1.0}) {
-    Pipeline pipeline = pipelineOf(settings);
-    for (const auto& r : session().crank) pipeline.crankSample(r.stamp, {sign * r.angle, sign * *r.speed});
-    const auto warnings = warningsOf(pipeline);
-    const bool named = std::any_of(warnings.begin(), warnings.end(),
-                                   [](const Warning& w) { return std::string(w.key) == "backward"; });
-    EXPECT_EQ(named, sign < 0.0);
-  }
 }
 
 TEST(Missing, CrankJointPitchJointsAndImuAreNamed) {

@@ -43,7 +43,7 @@ std::string namesOf(const MachineSettings& machine, const simulation::Session& s
 }
 
 TEST(FalseNames, SealsThatRubAreNoLateStampNoRockAndNoExchange) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
     const MachineSettings machine = rubbingMachine(seed);
     const simulation::Session session = simulation::recordSession(machine);
     const bool on_rock = machine.on_boom.rock.stiffness > 0.0;

@@ -6,7 +6,6 @@
 
 #include "hammer_loads/hammer/hull_model.h"
 #include "support/constants.h"
-#include "support/counting_new.h"
 #include "support/free_run.h"
 #include "support/imu_on_hull.h"
 #include "support/mo100.h"
@@ -121,16 +120,6 @@ TEST(HullImu, FollowsTheLineBetweenReadingsAndOneIntervalBeyond) {
   EXPECT_NEAR(imu.at(9 * kMs)->gravity.z, -14.0, 1e-13);
   EXPECT_NEAR(imu.at(3 * kMs)->rate, 0.4, 1e-14);
   EXPECT_NEAR(imu.at(2 * kMs)->acceleration, 100.0, 1e-10);
-}
-
-TEST(HullImu, AllocatesNothing) {
-  HullImu imu(test::imuMounting());
-  imu.update(0, kUpright);
-  const std::size_t before = test::allocations;
-  imu.update(kMs, kUpright);
-  const auto motion = imu.at(kMs);
-  EXPECT_EQ(test::allocations, before);
-  EXPECT_TRUE(motion);
 }
 
 /// Force error over the peak: largest and root mean square.

@@ -8,7 +8,6 @@
 #include "boom/booms.h"
 #include "hammer_loads/util/constants.h"
 #include "support/constants.h"
-#include "support/counting_new.h"
 
 namespace hammer_loads {
 namespace {
@@ -205,17 +204,6 @@ TEST_F(Joints, ACrankSampleMayLieFarBehind) {
   for (int i = 0; i < 1000; ++i) buffer_.update(i * kMs, kFour, {0.0, 0.0, 1.0 + 1e-3 * i, 0.0}, {});
   EXPECT_NEAR(at(940 * kMs + kMs / 2).position[2], 1.9405, 1e-12);
   EXPECT_NEAR(at(900 * kMs).position[2], 1.936, 1e-12);  // older than all that is kept: the oldest
-}
-
-TEST_F(Joints, AllocateNothing) {
-  const Values position{0.0, 0.0, 1.0, 0.0}, velocity{0.0, 0.1, 0.0, 0.0};
-  JointMotion motion;
-  const std::size_t before = test::allocations;
-  for (int i = 0; i < 1000; ++i) {
-    buffer_.update(i * kMs, kFour, position, velocity);
-    buffer_.at(i * kMs, motion);
-  }
-  EXPECT_EQ(test::allocations, before);
 }
 
 }  // namespace

@@ -34,6 +34,8 @@ TEST(OnBoomSession, TheRightOilNeedsNoMoreSensors) {
   EXPECT_LT(model.worstTorque(), 0.015);
   EXPECT_LT(model.worstSection(), 0.006);
   expectAsTheTruth(errorsOf("right oil, hull by imu", session, "hull_motion: imu\n", {true, false}), "imu");
+  const BoomErrors fixed = errorsOf("hull taken as fixed", session, "hull_motion: fixed\n", {});
+  EXPECT_GT(fixed.force_z.worstOfLargest(), 0.1) << "what the hull's motion adds";
 }
 
 /// Without a boom file the IMU alone knows that the hull leaves the rock.

@@ -6,7 +6,6 @@
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/constants.h"
-#include "support/counting_new.h"
 #include "support/mo100.h"
 #include "support/session_bounds.h"
 
@@ -89,28 +88,6 @@ TEST(Pipeline, HasNoErrorOfTenPercentAfterADropOut) {
       EXPECT_LT(run.counts.refused[static_cast<std::size_t>(Refusal::kUnsettled)], 50u) << "output must come back";
     }
   }
-}
-
-TEST(Pipeline, AllocatesNothingPerSample) {
-  const MachineSettings machine = machineWithDropOut(1, 1000.0);
-  const Session session = simulation::recordSession(machine);
-  Pipeline pipeline(test::mechanismOf(machine.hammer), shippedSettings().pipeline);
-  std::vector<double> position(1), velocity(1);
-  const std::vector<std::string> boom{"boom_joint", "arm_joint", "hammer_joint"};
-  const std::vector<double> angles{0.1, 0.2, -0.3};
-  const std::size_t before_control = test::allocations;
-  void* volatile block = std::malloc(1);  // volatile: else the compiler may leave both away
-  std::free(block);
-  ASSERT_GT(test::allocations, before_control) << "the counter must see an allocation";
-  const std::size_t before = test::allocations;
-  for (const auto& reading : session.crank) {
-    position[0] = reading.angle;
-    velocity[0] = *reading.speed;
-    pipeline.boomJoints(reading.stamp, boom, angles, {});
-    pipeline.crankJoint(reading.stamp, kCrank, position, velocity);
-  }
-  EXPECT_EQ(test::allocations, before);
-  EXPECT_GT(pipeline.counts().accepted, 11000u);
 }
 
 TEST(Pipeline, CountsEveryRefusalByItsReason) {

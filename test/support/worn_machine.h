@@ -155,12 +155,12 @@ class WornMachine {
   }
 
   State rate(const State& y, Forces* forces) const {
-    constexpr double kGravity = 9.81, kMotor = 1.6e-5, kFlow = 3.6e-4, kOil = 1.3e-11, kLeak = 2e-12;
+    constexpr double kG = 9.81, kMotor = 1.6e-5, kFlow = 3.6e-4, kOil = 1.3e-11, kLeak = 2e-12;
     const double a = p_.rocker_com_angle, l2 = p_.lengths.rod;
     const C crank = std::polar(1.0, y[kPhi]), rocker = std::polar(1.0, y[kPsi]), rod = std::polar(1.0, y[kBeta]);
     const C pin_b = p_.lengths.crank * crank, pin_c = p_.lengths.pivot_distance + p_.lengths.rocker * rocker;
     const C b_speed = kI * y[kPhiSpeed] * pin_b, c_speed = kI * y[kPsiSpeed] * p_.lengths.rocker * rocker;
-    const C gravity = kGravity * C(std::sin(a), -std::cos(a));  // -z of the hull
+    const C gravity = kG * C(std::sin(a), -std::cos(a));  // -z of the hull
     // A bowed rod is shorter the further it bends.
     const double by_bow = kPi * kPi / (2.0 * l2), bend = y[kBend];
     const double shorter = by_bow * (s_.bow * bend + 0.5 * bend * bend), slope = by_bow * (s_.bow + bend);
