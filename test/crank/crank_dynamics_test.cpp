@@ -69,18 +69,6 @@ TEST_F(CrankDynamics, PassesAFewTimesOnlyWhereBothSidesPushItBack) {
   EXPECT_EQ(most, 8) << "what there is to bound";
 }
 
-TEST_F(CrankDynamics, EnergyGrowsByTheWorkOfTorqueAndWeight) {
-  rocker_.setHullMotion(kLeaning);
-  const auto height = [&](const ShaftState& s) {  // potential of the weight: minus m g . r
-    const Motion m = motion(mechanism_.linkage(), s.position.angle);
-    const double ls = mechanism_.parameters().rocker_com_distance;
-    return -mechanism_.parameters().rocker_mass * (-kLeaning.x * ls * m.cos_psi + kLeaning.z * ls * m.sin_psi);
-  };
-  const ShaftState from = stateAt(0.3, 20.0, 90.0), to = advanced(rocker_, 0.12, from);
-  const double work = 90.0 * difference(to.position, from.position) - (height(to) - height(from));
-  EXPECT_NEAR((kineticEnergy(rocker_, to) - kineticEnergy(rocker_, from)) / work, 1.0, 1e-7);
-}
-
 /// Independent: w' = (tau - dT/dphi...)/..., with the inertia's slope by differences, integrated by boost.odeint.
 TEST_F(CrankDynamics, AgreesWithAnotherIntegratorOfTheEquationOfMotion) {
   using Phase = std::vector<double>;

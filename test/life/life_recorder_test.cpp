@@ -7,7 +7,6 @@
 
 #include "hammer_loads/util/constants.h"
 #include "life/astm_reference.h"
-#include "support/counting_new.h"
 
 namespace hammer_loads::life {
 namespace {
@@ -164,20 +163,6 @@ TEST(LifeRecorder, PiecesOfOneRunGiveItsCount) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(textOf(sum->counts[i]), textOf(all.counts[i]));
   EXPECT_EQ(sum->duration, all.duration);
   EXPECT_EQ(sum->turns, all.turns);
-}
-
-TEST(LifeRecorder, TakesNoMemoryWhileItCounts) {
-  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
-  std::mt19937 random(3);
-  std::normal_distribution<double> load(0.0, 300.0);
-  const std::size_t before = ::hammer_loads::test::allocations;
-  for (int i = 0; i < 10000; ++i) {
-    const double values[] = {load(random), load(random), load(random)};
-    recorder.sample(i, values, values);
-    recorder.gap();
-    recorder.turn();
-  }
-  EXPECT_EQ(::hammer_loads::test::allocations, before);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "hammer_loads/util/constants.h"
-#include "support/counting_new.h"
 
 namespace hammer_loads::life {
 namespace {
@@ -84,18 +83,6 @@ TEST(TurnLoads, ARestartForgetsTheTurnBegun) {
   EXPECT_FALSE(turn.whole);
   EXPECT_EQ(turn.maximum[0], 1.0);
   EXPECT_EQ(turn.start, 0);
-}
-
-TEST(TurnLoads, TakesNoMemoryAfterItsStart) {
-  TurnLoadsRecorder recorder(40);
-  const std::vector<double> values(40, 1.0);
-  const std::size_t before = ::hammer_loads::test::allocations;
-  for (int i = 0; i < 1000; ++i) {
-    recorder.add(i, values.data());
-    if (i % 10 == 9) recorder.endTurn(i);
-  }
-  recorder.restart();
-  EXPECT_EQ(::hammer_loads::test::allocations, before);
 }
 
 }  // namespace

@@ -172,27 +172,6 @@ TEST_F(LogTest, DoesNotRepeatAForgottenMessage) {
   EXPECT_EQ(infos, (std::vector<std::string>{"old", "new", "new"}));
 }
 
-TEST_F(LogTest, GivesEqualContentsForEqualInputs) {
-  for (const char* prefix : {"one", "two"}) {
-    settings_.prefix = prefix;
-    settings_.split_size = prefix[0] == 'o' ? 64'000 : 100'000'000;
-    BagLog log(settings_);
-    ASSERT_TRUE(log.start().empty());
-    for (std::size_t i = 0; i < 5000; ++i) {
-      log.write("/a", at(i), wrench(i));
-      if (i % 3 == 0) log.write("/b", at(i), wrench(2 * i));
-      if (i % 3 == 0) log.write("/b", at(i), wrench(2 * i + 1));  // two at one time
-    }
-  }
-  std::vector<Entry> one, two;
-  for (const std::string& file : files()) {
-    auto& entries = file.find("/one_") != std::string::npos ? one : two;
-    for (const Entry& entry : readBag(file)) entries.push_back(entry);
-  }
-  EXPECT_EQ(two.size(), 5000u + 2 * 1667u);
-  for (const char* topic : {"/a", "/b"}) EXPECT_EQ(onTopic(one, topic), onTopic(two, topic));
-}
-
 /// rosbag loads a plugin for every bag, which two threads must not do at once.
 TEST_F(LogTest, ManyLogsLiveInOneProcess) {
   constexpr std::size_t kSplits = 20;
