@@ -50,6 +50,7 @@ class Probe {
 
   bool connected() {
     ros::param::set("nodelet_loads/log_enabled", false);
+    ros::param::set("nodelet_loads/crank_zero_std_rad", 0.003);  // a known zero: nothing is withheld for it
     const std::string loads = ros::names::resolve("nodelet_loads");
     const ros::M_string remappings{{ros::names::resolve("crank"), ros::names::resolve("crank_of_nodelet")}};
     if (!loader_.load(loads, "hammer_loads/HammerLoadsNodelet", remappings, {})) return false;
@@ -111,13 +112,14 @@ class Probe {
     return condition();
   }
 
-  /// A crank at 5 rad/s; its stamp is the number of the sample.
+  /// A crank at 4 rad/s from 1 rad behind the blow on: no sample is withheld, neither beside a blow nor at the start.
+  /// Its stamp is the number of the sample.
   void send(Path& path) {
     const auto message = boost::make_shared<sensor_msgs::JointState>();
     message->name = {"hammer_crank_joint"};
     message->header.stamp.fromNSec(1000000000000 + static_cast<std::uint64_t>(1e9 / rate_) * ++path.number);
-    message->position = {5.0 / rate_ * static_cast<double>(path.number)};
-    message->velocity = {5.0};
+    message->position = {1.0 + 4.0 / rate_ * static_cast<double>(path.number)};
+    message->velocity = {4.0};
     path.sent = message->header.stamp;
     path.publisher.publish(message);
   }
