@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "hammer_loads/util/median.h"
+
 namespace hammer_loads::calibration {
 namespace {
 
@@ -44,10 +46,7 @@ std::optional<LocalFit> fitAround(const Trace& trace, double time, double half_w
 double medianPeriod(const Trace& trace) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < trace.time.size(); ++i) steps.push_back(trace.time[i] - trace.time[i - 1]);
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return medianOf(steps);
 }
 
 template <typename Take>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/util/median.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -49,13 +50,6 @@ double commonCount(const std::vector<RecordedSample>& samples) {
   return common > 0.0 && common < 0.25 * kTwoPi ? kTwoPi / std::nearbyint(kTwoPi / common) : 0.0;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::size_t dropUseless(std::vector<RecordedSample>& samples) {
   std::vector<RecordedSample> good;
   for (const RecordedSample& s : samples) {
@@ -75,7 +69,7 @@ double meanPeriod(const std::vector<RecordedSample>& samples) {
   constexpr std::size_t kStride = 40;
   for (std::size_t i = kStride; i < samples.size(); i += kStride / 4)
     means.push_back((samples[i].time - samples[i - kStride].time) / static_cast<double>(kStride));
-  return median(means);
+  return medianOf(means);
 }
 
 /// Line through the neighbours' stamps over their place in the sequence, between gaps.
@@ -114,7 +108,7 @@ void orderTimes(std::vector<RecordedSample>& samples, CrankTrack& track) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < samples.size(); ++i) steps.push_back(samples[i].time - samples[i - 1].time);
   track.facts.retimed = isDisordered(samples);
-  track.facts.period = track.facts.retimed ? meanPeriod(samples) : median(steps);
+  track.facts.period = track.facts.retimed ? meanPeriod(samples) : medianOf(steps);
   if (track.facts.retimed) {
     std::vector<double> long_steps;  // a burst's own step is no gap
     std::sort(steps.begin(), steps.end());

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <random>
 #include <sstream>
-#include <string>
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <utility>
-#include <vector>
 
 #include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/util/constants.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/calibration/positive_system.h"
+#include "hammer_loads/util/median.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads::calibration {
@@ -73,10 +74,8 @@ double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Global
   return sum / n;
 }
 
-double mostExplained(std::vector<double> mean_squares) {
-  const auto median = mean_squares.begin() + static_cast<std::ptrdiff_t>(mean_squares.size() / 2);
-  std::nth_element(mean_squares.begin(), median, mean_squares.end());
-  return kNotExplained * std::max(*median, 0.05);
+double mostExplained(const std::vector<double>& mean_squares) {
+  return kNotExplained * std::max(medianOf(mean_squares), 0.05);
 }
 
 }  // namespace hammer_loads::calibration

@@ -34,6 +34,6 @@ inline double freeOf(double given, double decided) { return std::max(given - dec
 double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise);
 
 /// Blows of a larger mean square are not of this model. mean_squares: of all blows, not empty.
-double mostExplained(std::vector<double> mean_squares);
+double mostExplained(const std::vector<double>& mean_squares);
 
 }  // namespace hammer_loads::calibration

@@ -7,6 +7,7 @@
 #include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/calibration/sensor_check.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/median.h"
 
 namespace hammer_loads::calibration {
 namespace {

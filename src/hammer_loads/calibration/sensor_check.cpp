@@ -6,6 +6,7 @@
 
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/median.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -118,13 +119,6 @@ double noiseOverStep(const Trace& trace) {
 }
 
 }  // namespace
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<double> noiseRatios(const std::vector<BoomPoints>& recordings, int joint) {
   std::vector<double> noise;

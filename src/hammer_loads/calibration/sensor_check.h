@@ -9,9 +9,6 @@
 
 namespace hammer_loads::calibration {
 
-/// Median, of an even number of values the smaller one of the middle; 0 of none.
-double medianOf(std::vector<double> values);
-
 /// Noise of a joint's sensor in each recording, rms over all instants, over the median of the others [-].
 std::vector<double> noiseRatios(const std::vector<BoomPoints>& recordings, int joint);
 
