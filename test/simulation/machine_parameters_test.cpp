@@ -117,6 +117,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
             " pressure_hose_lag_s: 0.004, pressure_count_Pa: 39000, bus_delay_s: 0.002, joint_count_rad: 0.002, "
             "link_bending_frequency_Hz: 16,"
             " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, machine_seal_constant: 0.013, "
+            "machine_seal_presliding_m: 5e-5, "
             "joint_noise_rad: 0.0001, "
             "restitution_drawn: true,"
             " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, hold_down_force_N: 700}"));
@@ -139,6 +140,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   EXPECT_EQ(machine.on_boom.pressures.rate, 0.0);
   EXPECT_EQ(machine.on_boom.seals.friction, 0.02);
   EXPECT_EQ(machine.on_boom.seals.constant, 0.013);
+  EXPECT_EQ(machine.on_boom.seals.presliding, 5e-5);
   EXPECT_EQ(machine.on_boom.rock.stiffness, 2e7);
   EXPECT_EQ(machine.on_boom.rock.damping, 1.5);
   EXPECT_EQ(machine.on_boom.rock.hold_down_force, 700.0);

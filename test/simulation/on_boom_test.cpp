@@ -200,6 +200,43 @@ TEST(OnBoom, SealsRubAndOnlyTakeEnergy) {
   }
 }
 
+/// Seals with a constant friction that yield over 0.05 mm: never above the one of Stribeck, full where the rod has slid
+/// ten times as far one way, and hardly changed just after it turns back.
+TEST(OnBoom, SealsYieldBeforeTheySlide) {
+  constexpr double kYielding = 5e-5, kConstant = 0.013;
+  const OilBoom boom = oilBoomEo2621();
+  MachineSettings m = onBoom();
+  m.on_boom.seals.constant = kConstant, m.on_boom.seals.presliding = kYielding;
+  HammerOnBoom machine(m);
+  std::array<double, 3> slid{}, before{};  // one way [m]; friction a step earlier [N]
+  double taken = 0.0;
+  int full = 0, turns = 0;
+  for (int i = 1; i <= 20000; ++i) {
+    machine.advanceTo(1e-4 * i);
+    const OnBoomTruth t = machine.truth();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto j = static_cast<int>(k);
+      const OilCylinder& c = boom.cylinders[k];
+      const double arm = c.arm(t.angles[j]), step = 1e-4 * arm * t.rates[j], size = kConstant * 14e6 * c.bore_area;
+      const double rubbing = t.hold[j] / arm - c.bore_area * t.bore_pressure[k] + c.rod_area * t.rod_pressure[k];
+      ASSERT_LE(std::abs(rubbing), 1.4 * size + 1e-6) << i;
+      taken -= rubbing * step;
+      const bool turned = slid[k] * step < 0.0;
+      if (turned && std::abs(slid[k]) > 10.0 * kYielding && std::abs(step) < 0.1 * kYielding) {
+        ++turns;
+        ASSERT_GT(rubbing * before[k], 0.0) << i;
+      }
+      slid[k] = turned ? step : slid[k] + step, before[k] = rubbing;
+      if (std::abs(slid[k]) < 10.0 * kYielding || std::abs(step) < 2e-6) continue;
+      ++full;
+      ASSERT_NEAR(rubbing, std::copysign(size, -step), 0.01 * size) << i;
+    }
+  }
+  EXPECT_GT(full, 100);
+  EXPECT_GT(turns, 3);
+  EXPECT_GT(taken, 1.0);  // [J]
+}
+
 /// A boom that is let swing: with seals it comes to rest sooner.
 TEST(OnBoom, SealsBringItToRest) {
   std::array<double, 2> swing{};

@@ -12,6 +12,8 @@
 namespace hammer_loads::simulation {
 namespace {
 
+constexpr double kFastRod = 0.15;  // of a cylinder [m/s]
+
 /// From the mechanism frame with its origin at A to the hull's axes with theirs at D; a reflection.
 PlanePoint inHull(double xi, double eta, double com_angle) {
   const double c = std::cos(com_angle), s = std::sin(com_angle);
@@ -43,6 +45,8 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
   now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
   now_.x[4] = rockerOf(machine.start_angle);
   step_ = machine_.on_boom.step;
+  if (const double presliding = machine_.on_boom.seals.presliding; presliding > 0.0)
+    step_ = std::min(step_, presliding / kFastRod);
   followOperator();
   standOnRock();
 }

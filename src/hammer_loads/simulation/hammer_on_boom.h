@@ -75,8 +75,9 @@ class HammerOnBoom {
     bool resting{};     ///< the crank turned back onto the tool and is held at the dead centre, as by a brake
     Coordinates x, v;   ///< angles of the joints, crank's offset from its nearest dead centre, rocker
     double pressure{};  ///< at the motor [Pa]
-    Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};  ///< oil leaked in each cylinder, from bore to rod side [m3]
-    ToolState tool;                                   ///< tool of an elastic machine; the members below likewise
+    Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};   ///< oil leaked in each cylinder, from bore to rod side [m3]
+    Eigen::Vector3d sheared{Eigen::Vector3d::Zero()};  ///< displacement of each cylinder's seals before they slide [m]
+    ToolState tool;                                    ///< tool of an elastic machine; the members below likewise
     double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
   };
   /// A moving body: its place, and what each coordinate does to place and angle.
@@ -135,6 +136,7 @@ class HammerOnBoom {
   Chambers chambers(std::size_t k, const State& s, const Hold& hold) const;
   double push(std::size_t k, const Chambers& at) const;  ///< outward push of the rod [N]
   Eigen::Vector3d leak(const State& s, const Hold& hold) const;
+  Eigen::Vector3d shear(const State& s) const;
   void followOperator();
   Eigen::Vector3d oil(const State& s, const Hold& hold) const;
   Eigen::Vector3d seals(const State& s, const Eigen::Vector3d& oil) const;

@@ -16,7 +16,7 @@ HammerOnBoom::State HammerOnBoom::stepped(const State& s, double dt) const {
     double p;
     ToolState tool;
     double impulse, energy, retainer;
-    Eigen::Vector3d leak;
+    Eigen::Vector3d leak, shear;
   };
   const DriveSettings& d = machine_.drive;
   const Hold middle = elastic_ ? holdBetween(s.time + 0.5 * dt) : holdAt(s.time + 0.5 * dt),
@@ -25,7 +25,7 @@ HammerOnBoom::State HammerOnBoom::stepped(const State& s, double dt) const {
   const auto rate = [&](const State& at, const Hold& hold) {
     const double flow = supplyFlow(d, at.time), valves = valveFlow(d, at.time, at.pressure);
     const double pressing = (flow - d.motor_displacement * at.v[3] - valves) / d.compliance;
-    Rate r{at.v, acceleration(at, hold), pressing, {}, 0.0, 0.0, 0.0, leak(at, hold)};
+    Rate r{at.v, acceleration(at, hold), pressing, {}, 0.0, 0.0, 0.0, leak(at, hold), shear(at)};
     if (!elastic_) return r;
     const StruckTool::Answer answer = struck(at);
     r.tool = answer.rate;
@@ -35,6 +35,7 @@ HammerOnBoom::State HammerOnBoom::stepped(const State& s, double dt) const {
   const auto moved = [&](const Rate& r, double by) {
     State to = s;
     to.time += by, to.x += by * r.x, to.v += by * r.v, to.pressure += by * r.p, to.leaked += by * r.leak;
+    to.sheared += by * r.shear;
     to.tool.way += by * r.tool.way, to.tool.speed += by * r.tool.speed, to.tool.yielded += by * r.tool.yielded;
     to.tool_impulse += by * r.impulse, to.tool_energy += by * r.energy, to.retainer_impulse += by * r.retainer;
     return to;
@@ -45,6 +46,7 @@ HammerOnBoom::State HammerOnBoom::stepped(const State& s, double dt) const {
   Rate all;
   all.x = (k1.x + 2.0 * (k2.x + k3.x) + k4.x) / 6.0, all.v = (k1.v + 2.0 * (k2.v + k3.v) + k4.v) / 6.0;
   all.leak = (k1.leak + 2.0 * (k2.leak + k3.leak) + k4.leak) / 6.0;
+  all.shear = (k1.shear + 2.0 * (k2.shear + k3.shear) + k4.shear) / 6.0;
   all.p = mean(k1.p, k2.p, k3.p, k4.p);
   all.tool = {mean(k1.tool.way, k2.tool.way, k3.tool.way, k4.tool.way),
               mean(k1.tool.speed, k2.tool.speed, k3.tool.speed, k4.tool.speed),

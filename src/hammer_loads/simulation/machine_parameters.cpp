@@ -162,6 +162,7 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   s.step = reader.number("boom_step_s", "s", kPositive);
   s.seals.friction = reader.number("machine_seal_friction", "", NumberRule::within(0.0, 0.2));
   s.seals.constant = reader.number("machine_seal_constant", "", NumberRule::within(0.0, 0.2));
+  s.seals.presliding = reader.number("machine_seal_presliding_m", "m", NumberRule::within(0.0, 0.001));
   s.rock.stiffness = reader.number("rock_stiffness_N_m", "N/m", kNotNegative);
   s.rock.damping = reader.number("rock_damping_s_m", "s/m", kNotNegative);
   s.rock.hold_down_force = reader.number("hold_down_force_N", "N", kNotNegative);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -160,17 +161,22 @@ struct RockSettings {
   double hold_down_force{};  ///< force of the operator on the hull before it works [N], >= 0
 };
 
-/// Seals of the boom's cylinders: against the rod's speed v, force = (constant P + friction |F|) (1 + breakaway
-/// e^-(v/stribeck)^2) tanh(v/smooth), F the oil's force, P the push at 14 MPa.
+/// Seals of the boom's cylinders: against the rod's speed v, force = (constant P + friction |F|) way, F the oil's
+/// force, P the push at 14 MPa. With s = 1 + breakaway e^-(v/stribeck)^2, way = s tanh(v/smooth). Seals that yield
+/// before they slide have way = z/presliding, z' = v - |v| z/(presliding s) (model of Dahl with the curve of Stribeck).
 struct SealSettings {
   double friction{};             ///< [-]
   double constant{};             ///< [-]; a loader crane's: 0.010 to 0.016
   double breakaway{0.4};         ///< more of it near standstill [-], >= 0
   double stribeck_speed{0.004};  ///< [m/s], > 0
   double smooth_speed{5e-4};     ///< below it the force fades through zero [m/s], > 0
+  double presliding{};           ///< displacement before the seals slide [m]; 0: none
 
   static constexpr double kReliefPressure = 14e6;  ///< [Pa]
   bool rubs() const { return friction > 0.0 || constant > 0.0; }
+  double nearStandstill(double speed) const {  ///< s
+    return 1.0 + breakaway * std::exp(-(speed / stribeck_speed) * (speed / stribeck_speed));
+  }
 };
 
 /// Hull and boom that move on the oil of their cylinders; all dimensions in oil_boom.h.

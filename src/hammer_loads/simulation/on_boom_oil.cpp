@@ -100,14 +100,27 @@ Eigen::Vector3d HammerOnBoom::seals(const State& s, const Eigen::Vector3d& oil) 
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
   if (!seal.rubs()) return torque;
   for (int k = 0; k < 3; ++k) {
-    const double arm = boom_.cylinders[static_cast<std::size_t>(k)].arm(s.x[k]), speed = arm * s.v[k];
-    const double slow = speed / seal.stribeck_speed;
-    const double push = SealSettings::kReliefPressure * boom_.cylinders[static_cast<std::size_t>(k)].bore_area;
-    const double steady = seal.constant * push + seal.friction * std::abs(oil[k] / arm);
-    const double force = steady * (1.0 + seal.breakaway * std::exp(-slow * slow));
-    torque[k] = -arm * force * std::tanh(speed / seal.smooth_speed);
+    const OilCylinder& c = boom_.cylinders[static_cast<std::size_t>(k)];
+    const double arm = c.arm(s.x[k]), speed = arm * s.v[k];
+    const double force =
+        seal.constant * SealSettings::kReliefPressure * c.bore_area + seal.friction * std::abs(oil[k] / arm);
+    const double way = seal.presliding > 0.0 ? s.sheared[k] / seal.presliding
+                                             : seal.nearStandstill(speed) * std::tanh(speed / seal.smooth_speed);
+    torque[k] = -arm * force * way;
   }
   return torque;
+}
+
+/// Speed of the displacement of the seals before they slide [m/s].
+Eigen::Vector3d HammerOnBoom::shear(const State& s) const {
+  const SealSettings& seal = machine_.on_boom.seals;
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  if (!(seal.presliding > 0.0)) return rate;
+  for (int k = 0; k < 3; ++k) {
+    const double speed = boom_.cylinders[static_cast<std::size_t>(k)].arm(s.x[k]) * s.v[k];
+    rate[k] = speed - std::abs(speed) * s.sheared[k] / (seal.presliding * seal.nearStandstill(speed));
+  }
+  return rate;
 }
 
 Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
