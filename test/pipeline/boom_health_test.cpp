@@ -76,10 +76,10 @@ TEST(BoomHealth, IsNotKnownOfABoomAsItsFileHasIt) {
   EXPECT_TRUE(healthOf(onSite(1.0, {1.0, 1.0, 1.0}, 51), "boom: compliant\nhull_motion: imu\n").empty());
 }
 
-/// Seals that rub with a tenth of the force and that nobody gave damp as no oil does.
+/// Dampers that nobody gave: four times the damping of the boom file.
 TEST(BoomHealth, NamesWhereSomethingElseThanOilDamps) {
   simulation::MachineSettings m = onSite(1.0, {1.0, 1.0, 1.0}, 61);
-  m.on_boom.seals.friction = 0.1;
+  m.on_boom.damping = 0.2;
   const std::vector<BoomHealth> turns = healthOf(m);
   ASSERT_FALSE(turns.empty());
   EXPECT_FALSE(turns.back().oil_explains);

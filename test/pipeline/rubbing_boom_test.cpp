@@ -1,4 +1,6 @@
 // Cylinders whose seals rub: torques by measured pressures, and how far they are said to be off.
+#include <random>
+
 #include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {
@@ -10,6 +12,7 @@ using test::errorsOf;
 simulation::Session rubbingSession(double friction) {
   simulation::MachineSettings m = test::machineOnBoom(1.0, 100.0);
   m.on_boom.seals.friction = friction;
+  m.on_boom.seals.presliding = 5e-5;
   return simulation::recordSession(m);
 }
 
@@ -30,9 +33,9 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
     EXPECT_GT(usual.covered(), 0.85) << imu;
     const BoomErrors none = errorsOf("no seals", session, knownFriction(0.0, 0.0), sensors);
     EXPECT_LT(none.covered(), usual.covered()) << imu;
-    // Seals that were weighed are taken off, as the operator and the vibration move the rods: joint sensors of 100 Hz
-    // show the vibration late, which costs twice as much.
+    // Identified or weighed friction is subtracted by the direction in which operator and vibration move the rods.
     const BoomErrors weighed = errorsOf("weighed seals", session, knownFriction(0.02, 0.004), sensors);
+    EXPECT_LT(usual.worstTorque(), 0.02) << imu;
     EXPECT_GT(none.worstTorque(), 0.04) << imu;
     EXPECT_LT(weighed.worstTorque(), 0.02) << imu;
     EXPECT_GT(weighed.covered(), 0.85) << imu;
@@ -43,7 +46,7 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
 TEST(RubbingBoom, DefaultDeviationsCoverAConstantFriction) {
   for (const double constant : {0.010, 0.016}) {
     simulation::MachineSettings m = test::machineOnBoom(1.0, 100.0);
-    m.on_boom.seals.constant = constant;
+    m.on_boom.seals.constant = constant, m.on_boom.seals.presliding = 5e-5;
     const simulation::Session session = simulation::recordSession(m);
     for (const bool imu : {false, true}) {
       const BoomErrors e = errorsOf("constant friction", session, "boom_stiffness: identified\n", {imu, true});
@@ -52,15 +55,35 @@ TEST(RubbingBoom, DefaultDeviationsCoverAConstantFriction) {
   }
 }
 
-/// What rubs is in the boom's damping and not in its pressures, which seem up to 1.1 ms late by it. Torques that are up
-/// to 24 % off say so: the usual deviation of 3 % is not that of seals of 8 %, the damping found is.
+/// Seals that yield before they slide, with the curve of Stribeck: neither is part of the pipeline's law. A friction of
+/// 1 % of the largest push is 3 to 17 % of the torques of hammer and vibration.
+TEST(RubbingBoom, FrictionOfOnePercentOfThePushIsIdentified) {
+  std::mt19937 random(1);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  for (int i = 0; i < 6; ++i) {
+    simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0, test::drawnPose(between));
+    m.seed = 50 + static_cast<std::uint64_t>(i);
+    m.on_boom.seals.constant = 0.01, m.on_boom.seals.presliding = i % 3 == 0 ? 0.0 : 3e-5 * (i % 3);
+    if (i < 3) m.on_boom.rock = {3e7, 3.0, 4000.0};
+    const simulation::Session session = simulation::recordSession(m);
+    for (const bool imu : {false, true}) {
+      const BoomErrors e = errorsOf("1 % of the push", session, "boom_stiffness: identified\n", {imu, true});
+      EXPECT_LT(e.worstTorque(), imu ? 0.08 : 0.14) << i;
+      EXPECT_GT(e.covered(), 0.85) << i;
+      EXPECT_LT(e.widest(), 5.0) << i;
+    }
+  }
+}
+
+/// Friction acts on the boom and not on its pressures, which seem up to 1.1 ms late by it. It is identified, also where
+/// it exceeds the default deviation of 3 %; pressures alone then show a part of it as damping.
 TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
   for (const double friction : {0.0, 0.03, 0.05, 0.08}) {
     const simulation::Session session = rubbingSession(friction);
     for (const bool imu : {false, true}) {
       const BoomErrors e = errorsOf("seals", session, "boom_stiffness: identified\n", {imu, true});
       EXPECT_FALSE(e.warnedOfPressures() || e.warned_of_imu_stamps || e.warned_of_rock) << friction << imu;
-      EXPECT_EQ(e.warned_of_damping, friction == 0.08 && imu) << friction << imu;
+      EXPECT_FALSE(e.warned_of_damping && (imu || friction < 0.05)) << friction << imu;
       EXPECT_GT(e.covered(), 0.85) << friction << imu;
     }
   }

@@ -25,7 +25,14 @@ struct BoomKind {
   Change change;           // flaw added to a machine with clean sensors and a boom without flaws; null: none
 };
 
-void rub(simulation::MachineSettings& m) { m.on_boom.seals.friction = 0.01; }
+/// Friction as measured on a loader crane (doc/boom_calibration.md).
+void rub(simulation::MachineSettings& m) {
+  std::mt19937 random(static_cast<unsigned>(m.seed));
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  m.on_boom.seals.constant = between(0.010, 0.016);
+  m.on_boom.seals.friction = between(0.03, 0.06);
+  m.on_boom.seals.presliding = between(2e-5, 1e-4);
+}
 
 void wear(simulation::MachineSettings& m) {
   rub(m);

@@ -17,7 +17,7 @@ void subtractSquare(CovarianceBlock P, const Eigen::Ref<const Eigen::VectorXd>& 
 
 /// New values of two neighbouring states: weighted sums over two states or more, which include both.
 struct TwoOf {
-  static constexpr int kMost = 16;
+  static constexpr int kMost = 24;
   int count{};
   std::array<int, kMost> state;
   std::array<double, kMost> by_one, by_other;

@@ -12,7 +12,8 @@ namespace {
 constexpr double kCommonDeviation = 2.0 * kFrequencyDeviation;  // of log stiffness, common to all cylinders
 constexpr double kOilWalk = 0.004;     // per second, of log stiffness: oil that warms up, a pose that changes
 constexpr double kDampingWalk = 0.01;  // per second, of log damping
-// Prior: kOilWalk, kDampingWalk
+constexpr double kRubbingWalk = 0.02;  // per second, of the friction over its deviation
+// Prior: kOilWalk, kDampingWalk, kRubbingWalk
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
 // Prior: kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // random walk of the rock's force [N/sqrt(s)]
@@ -36,6 +37,7 @@ ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns, const LogOil& 
   ratio_.fill(1.0);
   damping_.fill(damping_ratio);
   slot_.fill(-1);
+  rubbing_at_.fill(-1);
 }
 
 void ModeIdentifier::setFirstGuesses() noexcept {
@@ -97,7 +99,7 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
     });
   };
   apply(state_.data(), 1);
-  for (int i = begin(); i < end(); ++i) apply(column(i), 1);
+  for (int i = begin(); i < end(); ++i) apply(&covariance_(0, i), 1);
   for (int i = begin(); i < end(); ++i) apply(covariance_.data() + i, kMaxStates);
   const auto turn = [&](ModeVector& modal) { modal.head(count_) = (T * modal.head(count_)).eval(); };
   turn(force_), turn(force_rate_);
@@ -175,7 +177,8 @@ void ModeIdentifier::advanceModes(const HeldForces::Piece& piece) noexcept {
   std::array<ModeStep, kMaxJoints> steps;
   const States now = statesNow();
   States then;
-  const ModeVector rubbed = forceOfSeals(now);
+  const LogOil way_next = wayOfSeals(step);
+  const ModeVector rubbed = forceOfSeals(0.5 * (way_ + way_next));
   for (int k = 0; k < count_; ++k) {
     const auto mode = static_cast<std::size_t>(k);
     const ModeStep& its = steps[mode] = stepOf(modeAt(k), step);
@@ -189,15 +192,17 @@ void ModeIdentifier::advanceModes(const HeldForces::Piece& piece) noexcept {
   followHose(step, now, then);
   force_ = piece.to;
   force_rate_ = (piece.to - piece.from) / step;
-  advanceCovariance(step, steps, now, then);
+  advanceCovariance(step, steps, now, then, way_next);
+  way_ = way_next;
   for (int k = 0; k < count_; ++k) walk(k, step);
 }
 
 /// P <- F P F^T. Stiffness and damping act as forces that are linear over the step: their derivatives are off by 3 % at
 /// 9 Hz and a step of 10 ms, the states themselves are exact.
 void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
-                                       const States& next) noexcept {
+                                       const States& next, const LogOil& way_next) noexcept {
   const LogOil torque_now = oilTorques(now), torque_next = oilTorques(next);
+  const LogOil rubbed_now = sealTorques(way_), rubbed_next = sealTorques(way_next);
   const double per_time = 1.0 / step;
   const int first = begin();
   for (int k = 0; k < count_; ++k) {
@@ -223,6 +228,12 @@ void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, k
     }
     const ModeState of_damping = by(-damped_now, -damped_next);
     of.add(x + kDamping, of_damping.x, of_damping.v);
+    for (int i = 0; i < count_ && learns_; ++i) {
+      const int rubs = rubbing_at_[static_cast<std::size_t>(i)];
+      if (rubs < 0) continue;
+      const ModeState of_seals = by(-modes_.shape(i, k) * rubbed_now[i], -modes_.shape(i, k) * rubbed_next[i]);
+      of.add(rubs - first, of_seals.x, of_seals.v);
+    }
     of.add(kContact - first, r.step * rockOn(k), r.impulse * rockOn(k));
     if (isDelayFollowed(Clock::kImu))
       of.add(delayAt(Clock::kImu) - first, -force_rate_[k] * r.step, -force_rate_[k] * r.impulse);
@@ -243,6 +254,8 @@ void ModeIdentifier::walk(int mode, double step) noexcept {
   };
   wander(x + kOil, kOilWalk, kCommonDeviation);
   wander(x + kDamping, kDampingWalk, kDampingDeviation);
+  const int rubs = rubbing_at_[static_cast<std::size_t>(mode)];
+  if (rubs >= 0) wander(rubs, kRubbingWalk, 1.0);
 }
 
 /// The random walk of the rock's force within the step also changes the modes' velocities.

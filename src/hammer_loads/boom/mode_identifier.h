@@ -24,31 +24,25 @@ struct CrankLead {
   double mean{}, deviation{};
 };
 
-/// Extended Kalman filter: per mode displacement, velocity and logarithm of damping over the given one; per cylinder
-/// the logarithm of its oil's stiffness over that of the modes given; per channel an offset. The steps are those of
-/// Vibration, with readings in any order between them. No allocation. Frequencies are expanded to second order in the
-/// identified stiffnesses, and the mode shapes are those given. The caller therefore provides new modes before the
-/// stiffnesses have changed much.
+/// Extended Kalman filter (doc/boom.md, 7): per mode displacement, velocity and logarithm of damping over the given
+/// one; per cylinder the logarithm of its oil's stiffness over that of the modes given and, with pressures, the
+/// friction of its seals; per channel an offset. The steps are those of Vibration, with readings in any order between
+/// them. No allocation. Frequencies are expanded to second order in the identified stiffnesses, and the mode shapes are
+/// those given. The caller therefore provides new modes before the stiffnesses have changed much.
 ///
 /// Prior: a common error of 30 % of all stiffnesses, an own error of each, and a factor of 1.6 of the damping. The
 /// forces on the boom have independent errors of 5 % of their root mean square, correlated over 10 ms.
 ///
 /// A hull that bounces on rock is moved by forces that the model lacks. While the residuals of the accelerations are
 /// twice their expected size, the given stiffnesses and damping are used. If no stiffness has explained the
-/// accelerations so far, the identification restarts once from the given values, with modes that are recomputed at each
-/// step (seeks()), because a cylinder that is much softer changes the mode shapes. Initially the modes are kept until
-/// the frequencies are known, since late stamps would lead the estimate far away.
+/// accelerations so far, the identification restarts once with modes that are recomputed at each step (seeks()),
+/// because a cylinder that is much softer changes the mode shapes.
 ///
-/// Sensors with clocks of their own may have late stamps. Each clock has one delay, a random walk. The filter runs in
-/// the IMU's time: the hammer's forces and blows act later by the IMU's delay, which makes the delay observable; the
-/// pressures have a delay relative to the IMU. Delays are estimated from 0.2 s after the frequencies are known; for a
-/// second, the variances of frequencies and damping are inflated. The jitter of the stamps, as behind a bus, is
-/// estimated from the residuals. A leading crank angle, as by a wrong zero, makes all sensors look equally late. The
-/// part of it that the crank's model expects (expectCrankLead()) is attributed to the crank, and the motion is returned
-/// in the sensors' time.
+/// Each clock has one delay, a random walk. The filter runs in the IMU's time: the hammer's forces and blows act later
+/// by the IMU's delay, which makes it observable; the pressures have a delay relative to the IMU. The part of a common
+/// delay that the crank's model expects (expectCrankLead()) is attributed to the crank.
 ///
-/// The rock's force is a further state where followContact() was called: a random walk whose intensity fits a landing,
-/// 10 kN in 6 ms, or in 1 ms with an IMU. The pressures measure the displacements, which determine the force.
+/// The rock's force is a further state where followContact() was called: a random walk that fits a landing.
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
@@ -56,7 +50,9 @@ class ModeIdentifier {
   // Prior: kMostOil
   /// Remaining errors of log frequency and log damping of an identified mode: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
-  // Prior: kLeftFrequency, kLeftDamping
+  /// Remaining error of an identified friction of seals, over the deviation before: three cylinders share a motion.
+  static constexpr double kLeftRubbing = 0.25;
+  // Prior: kLeftFrequency, kLeftDamping, kLeftRubbing
 
   /// learns: stiffnesses and damping are identified; otherwise the given values are exact, and only the motion is
   /// estimated. own_std: of each cylinder's oil against the common one, standard [-].
@@ -84,18 +80,18 @@ class ModeIdentifier {
   void bear(bool bears) noexcept { bears_ = bears; }
   /// Ends the estimate of the rock's force; the hull is free.
   void leaveContact() noexcept;
-  /// Sets whether frequencies and damping are kept while the motion is still estimated. This is for a hammer at rest.
-  /// No known force excites the boom then, and noise and the walk of the rock's force would be taken for soft oil, by a
-  /// factor e of frequency in half a minute.
+  /// Sets whether frequencies, damping and friction are kept while the motion is still estimated, as for a hammer at
+  /// rest: no known force excites the boom then, and noise would be taken for soft oil.
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
   /// Sets the lead of the crank's angle that the crank's model expects [s].
   void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
-  /// Sets a cylinder's seals: the known part of their friction acts on the modes, the rest damps them.
-  void setSeals(std::size_t cylinder, const Seals& seals) noexcept { seals_[cylinder] = seals; }
-  /// Updates by readings of one instant and one clock, at the present time or a little before. Each channel in [0,
-  /// kMaxChannels) has an offset; readings of other channels and values that are not finite are ignored. A reading far
-  /// from its prediction has less weight. Three readings at a time are linearised about the state before them; each
-  /// pressure is linearised separately.
+  /// Sets a cylinder's seals, whose friction acts on the modes. The part that is not known is estimated from then on.
+  void setSeals(std::size_t cylinder, const Seals& seals) noexcept;
+  /// Seals of a cylinder with the identified part of their friction as known.
+  Seals withIdentified(std::size_t cylinder, Seals seals) const noexcept;
+  /// Updates by readings of one instant and one clock, at the present time or a little before. Readings of channels
+  /// outside of [0, kMaxChannels) and values that are not finite are ignored. A reading far from its prediction has
+  /// less weight.
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
   /// True if the accelerations agree with hammer, oil and, if it is estimated, the rock's force, or if they may still
   /// come to agree.
@@ -107,19 +103,16 @@ class ModeIdentifier {
   bool forgets() const noexcept { return !explains_; }
   /// True if the caller must provide modes of the current estimate of the oil, even if it is uncertain.
   bool seeks() const noexcept { return seeks_; }
-  /// Returns true if the delay of the pressures relative to an IMU is identified. Without an IMU, delay and oil cannot
-  /// be separated.
+  /// True if the delay of the pressures relative to an IMU is identified; oil and delay look alike without one.
   bool knowsLag() const noexcept { return isDelayFollowed(Clock::kPressures) && imuSpeaks(); }
   /// Mean square of the innovations of the oil torques over their variance, averaged over 1 s [-]. Correct pressures at
   /// 500 Hz have 0.3 to 0.7 (one of 20 machines briefly 1.2), pressures that lag by 5 ms have 1.2 and more. 0 without
   /// identification.
   double oilSurprise() const noexcept { return learns_ ? oil_surprise_ : 0.0; }
 
-  int modes() const noexcept { return count_; }
   int channels() const noexcept { return channels_; }  ///< number of channels that have had a reading
-  /// Over the given frequency [-].
+  /// Frequency over the given one, and ratio of damping [-].
   double frequencyRatio(int mode) const noexcept { return ratio_[static_cast<std::size_t>(mode)]; }
-  /// Ratio of damping [-].
   double damping(int mode) const noexcept { return damping_[static_cast<std::size_t>(mode)]; }
   double frequencyVariance(int mode) const noexcept;  ///< variance of the logarithm of the frequency [-]
   double dampingVariance(int mode) const noexcept;    ///< variance of the logarithm of the damping [-]
@@ -140,9 +133,8 @@ class ModeIdentifier {
   JointVector displacement() const noexcept;  ///< estimated displacement of the joints [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
-  double contact() const noexcept {
-    return state_[kContact];
-  }  ///< the rock's force [N]; a negative value is an estimation error
+  /// The rock's force [N]; a negative value is an estimation error.
+  double contact() const noexcept { return state_[kContact]; }
   double contactDeviation() const noexcept { return std::sqrt(covariance_(kContact, kContact)); }  ///< standard [N]
   /// Delay of a clock's stamps [s]; 0 until it is estimated.
   double delay(Clock clock) const noexcept;
@@ -159,7 +151,8 @@ class ModeIdentifier {
   static constexpr double kForcePart = 0.05;  ///< deviation of the modal force over its root mean square
   static constexpr double kForceTime = 0.01;  ///< correlation time of a force error [s]
   // Prior: kForcePart, kForceTime
-  static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
+  static constexpr int kSlots = kMaxChannels + kMaxJoints;  ///< offsets of channels, frictions of cylinders
+  static constexpr int kDelays = kSlots, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
   static_assert(kMaxStates <= kMostStates);
   using State = Eigen::Matrix<double, kMaxStates, 1>;
@@ -168,17 +161,13 @@ class ModeIdentifier {
 
   static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }
   static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
-  /// Offsets are stored from the modes downwards in the order of their first use, so that the states in use form one
-  /// block.
+  /// Offsets and frictions are stored from the modes downwards in the order of first use: one block is in use.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
-  int begin() const noexcept { return (kMaxChannels - channels_) / 2 * 2; }  // an even place
+  int begin() const noexcept { return (kSlots - used_slots_) / 2 * 2; }  // an even place
   int end() const noexcept { return kModes + kParts * count_; }
   int states() const noexcept { return end() - begin(); }
   auto block() noexcept { return covariance_.block(begin(), begin(), states(), states()); }
   auto inUse(const State& state) const noexcept { return state.segment(begin(), states()); }
-  /// Covariances of a state with all.
-  const double* column(int state) const noexcept { return &covariance_(0, state); }
-  double* column(int state) noexcept { return &covariance_(0, state); }
 
   ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
   double besideOil(int mode) const noexcept;
@@ -191,9 +180,8 @@ class ModeIdentifier {
     return clock == Clock::kCrank ? 0.0 : imuDelay() + (clock == Clock::kPressures ? pressureLag() : 0.0);
   }
   double delayVariance(Clock clock) const noexcept;
-  /// Delay of a mode's oscillation in a clock's readings [s], in the sensors' time, and the remaining amplitude. A
-  /// delay of pressures relative to an IMU is caused by a hose, which delays by less than its time constant and
-  /// attenuates.
+  /// Delay of a mode's oscillation in a clock's readings [s], in the sensors' time, and the amplitude that a hose
+  /// leaves.
   struct Lag {
     double held{}, left{1.0};
   };
@@ -205,10 +193,13 @@ class ModeIdentifier {
   void correctHose(const State& by) noexcept;
   States statesNow() const noexcept;
   LogOil oilTorques(const States& of) const noexcept;
-  ModeVector forceOfSeals(const States& of) const noexcept;
+  ModeVector forceOfSeals(const LogOil& way) const noexcept;
+  /// Torque of a cylinder's seals against its joint's motion, per unit of the friction's state [N m].
+  LogOil sealTorques(const LogOil& way) const noexcept;
+  LogOil wayOfSeals(double ahead) const noexcept;  ///< direction of each friction, see Seals
   double logFrequency(int mode) const noexcept;
   void advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
-                         const States& next) noexcept;
+                         const States& next, const LogOil& way_next) noexcept;
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
@@ -224,8 +215,7 @@ class ModeIdentifier {
   bool imuSpeaks() const noexcept;
   bool mayYetExplain() const noexcept;
   bool isExplained() const noexcept;
-  /// Durations [s]: of agreement with the identified oil, which does not change within a second; of lost frequencies;
-  /// of inflated variances; of a hull without rock, the memory of the mean force.
+  /// Duration [s] of agreement, of lost frequencies, of inflated variances and of a hull without rock.
   static constexpr double kProven = look_back::kFiveTurns;
   double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< factor on the variance of the pressures
   double byDelay(Clock clock, const State& row) const noexcept;
@@ -243,10 +233,6 @@ class ModeIdentifier {
                const StateList& kept) noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
   void restoreKept(const StateList& kept, double moved, double S, const State& gain_S) noexcept;
-  /// Change of all states if one of them moves by an amount.
-  State movedWith(int state, double by) const noexcept {
-    return by / covariance_(state, state) * covariance_.col(state);
-  }
   void limitPull(double step) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
@@ -293,6 +279,7 @@ class ModeIdentifier {
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< aligned to cache lines: saves 10 % of a reading
   std::array<Seals, kMaxJoints> seals_;
+  LogOil way_ = LogOil::Zero();  ///< see Seals
   /// Modal forces at the present time, and their rates.
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
@@ -302,6 +289,8 @@ class ModeIdentifier {
   LogOil stiffness_ratio_ = LogOil::Ones(), used_oil_ = LogOil::Zero();  ///< stiffness ratios; their logarithms
   std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};     ///< logarithms of these
   int channels_{};                                                       ///< in use
+  int used_slots_{};                                                     ///< by channels and frictions
+  std::array<int, kMaxJoints> rubbing_at_{};      ///< state of each cylinder's friction; -1: not in use
   std::array<int, kMaxChannels> slot_{};          ///< state of each channel's offset; -1: not in use
   std::array<double, kMaxChannels> age_{};        ///< since the channel's last reading [s]
   std::array<Clock, kMaxChannels> clock_{};       ///< whose stamps it has

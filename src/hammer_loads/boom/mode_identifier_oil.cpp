@@ -9,6 +9,7 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kRubbed = 0.2;                          // log damping over the given one beyond which seals rub
 constexpr double kKnown = 0.03;                          // deviation of log frequency of a mode that is known
 constexpr double kMostEarly = 0.004, kMostLate = 0.012;  // [s]
 // Prior: kMostEarly, kMostLate
@@ -57,6 +58,8 @@ void ModeIdentifier::forgetOil() noexcept {
   stiffness_ratio_.setOnes(), used_oil_.setZero();
   ratio_.fill(1.0), used_frequency_.fill(0.0);
   damping_.fill(damping_ratio_), used_damping_.fill(0.0);
+  for (const int rubs : rubbing_at_)
+    if (rubs >= 0) forget(rubs, 1.0);
   setFirstGuesses();
 }
 
@@ -74,6 +77,11 @@ void ModeIdentifier::useOil() noexcept {
     const double frequency = logFrequency(k);
     ratio_[i] *= growth(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
     damping_[i] *= growth(damping - used_damping_[i]), used_damping_[i] = damping;
+  }
+  for (std::size_t i = 0; i < rubbing_at_.size(); ++i) {
+    if (rubbing_at_[i] < 0 || !(seals_[i].deviation > 0.0)) continue;
+    double& rubs = state_[rubbing_at_[i]];
+    rubs = std::max(rubs, -seals_[i].known / seals_[i].deviation);  // friction does not drive
   }
   for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }
@@ -98,15 +106,54 @@ ModeIdentifier::States ModeIdentifier::statesNow() const noexcept {
   return now;
 }
 
+/// Without an IMU, wrong stiffnesses look like friction: it is estimated once the frequencies are known and a mode is
+/// clearly damped more than given. Stiffnesses and damping that were found without it count as less known then.
+void ModeIdentifier::setSeals(std::size_t cylinder, const Seals& seals) noexcept {
+  seals_[cylinder] = seals;
+  int& rubs = rubbing_at_[cylinder];
+  if (!learns_ || rubs >= 0 || !(seals.deviation > 0.0)) return;
+  bool damped = false;
+  for (int k = 0; k < count_; ++k) damped = damped || state_[at(k, kDamping)] > kRubbed + 2.0 * dampingDeviation(k);
+  if (!imuSpeaks() && !(identified() && damped)) return;
+  rubs = kSlots - ++used_slots_;
+  forget(rubs, 1.0);
+  if (!imuSpeaks()) unlearn(1.0 / count_);
+}
+
+/// A friction that is smaller than its remaining error counts less.
+Seals ModeIdentifier::withIdentified(std::size_t cylinder, Seals seals) const noexcept {
+  const int rubs = rubbing_at_[cylinder];
+  if (rubs < 0) return seals;
+  const double found = state_[rubs], left = square(kLeftRubbing);
+  seals.known += seals.deviation * found * square(found) / (square(found) + left);
+  seals.deviation *= std::min(1.0, std::sqrt(covariance_(rubs, rubs) + left));
+  return seals;
+}
+
+LogOil ModeIdentifier::wayOfSeals(double ahead) const noexcept {
+  LogOil way = LogOil::Zero();
+  for (int i = 0; i < count_; ++i) {
+    double rate = 0.0;
+    for (int k = 0; k < count_; ++k) rate += modes_.shape(i, k) * state_[at(k, kV)];
+    way[i] = seals_[static_cast<std::size_t>(i)].wayAfter(way_[i], rate, ahead);
+  }
+  return way;
+}
+
+LogOil ModeIdentifier::sealTorques(const LogOil& way) const noexcept {
+  LogOil torque = LogOil::Zero();
+  for (int i = 0; i < count_; ++i)
+    if (rubbing_at_[static_cast<std::size_t>(i)] >= 0)
+      torque[i] = seals_[static_cast<std::size_t>(i)].deviation * way[i];
+  return torque;
+}
+
 /// Modal force of the seals against the joints' motion.
-ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
+ModeVector ModeIdentifier::forceOfSeals(const LogOil& way) const noexcept {
   ModeVector force = ModeVector::Zero();
   for (int i = 0; i < count_; ++i) {
-    const Seals& seals = seals_[static_cast<std::size_t>(i)];
-    if (seals.known == 0.0) continue;
-    double rate = 0.0;
-    for (int k = 0; k < count_; ++k) rate += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].v;
-    const double torque = seals.way(rate) * seals.known;
+    const auto cylinder = static_cast<std::size_t>(i);
+    const double torque = way[i] * withIdentified(cylinder, seals_[cylinder]).known;
     for (int k = 0; k < count_; ++k) force[k] -= modes_.shape(i, k) * torque;
   }
   return force;
@@ -146,6 +193,10 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     // is that of errors of the mode's shape.
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
+    for (int i = 0; i < count_; ++i)
+      covariance(k, k) +=
+          square(modes_.shape(i, k) * way_[i] *
+                 withIdentified(static_cast<std::size_t>(i), seals_[static_cast<std::size_t>(i)]).deviation);
     covariance(k, k) += besideOil(k) + square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +
                         square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
   }

@@ -24,7 +24,7 @@ void ModeIdentifier::useChannel(const VibrationReading& reading) noexcept {
   const double first = square(reading.offset_std), walk = square(reading.offset_walk);
   if (slot_[i] < 0) {
     ++channels_;
-    slot_[i] = kMaxChannels - channels_;
+    slot_[i] = kSlots - ++used_slots_;
     covariance_(slot_[i], slot_[i]) = first;
   } else {
     double& variance = covariance_(slot_[i], slot_[i]);
@@ -57,7 +57,7 @@ double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead,
 /// Mode at the instant of a reading. by_oil: decrease of its acceleration per unit of each logarithm of stiffness.
 struct ModeIdentifier::Seen {
   ModeHistory::Moment then;
-  std::array<double, kMaxJoints> by_oil;
+  std::array<double, kMaxJoints> by_oil, by_rubbing;
   double acceleration, stiff, damped, rock;
   double cosine, sine;  ///< derivatives of the state then by the displacement and velocity of now
   double read{};        ///< predicted reading of the oil's torque
@@ -117,6 +117,10 @@ ModeIdentifier::Predicted ModeIdentifier::findRow(const VibrationReading& readin
     row[at(k, kV)] = seen.cosine * of_v + seen.sine * of_x;
     for (int i = 0; i < count_; ++i) row[at(i, kOil)] += held * seen.by_oil[static_cast<std::size_t>(i)];
     row[at(k, kDamping)] = held * damped;
+    for (int i = 0; i < count_; ++i) {
+      const int rubs = rubbing_at_[static_cast<std::size_t>(i)];
+      if (rubs >= 0) row[rubs] += by_a * seen.by_rubbing[static_cast<std::size_t>(i)];
+    }
   }
   row[offset] = 1.0;
   if (reading.clock == Clock::kPressures) row[delayAt(Clock::kPressures)] = -late;
@@ -156,9 +160,12 @@ void ModeIdentifier::limitPull(double step) noexcept {
   if (!follows_contact_ || pressureLag() > kDelayDeviation) return;
   const double pulls = -contactDeviation() - state_[kContact];
   if (!(pulls > 0.0)) return;
-  State moved = movedWith(kContact, std::min(1.0, step / kForceTime) * pulls);
+  const double by = std::min(1.0, step / kForceTime) * pulls;
+  State moved = by / covariance_(kContact, kContact) * covariance_.col(kContact);
   moved.segment<2>(kDelays).setZero();
   for (int k = 0; k < count_; ++k) moved[at(k, kOil)] = moved[at(k, kDamping)] = 0.0;
+  for (const int rubs : rubbing_at_)
+    if (rubs >= 0) moved[rubs] = 0.0;
   state_ += moved;
 }
 
@@ -193,14 +200,17 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
   std::optional<DrivenAround> around;
   if (readings->clock == Clock::kImu)
     around = drivenAround(history_, held_, force_, readings->ahead + waiting_, imuStampDeviation());
-  const LogOil torque = oilTorques(then);
-  const ModeVector rubbed = forceOfSeals(then);
+  const LogOil way = wayOfSeals(readings->ahead + waiting_);
+  const LogOil torque = oilTorques(then), seals = sealTorques(way);
+  const ModeVector rubbed = forceOfSeals(way);
   for (int k = 0; k < count_; ++k) {
     Seen& its = seen[static_cast<std::size_t>(k)];
     its.acceleration += rubbed[k];
-    for (int i = 0; i < count_; ++i)
+    for (int i = 0; i < count_; ++i) {
       its.by_oil[static_cast<std::size_t>(i)] =
           modes_.shape(i, k) * torque[i] + 0.5 * modes_.oil_share(i, k) * its.damped * its.then.state.v;
+      its.by_rubbing[static_cast<std::size_t>(i)] = -modes_.shape(i, k) * seals[i];
+    }
   }
   std::array<State, kTogether> row;
   std::array<double, kTogether> difference;  // of the value from what is predicted
@@ -267,6 +277,8 @@ StateList ModeIdentifier::keptStates() const noexcept {
   StateList kept;
   if (!learns_) return kept;
   for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kOil)), kept.add(at(k, kDamping));
+  for (const int rubs : rubbing_at_)
+    if (keeps_oil_ && rubs >= 0) kept.add(rubs);
   if (keeps_oil_) kept.add(delayAt(Clock::kImu));
   if (keeps_oil_ || !delayShows(Clock::kPressures)) kept.add(delayAt(Clock::kPressures));
   return kept;

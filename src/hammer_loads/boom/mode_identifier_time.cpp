@@ -82,8 +82,7 @@ ModeHistory::Moment ModeIdentifier::momentAt(int mode, double ahead) const noexc
 /// fastest mode. Beyond the queue, and before the history, the last force is kept.
 ModeHistory::Moment ModeIdentifier::momentAhead(int mode, double ahead) const noexcept {
   const Mode m = modeAt(mode);
-  const double beside = forceOfSeals(statesNow())[mode] + rockOn(mode) * state_[kContact],
-               damped = 2.0 * m.zeta * m.omega;
+  const double beside = forceOfSeals(way_)[mode] + rockOn(mode) * state_[kContact], damped = 2.0 * m.zeta * m.omega;
   ModeHistory::Moment moment{stateOf(mode), force_[mode], force_rate_[mode]};
   const auto move = [&](double h) {
     ModeState& now = moment.state;

@@ -1,6 +1,7 @@
 /// Friction of a cylinder's seals, between its oil and its joint.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/boom/cylinder.h"
@@ -8,29 +9,31 @@
 
 namespace hammer_loads {
 
-/// Coulomb friction against the rod's motion, as a torque on the joint: the joint's load is that of the oil and
-/// way() times this torque. One part of it is known, the other only by its standard deviation.
+/// Friction against the rod's motion, as a torque on the joint: the joint's load is that of the oil and `way`, from -1
+/// to 1, times this torque. One part of it is known, the other only by its standard deviation. The seals yield before
+/// they slide: way' = (rate - |rate| way)/yielding (P. R. Dahl's model).
 struct Seals {
   double known{}, deviation{};  ///< standard [N m]
   double driven{};              ///< rate of the joint beside its vibration [rad/s]
-  double slow{1.0};             ///< joint rate below which the direction of friction is uncertain [rad/s]
+  double yielding{1.0};         ///< turn of the joint before the seals slide [rad]
 
-  /// -1 to 1: of the joint, at a rate of vibration [rad/s].
-  double way(double vibrating) const noexcept {
-    const double rate = driven + vibrating;
-    return rate / std::sqrt(square(rate) + square(slow));
+  /// Later or, to first order, earlier `way` of a joint that vibrates with a rate [rad/s].
+  double wayAfter(double way, double vibrating, double time) const noexcept {
+    const double turned = (driven + vibrating) * time / yielding, size = std::abs(turned);
+    if (time < 0.0) return std::clamp(way + turned + size * way, -1.0, 1.0);
+    const double end = turned < 0.0 ? -1.0 : 1.0;
+    return end + (way - end) * std::exp(-size);
   }
 };
 
 /// Seals by the boom file. arm [m/rad]; torque of the oil [N m]; driven: rate of the joint without its vibration
 /// [rad/s].
 inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, double driven) noexcept {
-  // A rod's speed [m/s] near standstill, as Stribeck's.
-  constexpr double kSlowRod = 0.002;
+  constexpr double kYielding = 3e-5;  // of a rod [m]
   const CylinderParameters& p = cylinder.parameters();
   const double size = std::abs(arm), force = std::abs(oil_torque / arm);
   return {size * (p.friction_force + p.friction * force),
-          size * std::sqrt(square(p.friction_force_std) + square(p.friction_std * force)), driven, kSlowRod / size};
+          size * std::sqrt(square(p.friction_force_std) + square(p.friction_std * force)), driven, kYielding / size};
 }
 
 }  // namespace hammer_loads

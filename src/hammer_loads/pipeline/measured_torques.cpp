@@ -11,7 +11,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLag = 0.4;  // part of the oscillation per root of the surprise: 5 to 20 ms cost 0.3 to 1.4
+constexpr double kLaw = 0.3;  // error of the law of friction, of its size: seals yield before they slide
+// Prior: kLaw
+constexpr double kSlowJoint = 0.005;  // rate near standstill [rad/s]
+constexpr double kLag = 0.4;          // part of the oscillation per root of the surprise: 5 to 20 ms cost 0.3 to 1.4
 
 /// Friction of seals between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
@@ -19,11 +22,11 @@ struct Rubbing {
   double deviation{}, lasting{};  ///< standard; the part of it while the operator's motion sets the rod's direction
 };
 
-/// vibrating: rate of the joint [rad/s].
-Rubbing rubbing(const Seals& seals, double vibrating) noexcept {
-  const double way = seals.way(vibrating);
-  const double one_way = square(seals.driven) / (square(seals.driven) + square(vibrating) + square(seals.slow));
-  return {seals.known * way, std::sqrt(square(seals.deviation) + (1.0 - square(way)) * square(seals.known)),
+/// vibrating: rate of the joint [rad/s]; way: see Seals.
+Rubbing rubbing(const Seals& seals, double vibrating, double way) noexcept {
+  const double one_way = square(seals.driven) / (square(seals.driven) + square(vibrating) + square(kSlowJoint));
+  return {seals.known * way,
+          std::sqrt(square(seals.deviation) + square(kLaw * seals.known) + (1.0 - square(way)) * square(seals.known)),
           std::sqrt(one_way) * seals.deviation};
 }
 
@@ -120,7 +123,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       track.goes_on = true;
     }
     torque_[i] = torqueNow(track, seconds(sample - stamp), {model.now[j], model.rate[j]}, doubt);
-    addConstants(boom, i, motion[j], *torque_[i]);
+    addConstants(boom, i, motion[j], seconds(sample - sample_), *torque_[i]);
   }
   read_ = doubt.delay != 0.0 ? JointVector(boom.vibration().oilTorqueRead(0.0) + steady) : model.now;
   model_ = model, sample_ = sample;
@@ -146,20 +149,26 @@ MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double ag
 }
 
 /// Adds the friction of seals, its uncertainty and that of the sensors' offsets. motion: of the joint [rad/s].
-void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motion, Torque& torque) noexcept {
+void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motion, double step,
+                                   Torque& torque) noexcept {
   const Cylinder& cylinder = boom.cylinders()[i];
   const double arm = torque.at.arm;
-  const Rubbing seals =
-      rubbing(sealsOf(cylinder, arm, torque.value, motion), boom.vibration().velocity()[cylinder.joint()]);
+  const auto& identifier = boom.vibration().identifier();
+  Seals seals = sealsOf(cylinder, arm, torque.value, motion);
+  if (identifier) seals = identifier->withIdentified(i, seals);
+  const double vibrating = boom.vibration().velocity()[cylinder.joint()];
+  Track& track = tracks_[i];
+  track.way = seals.wayAfter(track.way, vibrating, std::max(0.0, step));
+  if (!std::isfinite(track.way)) track.way = 0.0;
+  const Rubbing rubbed = rubbing(seals, vibrating, track.way);
   // A zero that is off has the lever of another angle.
   const CylinderParameters& p = cylinder.parameters();
   const double offset = square(arm * cylinder.boreArea() * p.pressure_offset_std) +
                         square(torque.value * torque.at.arm_rate / arm * p.joint_zero_std);
-  const auto& identifier = boom.vibration().identifier();
-  torque.value += seals.torque;
+  torque.value += rubbed.torque;
   torque.constant =
-      std::sqrt(square(seals.deviation) + offset + (identifier ? square(identifier->dampingBesideOil(i)) : 0.0));
-  torque.lasting = std::sqrt(square(seals.lasting) + offset);
+      std::sqrt(square(rubbed.deviation) + offset + (identifier ? square(identifier->dampingBesideOil(i)) : 0.0));
+  torque.lasting = std::sqrt(square(rubbed.lasting) + offset);
 }
 
 }  // namespace hammer_loads

@@ -60,6 +60,7 @@ class MeasuredTorques {
     StampNs stamp{};           ///< stamp of the last reading
     double interval{};         ///< since the one before [s]
     bool goes_on{};            ///< known at the last sample
+    double way{};              ///< see Seals
     double torque{};           ///< by it [N m]
     double model{};  ///< torque of weight, motion and oil at that reading, by the vibration updated with it [N m]
     double rest{}, last{}, before{};  ///< reading less model: as followed, of the last and the one before [N m]
@@ -84,7 +85,7 @@ class MeasuredTorques {
   };
   static Doubt doubtOf(const Vibration& vibration, double stamp_noise) noexcept;
   static Torque torqueNow(const Track& track, double age, const Model& model, const Doubt& doubt) noexcept;
-  static void addConstants(const Boom& boom, std::size_t cylinder, double motion, Torque& torque) noexcept;
+  void addConstants(const Boom& boom, std::size_t cylinder, double motion, double step, Torque& torque) noexcept;
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
   static void followRest(Track& track, double rest) noexcept;
 
