@@ -106,15 +106,15 @@ ModeIdentifier::States ModeIdentifier::statesNow() const noexcept {
   return now;
 }
 
-/// Without an IMU, wrong stiffnesses look like friction: it is estimated once the frequencies are known and a mode is
-/// clearly damped more than given. Stiffnesses and damping that were found without it count as less known then.
+/// Wrong stiffnesses look like friction: it is estimated once the frequencies are known and a mode is clearly damped
+/// more than given. Without an IMU, the stiffnesses and damping that were found before count as less known then.
 void ModeIdentifier::setSeals(std::size_t cylinder, const Seals& seals) noexcept {
   seals_[cylinder] = seals;
   int& rubs = rubbing_at_[cylinder];
   if (!learns_ || rubs >= 0 || !(seals.deviation > 0.0)) return;
   bool damped = false;
   for (int k = 0; k < count_; ++k) damped = damped || state_[at(k, kDamping)] > kRubbed + 2.0 * dampingDeviation(k);
-  if (!imuSpeaks() && !(identified() && damped)) return;
+  if (!(identified() && damped)) return;
   rubs = kSlots - ++used_slots_;
   forget(rubs, 1.0);
   if (!imuSpeaks()) unlearn(1.0 / count_);

@@ -35,7 +35,7 @@ struct TwoBodyDrive {
 
 struct TwoBodyAccelerations {
   double crank{}, rocker{};  ///< [rad/s2]
-  double tension{};          ///< of the rod [N]
+  double tension{};          ///< force in the rod [N]
 };
 
 /// Acceleration of the rocker relative to that of a rigid rod at the crank's acceleration [rad/s2].

@@ -80,7 +80,7 @@ class UnknownForce {
   double contacts() const noexcept;
 
   const Mechanism* mechanism_;
-  double given_clearance_{}, given_friction_radius_{};  ///< those of the hammer file [m]
+  double given_clearance_{}, given_friction_radius_{};  ///< values of the hammer file [m]
   double clearance_{}, friction_radius_{}, damping_{};  ///< c [m], rho [m], zeta [-]
   double stiffness_{};                                  ///< k [N/m]
   Greatest now_, last_;                                 ///< since the last blow; in the revolution before it
