@@ -228,7 +228,7 @@ void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, k
     }
     const ModeState of_damping = by(-damped_now, -damped_next);
     of.add(x + kDamping, of_damping.x, of_damping.v);
-    for (int i = 0; i < count_ && learns_; ++i) {
+    for (int i = 0; i < count_; ++i) {
       const int rubs = rubbing_at_[static_cast<std::size_t>(i)];
       if (rubs < 0) continue;
       const ModeState of_seals = by(-modes_.shape(i, k) * rubbed_now[i], -modes_.shape(i, k) * rubbed_next[i]);

@@ -112,9 +112,10 @@ void ModeIdentifier::setSeals(std::size_t cylinder, const Seals& seals) noexcept
   seals_[cylinder] = seals;
   int& rubs = rubbing_at_[cylinder];
   if (!learns_ || rubs >= 0 || !(seals.deviation > 0.0)) return;
+  if (!identified()) return;
   bool damped = false;
   for (int k = 0; k < count_; ++k) damped = damped || state_[at(k, kDamping)] > kRubbed + 2.0 * dampingDeviation(k);
-  if (!(identified() && damped)) return;
+  if (!damped) return;
   rubs = kSlots - ++used_slots_;
   forget(rubs, 1.0);
   if (!imuSpeaks()) unlearn(1.0 / count_);
@@ -184,19 +185,21 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     for (int i = 0; i < count_; ++i)
       rows(kept + kParts * i + kOil, k) = -modes_.shape(i, k) * torque[i] - 0.5 * modes_.oil_share(i, k) * damped * s.v;
   }
+  LogOil unknown = LogOil::Zero();  // standard deviation of each cylinder's friction [N m]
+  for (int i = 0; i < count_; ++i) {
+    const auto cylinder = static_cast<std::size_t>(i);
+    unknown[i] = withIdentified(cylinder, seals_[cylinder]).deviation;
+  }
   JointMatrix covariance(count_, count_);
   for (int k = 0; k < count_; ++k) {
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
     with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
     for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
-    // The first term is that of damping that is not the oil's, which is neither linear nor of a single mode; the rest
-    // is that of errors of the mode's shape.
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
-    for (int i = 0; i < count_; ++i)
-      covariance(k, k) +=
-          square(modes_.shape(i, k) * way_[i] *
-                 withIdentified(static_cast<std::size_t>(i), seals_[static_cast<std::size_t>(i)]).deviation);
+    for (int i = 0; i < count_; ++i) covariance(k, k) += square(modes_.shape(i, k) * way_[i] * unknown[i]);
+    // The first term is that of damping by neither oil nor known friction, which is not linear and not of a single
+    // mode; the others are those of errors of the mode's shape.
     covariance(k, k) += besideOil(k) + square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +
                         square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
   }

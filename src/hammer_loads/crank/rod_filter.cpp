@@ -40,14 +40,14 @@ constexpr int kEnough = 8;
 RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(mechanism) {
   const HammerParameters& p = mechanism.parameters();
   const RodPrior prior = priorOf(p.rod, p.rod_std);
-  const double play = pins == Pins::kPlay ? prior.play : 0.0;
-  learned_.play = pins == Pins::kPlay && prior.rod.play > 0.0 ? prior.rod.play : play;
+  const bool worn = pins == Pins::kPlay;
+  const double play = worn ? prior.play : 0.0, friction = worn ? 0.0 : prior.friction_radius;
+  learned_.play = worn && prior.rod.play > 0.0 ? prior.rod.play : play;
   learned_.friction = prior.rod.friction_radius;
   learned_.restitution = kFirstRestitution;
   learned_.log_stiffness = std::log(prior.rod.stiffness);
   learned_.log_damping = std::log(prior.rod.damping_ratio);
-  unknown_friction_ = (pins == Pins::kPlay ? 1.0 : kUnidentified) * prior.friction_radius;
-  const double friction = pins == Pins::kTight ? prior.friction_radius : 0.0;
+  unknown_friction_ = (worn ? 1.0 : kUnidentified) * prior.friction_radius;
   Eigen::Matrix<double, kLearned, 1> deviations;
   deviations << prior.log_stiffness, prior.log_damping, play, friction, kRestitutionDeviation, kPlaceDeviation;
   learned_covariance_ = deviations.cwiseAbs2().asDiagonal();

@@ -51,8 +51,8 @@ inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexce
 
 /// The pins as the readings show them.
 struct IdentifiedPins {
-  double clearance{};        ///< joint clearance along the rod, of both pins together [m]; 0 if the readings fit none
-  double friction_radius{};  ///< standard deviation of RodSpring::friction_radius [m]
+  double clearance{};            ///< joint clearance along the rod, of both pins together [m]; 0 if they are tight
+  double friction_radius_std{};  ///< standard deviation of RodSpring::friction_radius [m]
 };
 
 /// y'' = -square y - 2 decay y', exactly over a time, with any damping.

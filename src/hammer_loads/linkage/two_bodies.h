@@ -1,7 +1,6 @@
 /// Crank and rocker as two bodies, the rod between them a spring: how they move after a blow.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -37,19 +36,6 @@ struct TwoBodyAccelerations {
   double crank{}, rocker{};  ///< [rad/s2]
   double tension{};          ///< force in the rod [N]
 };
-
-/// Acceleration of the rocker relative to that of a rigid rod at the crank's acceleration [rad/s2].
-inline double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
-  return a.rocker - links.rocker.u * a.crank - links.rocker.du * s.speed * s.speed;
-}
-
-/// Force in the rod [N] that exerts a moment on the rocker [N m]. Its lever vanishes at the dead centre; the force is
-/// computed with at least a hundredth of the rocker's length.
-inline double rodForce(const Mechanism& mechanism, const LinkMotion& links, double moment) noexcept {
-  constexpr double kLeastLever = 0.01;
-  // Numerical: kLeastLever
-  return std::abs(moment) / (mechanism.parameters().lengths.rocker * std::max(kLeastLever, std::abs(links.sin_mu)));
-}
 
 /// With independent angles phi and psi, a rod whose masses move in proportion between its pins and theta = psi - phi,
 /// kinetic energy is 1/2 (M11 w^2 + 2 M12(theta) w v + M22 v^2), M11 and M22 constant (as BlowInertia). In phi and x:

@@ -24,6 +24,11 @@ constexpr std::int64_t kOthersTurn = 4;                 // [blows]
 // Numerical: kOthersTurn
 constexpr double kContact = 5e-4, kContactsShare = 0.01;  // [s]; of a restitution: what that makes of it
 
+/// Acceleration of the rocker relative to that of a rigid rod at the crank's acceleration [rad/s2].
+double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
+  return a.rocker - links.rocker.u * a.crank - links.rocker.du * s.speed * s.speed;
+}
+
 /// After a blow with a small restitution the rod brakes the crank to less than kSlowCrank. A rocker that was never
 /// struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/linkage/two_bodies.h"
+#include "hammer_loads/linkage/rod_spring.h"
 #include "hammer_loads/pipeline/rod_ring.h"
 #include "hammer_loads/util/square.h"
 
@@ -19,6 +19,8 @@ constexpr double kFrictionPins = 2.0;   // at both ends of the rocker
 constexpr double kHeld = 0.02;          // [s] for which friction has changed what the rod does
 // Prior: WornMachine.IsCoveredWithFrictionAndClearance of kContacts, kContactsLever, kHidden, kOfDamping, kLasts,
 // kFrictionPins, kHeld
+constexpr double kLeastLever = 0.01;  // part of l3: below it the rod's force does not follow from its moment
+// Numerical: kLeastLever
 
 }  // namespace
 
@@ -41,14 +43,14 @@ void UnknownForce::follow(double step, bool passed, bool waits) noexcept {
 }
 
 void UnknownForce::observe(const std::optional<IdentifiedPins>& pins) noexcept {
-  friction_radius_ = pins ? pins->friction_radius : given_friction_radius_;
+  friction_radius_ = pins ? pins->friction_radius_std : given_friction_radius_;
   clearance_ = pins ? std::hypot(pins->clearance, kHidden * given_clearance_) : given_clearance_;
 }
 
 void UnknownForce::vibrates(const LinkMotion& links, double vibration) noexcept {
   const HammerParameters& p = mechanism_->parameters();
   const double moment = p.rocker_inertia_about_pivot * std::abs(vibration);
-  const double force = rodForce(*mechanism_, links, moment);
+  const double force = moment / (p.lengths.rocker * std::max(kLeastLever, std::abs(links.sin_mu)));
   held_ = std::max(force, held_);
   now_ = {std::max(now_.moment, moment), std::max(now_.force, force)};
 }

@@ -77,7 +77,7 @@ class HammerOnBoom {
     double pressure{};  ///< at the motor [Pa]
     Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};   ///< oil leaked in each cylinder, from bore to rod side [m3]
     Eigen::Vector3d sheared{Eigen::Vector3d::Zero()};  ///< displacement of each cylinder's seals before they slide [m]
-    ToolState tool;                                    ///< tool of an elastic machine; the members below likewise
+    ToolState tool;                                    ///< tool of an elastic machine; its impulses and energy follow
     double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
   };
   /// A moving body: its place, and what each coordinate does to place and angle.
