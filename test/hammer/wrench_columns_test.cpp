@@ -119,5 +119,30 @@ TEST(WrenchColumns, EqualTheLoadsOnTheShaftOfTheHammersBesideIt) {
   }
 }
 
+TEST(WrenchColumns, AreWithinAHundredthOfTheLargestFromATable) {
+  HammerParameters p = test::mo100LinkageParameters();
+  p.deviations = usualDeviations(p);
+  const Mechanism mechanism = test::mechanismOf(p);
+  for (const Level level : {Level::kRocker, Level::kLinkage}) {
+    const HullModel model(mechanism, level);
+    const WrenchColumns exact(model);
+    WrenchColumns table(model);
+    table.tabulate();
+    WrenchColumns::Matrix worst = WrenchColumns::Matrix::Zero(), largest = worst;
+    for (double offset = -3.14; offset < 3.14; offset += 1.3e-3) {
+      const CrankMotion crank{CrankAngle::fromOffset(offset), 31.0, 400.0 * std::sin(3.0 * offset)};
+      const HullMotion hull{{2.0, -9.0}, 0.0, 0.0};
+      const LinksAtAngle at = linksAt(model, crank.angle);
+      const WrenchColumns::Matrix truth = exact.wrench(0.7, at, crank, hull);
+      worst = worst.cwiseMax((table.wrench(0.7, at, crank, hull) - truth).cwiseAbs());
+      largest = largest.cwiseMax(truth.cwiseAbs());
+      const HullMotion turns{hull.gravity, 0.5, 3.0};  // beyond the table
+      EXPECT_EQ(table.wrench(0.7, at, crank, turns), exact.wrench(0.7, at, crank, turns));
+    }
+    EXPECT_TRUE((worst.array() <= 0.01 * largest.array()).all()) << worst << "\n\n" << largest;
+    EXPECT_GT(worst.sum(), 0.0);  // between its points
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -3,39 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "hammer_loads/crank/crank_dynamics.h"
 
 namespace hammer_loads {
-
-/// The hammer's columns at the end of a step, at the beginning of the next and for the deviation of the acceleration
-/// are those of nearly the same place, so that one evaluation serves all three.
-class NearColumns {
- public:
-  /// Columns at the place itself or at one beside it on the same branch.
-  MachineColumns::OnShaft at(const ShaftModel& model, CrankAngle angle) const noexcept {
-    return serves(angle) ? on_shaft_ : model.columns(angle);
-  }
-  /// Evaluates the columns at a place, which becomes the reference.
-  const MachineColumns::OnShaft& moveTo(const ShaftModel& model, CrankAngle angle) noexcept {
-    if (!serves(angle)) {
-      on_shaft_ = model.columns(angle);
-      angle_ = angle;
-    }
-    return on_shaft_;
-  }
-
- private:
-  /// Angle within which a column changes by a hundredth of its largest value [rad].
-  static constexpr double kBeside = 1e-3;
-  bool serves(CrankAngle angle) const noexcept {
-    return angle.side == angle_.side && std::abs(angle.offset - angle_.offset) < kBeside;
-  }
-
-  CrankAngle angle_{std::numeric_limits<double>::quiet_NaN()};
-  MachineColumns::OnShaft on_shaft_{MachineColumns::OnShaft::Zero()};
-};
 
 /// A step keeps h = sqrt(M) w, M = Jc + J, but for what the torque adds (crank_dynamics.h). A column dJ of the links'
 /// inertia makes of the speed at its start another h, and of h at its end another speed: w/2 (dJ/M at the start less
@@ -45,19 +16,17 @@ class ColumnStep {
  public:
   using Columns = Eigen::Matrix<double, 1, kMachineColumns>;
 
-  /// Before the step. near: moves with it; inertia: Jc [kg m2].
-  ColumnStep(const ShaftModel& model, const ShaftState& from, double inertia, const ShaftLoad& load,
-             NearColumns& near) noexcept
-      : near_(near),
-        start_(near.moveTo(model, from.position.angle)),
+  /// Before the step. inertia: Jc [kg m2].
+  ColumnStep(const ShaftModel& model, const ShaftState& from, double inertia, const ShaftLoad& load) noexcept
+      : start_(model.columns(from.position.angle)),
         offset_(from.position.angle.offset),
         m_(inertia + load.inertia),
         weight_(load.weight_torque) {}
   /// Changes of the speed [rad/s] at the end of the step by the columns. torque: on the crank beside its links [N m];
   /// struck: it passed a blow.
   Columns ofSpeed(const ShaftModel& model, const ShaftState& to, double inertia, const ShaftLoad& load, double torque,
-                  double dt, bool struck) noexcept {
-    const MachineColumns::OnShaft& end = near_.moveTo(model, to.position.angle);
+                  double dt, bool struck) const noexcept {
+    const MachineColumns::OnShaft end = model.columns(to.position.angle);
     const double m = inertia + load.inertia;
     Columns relative = start_.row(0) / m_ - end.row(0) / m;  // of h kept
     double begin = 0.5;                                      // part of the step
@@ -76,7 +45,6 @@ class ColumnStep {
     return (at.row(2) - (torque / m) * at.row(0)) / m;
   }
 
-  NearColumns& near_;
   MachineColumns::OnShaft start_;
   double offset_, m_, weight_;  ///< at the step's start: angle [rad], M [kg m2], the links' weight on the crank [N m]
 };

@@ -5,6 +5,7 @@
 
 #include "hammer_loads/crank/column_step.h"
 #include "hammer_loads/util/growth.h"
+#include "hammer_loads/util/parts.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -61,7 +62,7 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     const double torque_before = state.torque;
     const CrankPosition from = state.position;
     std::optional<ColumnStep> columns;
-    if (!model.isExact()) columns.emplace(model, state, state.drive_inertia, load, near);
+    if (!model.isExact()) columns.emplace(model, state, state.drive_inertia, load);
     state.torque -= 0.5 * supply.stiffness * supply.lead(state.speed * h, h);  // mean of the step
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
     const double lead = supply.lead(difference(state.position, from), h);
@@ -158,7 +159,7 @@ bool CrankBelief::isSound(double most_speed) const noexcept {
 void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double acceleration, double inverse_inertia,
                      CrankUncertainty& result) noexcept {
   if (model.isExact()) return;
-  const MachineColumns::OnShaft on_shaft = belief.near.at(model, belief.state.position.angle);
+  const MachineColumns::OnShaft on_shaft = model.columns(belief.state.position.angle);
   result.by_constant.row(CrankUncertainty::kAcceleration).tail<kMachineColumns>() +=
       inverse_inertia *
       (on_shaft.row(2) - square(belief.state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));

@@ -45,7 +45,6 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   double most_inertia{};   ///< upper bound of the drive inertia [kg m2]
   bool tool_met{};         ///< true if the tool was met before the dead centre, where nothing strikes any more
   bool struck_early{};     ///< the last blow's factor acted before the dead centre
-  NearColumns near;        ///< columns of the hammer, where the state was last predicted
 
   /// Predicts by dt [s] > 0 with random walks; returns the number of blows. Stops at most_speed [rad/s].
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,

@@ -32,11 +32,6 @@ struct WayPiece {
   bool at_blow;  ///< ends there
 };
 
-/// An offset from the blow [rad] that the side does not have.
-inline bool isBeyond(Side side, double offset) noexcept {
-  return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0;
-}
-
 /// Part of the step dt after which the crank is at the blow: safeguarded secant on the smooth continuation.
 /// offset_after(t): offset from the blow [rad] after t of dt; start, end: at both ends, of different signs.
 template <typename Function>
@@ -74,9 +69,16 @@ class ShaftModel {
   }
   /// Returns true for an exact hammer, which has no columns.
   bool isExact() const noexcept { return columns_ == nullptr; }
+  /// A copy that is prepared for many calls of columns().
+  ShaftModel tabulated() const {
+    ShaftModel copy = *this;
+    if (!isExact()) copy.table_ = std::make_shared<const ShaftTable>(columns_->shaftTable());
+    return copy;
+  }
   MachineColumns::OnShaft columns(CrankAngle angle) const noexcept {
-    return isExact() ? MachineColumns::OnShaft(MachineColumns::OnShaft::Zero())
-                     : columns_->onShaft(angle, hull_.gravity);
+    if (isExact()) return MachineColumns::OnShaft::Zero();
+    return table_ && !isBeyond(angle.side, angle.offset) ? onShaft(*table_, angle, hull_.gravity)
+                                                         : columns_->onShaft(angle, hull_.gravity);
   }
 
  private:
@@ -84,6 +86,7 @@ class ShaftModel {
   Level level_;
   double own_;  ///< crankWithinDrive()
   std::shared_ptr<const MachineColumns> columns_;
+  std::shared_ptr<const ShaftTable> table_;
   HullMotion hull_;
 };
 

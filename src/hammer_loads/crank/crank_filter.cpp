@@ -29,8 +29,8 @@ constexpr double kSlip = 3e-3;            // [s]: stamps that are off by so much
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
-    : model_(model),
-      step_model_(model),
+    : model_(model.tabulated()),
+      step_model_(model_),
       settings_(settings),
       first_guess_(drive_inertia),
       encoder_(settings.angle_resolution, settings.sensor),

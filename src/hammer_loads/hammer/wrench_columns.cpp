@@ -62,9 +62,34 @@ std::vector<std::string> WrenchColumns::names() const {
   return names;
 }
 
+/// Not for a drive whose share in the reaction is in doubt, as its effect depends on the drive's inertia.
+void WrenchColumns::tabulate() {
+  const auto ratio = indexOfConstant("drive_reaction_ratio");
+  if (isExact() || model_->level() == Level::kPulse || model_->mechanism().parameters().deviations[*ratio] > 0.0)
+    return;
+  table_.emplace([&](CrankAngle angle) {
+    const LinksAtAngle at = linksAt(*model_, angle);
+    const auto part = [&](double speed, double acceleration, Gravity gravity) {
+      return evaluate(0.0, at, {angle, speed, acceleration}, {gravity, 0.0, 0.0});
+    };
+    Table::Point point;
+    point << part(1.0, 0.0, {}), part(0.0, 1.0, {}), part(0.0, 0.0, {1.0, 0.0}), part(0.0, 0.0, {0.0, 1.0});
+    return point;
+  });
+}
+
 WrenchColumns::Matrix WrenchColumns::wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
                                             const HullMotion& hull) const noexcept {
   if (isExact()) return Matrix::Zero();
+  if (!table_ || hull.turns() || isBeyond(at.angle.side, at.angle.offset))
+    return evaluate(drive_inertia, at, crank, hull);
+  const Table::Point point = table_->at(at.angle);
+  return crank.speed * crank.speed * point.topRows<3>() + crank.acceleration * point.middleRows<3>(3) +
+         hull.gravity.x * point.middleRows<3>(6) + hull.gravity.z * point.bottomRows<3>();
+}
+
+WrenchColumns::Matrix WrenchColumns::evaluate(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
+                                              const HullMotion& hull) const noexcept {
   const auto load = [&](const HullModel& model, const LinkMotion& links) {
     return vectorOf(hullWrench(model, driveReaction(model, drive_inertia), links, crank, hull));
   };

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ class WrenchColumns {
   /// [kg m2]. No allocation.
   Matrix wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
                 const HullMotion& hull) const noexcept;
+  /// Prepares wrench() for many calls, in some 10 ms.
+  void tabulate();
   /// Sources in the columns' order, as MachineColumn::name.
   std::vector<std::string> names() const;
   /// Hammers in the columns' order, each a part `step` of its constant's deviation away (MachineColumn).
@@ -32,9 +35,16 @@ class WrenchColumns {
   double step(std::size_t i) const noexcept { return columns_->columns()[i].step; }
 
  private:
+  /// Wrench per square of the speed, per acceleration, per gravity along x and along z.
+  using Table = ColumnTable<12>;
+
+  Matrix evaluate(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
+                  const HullMotion& hull) const noexcept;
+
   const HullModel* model_;
   std::shared_ptr<const MachineColumns> columns_;
   std::vector<HullModel> models_;
+  std::optional<Table> table_;
 };
 
 }  // namespace hammer_loads

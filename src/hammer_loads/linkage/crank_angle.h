@@ -44,4 +44,9 @@ struct CrankAngle {
   }
 };
 
+/// An offset from the blow [rad] that the side does not have.
+inline bool isBeyond(Side side, double offset) noexcept {
+  return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0;
+}
+
 }  // namespace hammer_loads

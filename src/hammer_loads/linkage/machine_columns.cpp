@@ -88,6 +88,14 @@ MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravit
   return effects;
 }
 
+ShaftTable MachineColumns::shaftTable() const {
+  return ShaftTable([&](CrankAngle angle) {
+    ShaftTable::Point point;
+    point << onShaft(angle, {1.0, 0.0}), onShaft(angle, {0.0, 1.0}).row(2);
+    return point;
+  });
+}
+
 bool isPossible(const HammerParameters& parameters, std::size_t constant) {
   const HammerConstant& c = kHammerConstants[constant];
   return shifted(parameters, c, c.away * parameters.deviations[constant]).has_value();

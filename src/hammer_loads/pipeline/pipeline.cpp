@@ -58,6 +58,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
           pulseAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
       peak_at_speed_(peakAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate)),
       counts_(counts) {
+  columns_.tabulate();
   if (boom) boom_.emplace(*boom, settings_, mechanism.parameters().striking_distance);
   result_.outputs.reserve(std::min(sampler_.mostOutputs(), kMostOutputs));
 }
