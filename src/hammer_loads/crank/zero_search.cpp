@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
@@ -21,7 +22,8 @@ constexpr double kLongestMove = 0.1;      // [rad] of the zero in one step of th
 constexpr double kExplained = 0.05;       // part of the times' squares that the best fit may leave
 constexpr double kStated = 0.06;          // largest standard deviation of a zero that is stated [rad]
 constexpr double kStepGain = 0.02;        // of the mean step
-constexpr int kCoarseSteps = 3, kFineSteps = 5;
+constexpr int kCoarseSteps = 1, kFineSteps = 5;
+constexpr int kCandidates = 12;  // places of the blow whose fit is improved
 enum : Eigen::Index { kInertia, kEnergy, kTorque, kStiffness, kZero, kStart };
 
 }  // namespace
@@ -220,16 +222,23 @@ void ZeroSearch::evaluate() noexcept {
   for (const double time : times_)
     if (!(time > 0.0)) return;
   const Table table = tableAt(0.0);
+  std::array<std::pair<double, int>, kPlaces> places;  // squares of a first guess, place of the blow
+  std::array<Vector, kPlaces> unknowns;
+  for (int i = 0; i < kPlaces; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Fit fit = step(i, table, guess(i, table), false);
+    places[k] = {std::isfinite(fit.squares) ? fit.squares : kInfinity, i};
+    unknowns[k] = fit.unknowns;
+  }
+  std::partial_sort(places.begin(), places.begin() + kCandidates, places.end());
   int blow = 0;
   Fit best;
   best.squares = kInfinity;
-  for (int i = 0; i < kPlaces; ++i) {
-    Vector x = guess(i, table);
-    Fit fit;
-    for (int n = 0; n < kCoarseSteps; ++n) {
-      fit = step(i, table, x, false);
-      if (n + 1 < kCoarseSteps) x = fit.unknowns;
-    }
+  for (int c = 0; c < kCandidates; ++c) {
+    const int i = places[static_cast<std::size_t>(c)].second;
+    Vector x = unknowns[static_cast<std::size_t>(i)];
+    for (int n = 0; n < kCoarseSteps; ++n) x = step(i, table, x, false).unknowns;
+    const Fit fit = step(i, table, x, false);
     if (!(fit.squares < best.squares)) continue;
     best = fit;
     best.unknowns = x;

@@ -48,6 +48,14 @@ HAMMER_LOADS_INLINE HullWrench weightWrenchRocker(const Mechanism& mechanism, co
           mechanism.rockerFirstMoment() * (m.sin_psi * gravity.x + m.cos_psi * gravity.z)};
 }
 
+/// Level linkage: that of all links.
+HAMMER_LOADS_INLINE HullWrench weightWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l,
+                                                   Gravity gravity) noexcept {
+  const LinkMoments& k = mechanism.moments();
+  const Planar first_moment = k.fixed + k.crank * l.phi + k.rod * l.beta + k.rocker * l.psi;
+  return {k.mass * gravity.x, k.mass * gravity.z, first_moment.re * gravity.z + first_moment.im * gravity.x};
+}
+
 /// Level rocker: mass and inertia of the rocker, crank and rod massless (P0). Neglects: inertia and weight of crank and
 /// rod, friction. Momentum theorem: no pin force is formed, so nothing is singular at the blow.
 /// Deviates: P0 (1) prints P_tau and M with the sign of the acceleration; inertia opposes it (model.md 7).
@@ -173,7 +181,7 @@ inline HullWrench frameWrench(const Mechanism& mechanism, Level level, const Lin
     if (hull.turns()) addTurningRocker(mechanism, l.rocker, speed, hull, wrench);
     return wrench;
   }
-  HullWrench wrench = hullWrenchLinkage(mechanism, l, {}, hull.gravity);
+  HullWrench wrench = weightWrenchLinkage(mechanism, l, hull.gravity);
   if (hull.turns()) addTurningLinkage(mechanism, l, speed, hull, wrench);
   return wrench;
 }

@@ -113,14 +113,14 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
                    const HullMotion& hull, const HullMotionCovariance& covariance, HullDeviation& deviation) noexcept {
   if (covariance.isZero(0.0)) return;
   const auto load = [&](const HullMotion& h) { return vectorOf(frameWrench(model, links, crank_speed, h)); };
-  const HullMotion still{{0.0, 0.0}, hull.rate, 0.0};
-  const Eigen::Vector3d here = load(still);
   Eigen::Matrix<double, 3, 4> by;
-  by.col(0) = load({{1.0, 0.0}, hull.rate, 0.0}) - here, by.col(1) = load({{0.0, 1.0}, hull.rate, 0.0}) - here;
-  by.col(2) = (load({{0.0, 0.0}, hull.rate + kSpeedStep, 0.0}) - here) / kSpeedStep;
-  by.col(3) = load({{0.0, 0.0}, hull.rate, 1.0}) - here;
+  by.col(0) = load({{1.0, 0.0}, 0.0, 0.0}), by.col(1) = load({{0.0, 1.0}, 0.0, 0.0});
+  by.col(2).setZero();
+  if (covariance(2, 2) > 0.0)  // of a square
+    by.col(2) = 0.5 * (load({{0.0, 0.0}, hull.rate + 1.0, 0.0}) - load({{0.0, 0.0}, hull.rate - 1.0, 0.0}));
+  by.col(3) = load({{0.0, 0.0}, 0.0, 1.0});
   by(2, 3) -= drive.by_hull;
-  addCovariance(by * covariance * by.transpose(), deviation);
+  addCovariance((by.lazyProduct(covariance)).eval().lazyProduct(by.transpose()), deviation);
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
