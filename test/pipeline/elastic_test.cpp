@@ -95,7 +95,7 @@ TEST(ElasticSession, TightPinsDoNotPassForWornOnes) {
     const RodFilter& rod = pipeline.elastic().filter();
     if (stamp < 4'000'000'000 || r.refusal || !pipeline.elastic().runs() || !(rod.sinceBlow() > 0.006)) continue;
     ++samples;
-    worn += std::abs(rod.motion().play - 2e-4) < 8e-5;
+    worn += std::abs(rod.motion().rod.play - 2e-4) < 8e-5;
     const double error = std::abs(r.wrench.force_z - recorded.number(i, "force_z_N"));
     covered += error < 2.0 * r.deviation.wrench.force_z;
     surprising += error > 4.0 * r.deviation.wrench.force_z;

@@ -218,7 +218,8 @@ TEST(TwoBodies, ABlowActsOnTheRockerAlone) {
   const TwoBodyDrive drive{kJc, 0.0, {}};
   TwoBodyState s{{-1e-4, Side::kBeforeBlow}, 14.0, 0.0, 0.0};
   const double before = bodies.links(s.angle).rocker.u * s.speed;
-  const std::optional<TwoBodies::Blow> blow = bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, s);
+  TwoBodies::LinksMemo memo;
+  const std::optional<TwoBodies::Blow> blow = bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, s, memo);
   ASSERT_EQ(s.angle.side, Side::kAfterBlow);
   ASSERT_TRUE(blow);
   EXPECT_NEAR(blow->time, 1e-4 / 14.0, 1e-8);
@@ -226,7 +227,7 @@ TEST(TwoBodies, ABlowActsOnTheRockerAlone) {
   EXPECT_EQ(blow->before.angle.side, Side::kBeforeBlow);
   EXPECT_NEAR(rockerOf(bodies, blow->after), 0.0, 1e-7);
   TwoBodyState later = s;
-  EXPECT_FALSE(bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, later)) << "it is behind it";
+  EXPECT_FALSE(bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, later, memo)) << "it is behind it";
   EXPECT_NEAR(bodies.links(s.angle).rocker.u * s.speed + s.beside_speed, -0.16 * before, 1e-2);
   EXPECT_NEAR(rockerOf(bodies, s), 0.0, 1e-3);
   TwoBodyState early{{-1e-4, Side::kBeforeBlow}, 14.0, 0.0, 0.0};

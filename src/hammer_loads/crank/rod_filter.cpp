@@ -5,6 +5,8 @@
 
 #include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/util/growth.h"
+#include "hammer_loads/util/parts.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -17,8 +19,9 @@ constexpr double kOtherPlace = 2e-2;  // [rad] after a blow that this one does n
 // Prior: kOtherPlace
 constexpr double kWalks[] = {0.005, 0.01, 5e-6, 5e-5, 0.02, 4e-3};  // of the learned rows from blow to blow
 // Prior: kWalks
-constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
-// Prior: kLeastLog, kMostLog
+constexpr double kLeastStiffness = 5e7, kMostStiffness = 1e11;  // [N/m]
+constexpr double kLeastDamping = 0.02, kMostDamping = 20.0;
+// Prior: kLeastStiffness, kMostStiffness, kLeastDamping, kMostDamping
 constexpr double kLongest = 5e-4, kLongestLater = 1e-3;  // [s] of a part: near the blow the lever changes fast
 // Numerical: kLongest, kLongestLater
 constexpr double kNear = 0.25;  // [rad]
@@ -35,6 +38,17 @@ constexpr double kHeld = 0.02;         // T [s]
 // Prior: kNotCoulomb, kUnidentified, kHeld
 constexpr int kEnough = 8;
 
+/// Replaces those rows of an error that a step changes, or a bound; of: the displaced motion.
+void follow(const RodMotion& of, const RodMotion& from, Eigen::Ref<RodFilter::Belief::Vector> error) noexcept {
+  error[RodFilter::kAngle] = of.state.angle.offset - from.state.angle.offset;
+  error[RodFilter::kSpeed] = of.state.speed - from.state.speed;
+  error[RodFilter::kBeside] = of.state.beside - from.state.beside;
+  error[RodFilter::kBesideSpeed] = of.state.beside_speed - from.state.beside_speed;
+  error[RodFilter::kTorque] = of.torque - from.torque;
+  error[RodFilter::kPlay] = of.rod.play - from.rod.play;
+  error[RodFilter::kFriction] = of.rod.friction_radius - from.rod.friction_radius;
+}
+
 }  // namespace
 
 RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(mechanism) {
@@ -42,11 +56,9 @@ RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(m
   const RodPrior prior = priorOf(p.rod, p.rod_std);
   const bool worn = pins == Pins::kPlay;
   const double play = worn ? prior.play : 0.0, friction = worn ? 0.0 : prior.friction_radius;
-  learned_.play = worn && prior.rod.play > 0.0 ? prior.rod.play : play;
-  learned_.friction = prior.rod.friction_radius;
+  learned_.rod = prior.rod;
+  if (!worn || !(prior.rod.play > 0.0)) learned_.rod.play = play;
   learned_.restitution = kFirstRestitution;
-  learned_.log_stiffness = std::log(prior.rod.stiffness);
-  learned_.log_damping = std::log(prior.rod.damping_ratio);
   unknown_friction_ = (worn ? 1.0 : kUnidentified) * prior.friction_radius;
   Eigen::Matrix<double, kLearned, 1> deviations;
   deviations << prior.log_stiffness, prior.log_damping, play, friction, kRestitutionDeviation, kPlaceDeviation;
@@ -55,21 +67,13 @@ RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(m
   first_covariance_ = learned_covariance_;
 }
 
-RodSpring RodFilter::rod(const RodMotion& m) const noexcept {
-  return {std::exp(m.log_stiffness), std::exp(m.log_damping), m.play, m.friction};
-}
-
-TwoBodyDrive RodFilter::drive(const RodMotion& m) const noexcept {
-  return {std::exp(m.log_inertia), m.torque, gravity_};
-}
-
 void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
   const ShaftState& s = crank.state();
   gravity_ = gravity;
   motion_ = learned_;
   motion_.state = {s.position.angle, s.speed, 0.0, 0.0};
   motion_.torque = s.torque;
-  motion_.log_inertia = std::log(s.drive_inertia);
+  motion_.inertia = s.drive_inertia;
   since_blow_ = ratio_sum_ = fit_ = rod_force_ = 0.0;
   running_ = true;
   samples_ = 0;
@@ -84,16 +88,17 @@ void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
     if (learned_covariance_(i, i) > 0.0) learned_covariance_(i, i) += square(kWalks[i]);
   belief_.covariance.bottomRightCorner<kLearned, kLearned>() = learned_covariance_;
   const Belief::Matrix root = covarianceRoot(belief_.covariance);
-  bodies_.settle(rod(motion_), drive(motion_), motion_.state);
-  Belief::Matrix settled;
+  bodies_.settle(motion_.rod, drive(motion_), motion_.state);
+  Belief::Matrix settled = root;
   for (Eigen::Index i = 0; i < kSize; ++i) {
     RodMotion other = displaced(root.col(i));
-    bodies_.settle(rod(other), drive(other), other.state);
-    settled.col(i) = difference(other, motion_);
+    bodies_.settle(other.rod, drive(other), other.state);
+    follow(other, motion_, settled.col(i));
   }
   belief_.covariance = covarianceOf(settled);
   belief_.addNoise(kBeside, kBeside, square(kSettledX));
   belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kSettledSpeed));
+  root_ = covarianceRoot(belief_.covariance);
 }
 
 RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
@@ -103,37 +108,30 @@ RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
   m.state.beside += by[kBeside];
   m.state.beside_speed += by[kBesideSpeed];
   m.torque += by[kTorque];
-  m.log_inertia += by[kInertia];
-  m.log_stiffness += by[kStiffness];
-  m.log_damping += by[kDamping];
-  m.play = std::max(0.0, m.play + by[kPlay]);
-  m.friction = std::max(0.0, m.friction + by[kFriction]);
+  m.inertia *= hammer_loads::growth(by[kInertia]);
+  m.rod.stiffness *= hammer_loads::growth(by[kStiffness]);
+  m.rod.damping_ratio *= hammer_loads::growth(by[kDamping]);
+  m.rod.play = std::max(0.0, m.rod.play + by[kPlay]);
+  m.rod.friction_radius = std::max(0.0, m.rod.friction_radius + by[kFriction]);
   m.restitution += by[kRestitution];
   m.place += by[kPlace];
   return m;
 }
 
-RodFilter::Belief::Vector RodFilter::difference(const RodMotion& of, const RodMotion& from) const noexcept {
-  const TwoBodyState& s = of.state;
-  Belief::Vector d;
-  d << s.angle.offset - from.state.angle.offset, s.speed - from.state.speed, s.beside - from.state.beside,
-      s.beside_speed - from.state.beside_speed, of.torque - from.torque, of.log_inertia - from.log_inertia,
-      of.log_stiffness - from.log_stiffness, of.log_damping - from.log_damping, of.play - from.play,
-      of.friction - from.friction, of.restitution - from.restitution, of.place - from.place;
-  return d;
-}
-
-std::optional<TwoBodies::Blow> RodFilter::advance(double dt, bool strikes, RodMotion& m) const noexcept {
-  const RodSpring spring = rod(m);
+/// first: of the step's first part.
+std::optional<TwoBodies::Blow> RodFilter::advance(double dt, bool strikes, RodMotion& m,
+                                                  TwoBodies::LinksMemo& first) const noexcept {
   const TwoBodyDrive by = drive(m);
   const double longest = std::abs(m.state.angle.offset) < kNear ? kLongest : kLongestLater;
-  const int parts = std::max(1, static_cast<int>(std::ceil(dt / longest)));
+  const int parts = partsOf(dt, longest);
   const double from = m.state.angle.offset, part = dt / parts;
   std::optional<TwoBodies::Blow> blow;
+  TwoBodies::LinksMemo later;
   for (int i = 0; i < parts; ++i) {
+    TwoBodies::LinksMemo& memo = i == 0 ? first : later;
     if (!strikes) {
-      bodies_.move(spring, by, part, m.state);
-    } else if (const auto now = bodies_.moveToTool(spring, by, {m.place, m.restitution}, part, m.state)) {
+      bodies_.move(m.rod, by, part, m.state, memo);
+    } else if (const auto now = bodies_.moveToTool(m.rod, by, {m.place, m.restitution}, part, m.state, memo)) {
       blow = now;
       blow->time += i * part;
     }
@@ -144,7 +142,8 @@ std::optional<TwoBodies::Blow> RodFilter::advance(double dt, bool strikes, RodMo
 
 RodMotion RodFilter::between(double time) const noexcept {
   RodMotion there = before_;
-  if (time > 0.0) advance(time, true, there);
+  TwoBodies::LinksMemo memo;
+  if (time > 0.0) advance(time, true, there, memo);
   return there;
 }
 
@@ -152,26 +151,26 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   gravity_ = gravity;
   supply_ = walks.supply;
   before_ = motion_;
-  const Belief::Matrix root = covarianceRoot(belief_.covariance);
   RodMotion there = motion_;
-  blow_ = advance(dt, true, there);
+  TwoBodies::LinksMemo memo;
+  blow_ = advance(dt, true, there, memo);
   const bool struck = there.state.angle.side == Side::kAfterBlow;
   const Eigen::Index count = struck && !hasStruck() ? kSize : kRestitution;  // of the columns that a step moves
   const TwoBodyState& last = blow_ ? blow_->before : motion_.state;
   if (!hasStruck()) rocker_before_ = bodies_.links(last.angle).rocker.u * last.speed + last.beside_speed;
-  Belief::Matrix moved = root;
+  Belief::Matrix moved = root_;
   for (Eigen::Index i = 0; i < count; ++i) {
-    if (!(root(i, i) > 0.0)) continue;
-    RodMotion other = displaced(root.col(i));
-    advance(dt, struck, other);
+    if (!(root_(i, i) > 0.0)) continue;
+    RodMotion other = displaced(root_.col(i));
+    advance(dt, struck, other, memo);
     if (struck && other.state.angle.side == Side::kBeforeBlow)
       bodies_.strikeEarly(drive(other), {other.place, other.restitution}, other.state);
-    moved.col(i) = difference(other, there);
+    follow(other, there, moved.col(i));
   }
   if (hasStruck()) since_blow_ += dt;
   motion_ = there;
   belief_.covariance = covarianceOf(moved);
-  const double torque = square(walks.torque) * dt, b = 1.0 / std::exp(motion_.log_inertia);
+  const double torque = square(walks.torque) * dt, b = 1.0 / motion_.inertia;
   belief_.addNoise(kTorque, kTorque, torque);
   belief_.addNoise(kSpeed, kSpeed, square(walks.speed) * dt + torque * square(b * dt) / 3.0);
   belief_.addNoise(kSpeed, kTorque, 0.5 * torque * b * dt);
@@ -183,13 +182,13 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
 void RodFilter::addFriction(double dt) noexcept {
   const double inertia = bodies_.mechanism().parameters().rocker_inertia_about_pivot;
   const LinkMotion links = bodies_.links(motion_.state.angle);
-  const TwoBodyAccelerations a = bodies_.accelerations(rod(motion_), drive(motion_), motion_.state, links);
+  const TwoBodyAccelerations a = bodies_.accelerations(motion_.rod, drive(motion_), motion_.state, links);
   rod_force_ = std::max(std::abs(a.tension), rod_force_ * std::exp(-dt / kHeld));
   const double deviation = std::sqrt(belief_.covariance(kFriction, kFriction));
-  const double radius = kNotCoulomb * std::hypot(motion_.friction, deviation, unknown_friction_);
+  const double radius = kNotCoulomb * std::hypot(motion_.rod.friction_radius, deviation, unknown_friction_);
   const double impulse = 2.0 * kHeld * square(radius * rod_force_) * dt;  // square of an impulse [(N m s)^2]
   belief_.addNoise(kBesideSpeed, kBesideSpeed, impulse / square(inertia));
-  belief_.addNoise(kSpeed, kSpeed, impulse * std::exp(-2.0 * motion_.log_inertia));
+  belief_.addNoise(kSpeed, kSpeed, impulse / square(motion_.inertia));
 }
 
 bool RodFilter::take(const WeighedSample& sample) noexcept {
@@ -203,20 +202,19 @@ bool RodFilter::take(const WeighedSample& sample) noexcept {
   if (samples_ >= kEnough && growth() > mismatch::kContradicts) return false;
   motion_ = displaced(belief_.correct(kAngle, variance, Belief::ConstantRow()) * innovation);
   motion_.restitution = std::clamp(motion_.restitution, 0.0, 1.0);
-  motion_.log_stiffness = std::clamp(motion_.log_stiffness, kLeastLog[0], kMostLog[0]);
-  motion_.log_damping = std::clamp(motion_.log_damping, kLeastLog[1], kMostLog[1]);
+  motion_.rod.stiffness = std::clamp(motion_.rod.stiffness, kLeastStiffness, kMostStiffness);
+  motion_.rod.damping_ratio = std::clamp(motion_.rod.damping_ratio, kLeastDamping, kMostDamping);
+  root_ = covarianceRoot(belief_.covariance);
   return belief_.isSound();
 }
 
 double RodFilter::growth() const noexcept { return samples_ < kEnough ? 1.0 : std::max(1.0, ratio_sum_ / samples_); }
 
 double RodFilter::frictionDeviation() const noexcept {
-  return std::hypot(kUnidentified * motion_.friction, deviation(kFriction), unknown_friction_);
+  return std::hypot(kUnidentified * motion_.rod.friction_radius, deviation(kFriction), unknown_friction_);
 }
 
-RodFilter::Belief::Matrix RodFilter::errors() const noexcept {
-  return std::sqrt(growth()) * covarianceRoot(belief_.covariance);
-}
+RodFilter::Belief::Matrix RodFilter::errors() const noexcept { return std::sqrt(growth()) * root_; }
 
 void RodFilter::learn() noexcept {
   running_ = false;

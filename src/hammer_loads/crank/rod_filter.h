@@ -11,13 +11,11 @@ namespace hammer_loads {
 /// Everything that decides the motion around a blow.
 struct RodMotion {
   TwoBodyState state;
-  double torque{};                        ///< net, on the crank [N m]
-  double log_inertia{};                   ///< logarithm of Jc [kg m2]
-  double restitution{};                   ///< restitution of the rocker on the tool [-]
-  double log_stiffness{}, log_damping{};  ///< logarithms of RodSpring's stiffness and damping ratio
-  double play{};                          ///< joint clearance of the pins [m]
-  double friction{};                      ///< radius of a pin's friction circle [m]
-  double place{};                         ///< psi at which the tool is met [rad]: its contact's depth is part of it
+  double torque{};       ///< net, on the crank [N m]
+  double inertia{};      ///< Jc [kg m2]
+  double restitution{};  ///< restitution of the rocker on the tool [-]
+  RodSpring rod;
+  double place{};  ///< psi at which the tool is met [rad]: its contact's depth is part of it
 };
 
 /// The crank before the blow is estimated with a rigid mechanism; the rod's spring matters from some 15 ms before it
@@ -33,6 +31,7 @@ struct RodMotion {
 /// the friction radius and of its standard deviation; N is the rod's greatest force of the last T.
 class RodFilter {
  public:
+  /// Inertia, stiffness and damping ratio by their logarithms.
   enum Row : Eigen::Index {
     kAngle,
     kSpeed,
@@ -89,13 +88,12 @@ class RodFilter {
   double frictionDeviation() const noexcept;
   double deviation(Row row) const noexcept { return std::sqrt(growth() * belief_.covariance(row, row)); }
 
-  RodSpring rod(const RodMotion& motion) const noexcept;
-  TwoBodyDrive drive(const RodMotion& motion) const noexcept;
+  TwoBodyDrive drive(const RodMotion& m) const noexcept { return {m.inertia, m.torque, gravity_}; }
   const TwoBodies& bodies() const noexcept { return bodies_; }
 
  private:
-  std::optional<TwoBodies::Blow> advance(double dt, bool strikes, RodMotion& motion) const noexcept;
-  Belief::Vector difference(const RodMotion& of, const RodMotion& from) const noexcept;
+  std::optional<TwoBodies::Blow> advance(double dt, bool strikes, RodMotion& motion,
+                                         TwoBodies::LinksMemo& first) const noexcept;
   double growth() const noexcept;
   void addFriction(double dt) noexcept;
 
@@ -107,6 +105,7 @@ class RodFilter {
   RodMotion motion_, before_;  ///< at the last sample, at the one before
   std::optional<TwoBodies::Blow> blow_;
   Belief belief_;
+  Belief::Matrix root_{Belief::Matrix::Zero()};                 ///< of its covariance
   static constexpr Eigen::Index kLearned = kSize - kStiffness;  ///< the last rows
   using Learned = Eigen::Matrix<double, kLearned, kLearned>;
   RodMotion first_, learned_;  ///< rod, restitution, rod and place alone

@@ -12,13 +12,18 @@ template <int size>
 Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, size, size>& covariance) noexcept {
   constexpr double kRounding = 1e-12;  // relative, for a variance: a smaller pivot is a rounded zero
   // Numerical: kRounding
-  Eigen::Matrix<double, size, size> root = Eigen::Matrix<double, size, size>::Zero();
+  Eigen::Matrix<double, size, size, Eigen::RowMajor> root = Eigen::Matrix<double, size, size>::Zero();
   for (Eigen::Index j = 0; j < size; ++j) {
-    const double pivot = covariance(j, j) - root.row(j).head(j).squaredNorm();
+    const auto rest = [&](Eigen::Index i) {  // scalars: blocks of a size that changes cost twice as much
+      double sum = covariance(i, j);
+      for (Eigen::Index k = 0; k < j; ++k) sum -= root(i, k) * root(j, k);
+      return sum;
+    };
+    const double pivot = rest(j);
     if (!(pivot > kRounding * covariance(j, j))) continue;
     root(j, j) = std::sqrt(pivot);
-    for (Eigen::Index i = j + 1; i < size; ++i)
-      root(i, j) = (covariance(i, j) - root.row(i).head(j).dot(root.row(j).head(j))) / root(j, j);
+    const double inverse = 1.0 / root(j, j);
+    for (Eigen::Index i = j + 1; i < size; ++i) root(i, j) = inverse * rest(i);
   }
   return root;
 }
@@ -26,11 +31,7 @@ Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, siz
 /// The way back: of errors that are independent of each other, a column each. Symmetric to the last bit.
 template <int size>
 Eigen::Matrix<double, size, size> covarianceOf(const Eigen::Matrix<double, size, size>& errors) noexcept {
-  const Eigen::Matrix<double, size, size, Eigen::RowMajor> rows = errors;
-  Eigen::Matrix<double, size, size> covariance;
-  for (Eigen::Index i = 0; i < size; ++i)
-    for (Eigen::Index k = 0; k <= i; ++k) covariance(i, k) = covariance(k, i) = rows.row(i).dot(rows.row(k));
-  return covariance;
+  return errors.lazyProduct(errors.transpose());
 }
 
 }  // namespace hammer_loads

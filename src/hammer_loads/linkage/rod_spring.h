@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/sine_cosine.h"
 
 namespace hammer_loads {
 
@@ -65,7 +66,8 @@ struct Oscillator {
     double cosine, sine;  // sine over the frequency, both with the decay
     if (rest > 0.0) {
       const double frequency = std::sqrt(rest), e = std::exp(-decay * time);
-      cosine = e * std::cos(frequency * time), sine = e * std::sin(frequency * time) / frequency;
+      const SineCosine at = sineCosine(frequency * time);
+      cosine = e * at.cosine, sine = e * at.sine / frequency;
     } else {
       const double s = std::sqrt(-rest);
       const double slow = std::exp((s - decay) * time), fast = std::exp(-(s + decay) * time);

@@ -105,12 +105,14 @@ void TwoBodies::addFriction(double moment, const TwoBodyState& s, const LinkMoti
   a.on_crank -= moment * (sign(w) + at_crank * (by_crank - 1.0) + at_rocker * by_crank) - links.rocker.u * on_rocker;
 }
 
-void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& s) const noexcept {
+void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& s,
+                     LinksMemo& memo) const noexcept {
   const TwoBodyState from = s;
   TwoBodyState middle = s;
   middle.angle.offset += 0.5 * dt * s.speed;
   middle.beside += 0.5 * dt * s.beside_speed;
-  const LinkMotion there = links(middle.angle);
+  if (!(middle.angle == memo.angle)) memo = {middle.angle, links(middle.angle)};
+  const LinkMotion& there = memo.links;
   Local a = local(drive, middle, there);
   const double damping = rod.damping(), half = 0.5 * rod.play;
   const auto tensionAt = [&](const TwoBodyState& at) {
@@ -140,8 +142,8 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   // Pins that part or meet within the step: it is made of two.
   if (half > 0.0 && dt > kContact && (isFree(from) != free || isFree(s) != free)) {
     s = from;
-    move(rod, drive, 0.5 * dt, s);
-    move(rod, drive, 0.5 * dt, s);
+    move(rod, drive, 0.5 * dt, s, memo);
+    move(rod, drive, 0.5 * dt, s, memo);
   }
 }
 
@@ -164,9 +166,9 @@ void TwoBodies::strike(const TwoBodyDrive& drive, double restitution, TwoBodySta
 }
 
 std::optional<TwoBodies::Blow> TwoBodies::moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool,
-                                                     double dt, TwoBodyState& s) const noexcept {
+                                                     double dt, TwoBodyState& s, LinksMemo& memo) const noexcept {
   const TwoBodyState from = s;
-  move(rod, drive, dt, s);
+  move(rod, drive, dt, s, memo);
   if (s.angle.side == Side::kAfterBlow) return std::nullopt;
   const double there = links(s.angle).rocker.sin_psi + s.beside - tool.place;
   if (there > 0.0) return std::nullopt;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "hammer_loads/linkage/hull_motion.h"
@@ -21,7 +22,8 @@ struct TwoBodyState {
 
 /// Rigid links with the rocker where it is: lively rock throws it back by a tenth of a radian.
 inline LinkMotion withRocker(LinkMotion rigid, double beside) noexcept {
-  rigid.psi = rigid.psi * Planar{std::cos(beside), std::sin(beside)};
+  const SineCosine turned = sineCosine(beside);
+  rigid.psi = rigid.psi * Planar{turned.cosine, turned.sine};
   return rigid;
 }
 
@@ -53,9 +55,19 @@ class TwoBodies {
   /// Refers to the mechanism, which must outlive it.
   explicit TwoBodies(const Mechanism& mechanism) noexcept;
 
+  /// Links of a rigid rod at the last angle that was evaluated.
+  struct LinksMemo {
+    CrankAngle angle{std::numeric_limits<double>::quiet_NaN()};
+    LinkMotion links;
+  };
   /// By dt [s] > 0, over which levers count as constant: half a millisecond beside the blow, one elsewhere. Where pins
-  /// with joint clearance part or meet, it is made of parts.
-  void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state) const noexcept;
+  /// with joint clearance part or meet, it is made of parts. memo: of moves of other states from the same angle.
+  void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state,
+            LinksMemo& memo) const noexcept;
+  void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state) const noexcept {
+    LinksMemo memo;
+    move(rod, drive, dt, state, memo);
+  }
   /// At a state.
   TwoBodyAccelerations accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& state,
                                      const LinkMotion& links) const noexcept;
@@ -84,7 +96,7 @@ class TwoBodies {
   /// Moves the state by dt like move(), with a blow where the rocker reaches the tool. Returns that blow; its time
   /// counts from the beginning of the step [s].
   std::optional<Blow> moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool, double dt,
-                                 TwoBodyState& state) const noexcept;
+                                 TwoBodyState& state, LinksMemo& memo) const noexcept;
   /// Changes a state just before its blow into one that was struck already, by the path back on both sides (saltation).
   void strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBodyState& state) const noexcept;
 

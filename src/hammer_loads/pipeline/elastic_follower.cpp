@@ -65,7 +65,7 @@ void ElasticFollower::rest() noexcept {
   for (RodFilter& filter : filters_) filter.abandon();
 }
 
-/// The other filter runs on each fourth blow, since pins wear, and wherever the likelier one contradicts the readings.
+/// The other filter runs on each eighth blow, since pins wear, and wherever the likelier one contradicts the readings.
 bool ElasticFollower::runsAlone(std::int64_t blow) const noexcept {
   return best_ != nullptr && best_->isProven() && blow % kOthersTurn != 0;
 }
@@ -104,7 +104,7 @@ const RodFilter& ElasticFollower::likelier() const noexcept {
   const RodFilter &tight = filters_[0], &play = filters_[1];
   if (!play.isProven()) return tight;
   const double doubt = square(play.deviation(RodFilter::kPlay));
-  return !tight.isProven() || exceeds(play.motion().play, doubt, gate::kImpossible) ? play : tight;
+  return !tight.isProven() || exceeds(play.motion().rod.play, doubt, gate::kImpossible) ? play : tight;
 }
 
 /// The level is linkage where the rod is stiffer than the rate of the samples can show.
@@ -119,32 +119,29 @@ void ElasticFollower::judge() noexcept {
   best_ = evidence_ > (best_ == nullptr ? odds::kLikely : 0.0) ? &rod : nullptr;
   if (!rod.isProven()) return;
   restitution_ = rod.motion().restitution;
-  pins_ = {rod.motion().play, rod.frictionDeviation()};
+  pins_ = {rod.motion().rod.play, rod.frictionDeviation()};
 }
 
 CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {
-  CrankEstimate crank;
-  crank.position = {blow_, m.state.angle};
-  crank.speed = m.state.speed;
-  crank.acceleration =
-      filter().bodies().rigidAcceleration(filter().drive(m), m.state, filter().bodies().links(m.state.angle));
-  return crank;
+  const LinkMotion links = filter().bodies().links(m.state.angle);
+  return {
+      {blow_, m.state.angle}, m.state.speed, filter().bodies().rigidAcceleration(filter().drive(m), m.state, links)};
 }
 
-ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const DriveReaction& drive) const noexcept {
+ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const LinkMotion& links,
+                                              const DriveReaction& drive) const noexcept {
   const TwoBodies& bodies = filter().bodies();
-  const LinkMotion links = bodies.links(m.state.angle);
   const TwoBodyDrive by = filter().drive(m);
-  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, links);
+  const TwoBodyAccelerations a = bodies.accelerations(m.rod, by, m.state, links);
   const HullWrench w = hullWrenchOf(model_->mechanism(), bodies, m.state, a, links, by.gravity);
   Loads loads;
   loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank, besideRigidly(m.state, a, links);
   return loads;
 }
 
-ElasticFollower::Loads ElasticFollower::rigidLoads(const RodMotion& m, const DriveReaction& drive) const noexcept {
+ElasticFollower::Loads ElasticFollower::rigidLoads(const RodMotion& m, const LinkMotion& links,
+                                                   const DriveReaction& drive) const noexcept {
   const TwoBodyDrive by = filter().drive(m);
-  const LinkMotion links = filter().bodies().links(m.state.angle);
   const double crank = filter().bodies().rigidAcceleration(by, m.state, links);
   const HullWrench w = hullWrenchLinkage(model_->mechanism(), links, {m.state.angle, m.state.speed, crank}, by.gravity);
   Loads loads;
@@ -152,28 +149,34 @@ ElasticFollower::Loads ElasticFollower::rigidLoads(const RodMotion& m, const Dri
   return loads;
 }
 
-/// Change over a time [s] of the loads that the elastic rod adds: the error of a vibration read at a wrong time.
-ElasticFollower::Loads ElasticFollower::besideLater(const DriveReaction& drive, const Loads& here,
-                                                    double time) const noexcept {
-  RodMotion later = filter().motion();
-  filter().bodies().move(filter().rod(later), filter().drive(later), time, later.state);
-  return loads(later, drive) - here - (rigidLoads(later, drive) - rigidLoads(filter().motion(), drive));
+/// Loads that the elastic rod adds.
+ElasticFollower::Loads ElasticFollower::loadsBeside(const RodMotion& m, const DriveReaction& drive) const noexcept {
+  const LinkMotion links = filter().bodies().links(m.state.angle);
+  return loads(m, links, drive) - rigidLoads(m, links, drive);
 }
 
-/// Covariance of the loads with pins that may meet within an error, by Gauss-Hermite quadrature at three points.
-ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction& drive,
+/// Covariance of the loads with pins that may meet within an error, by Gauss-Hermite quadrature at three points. The
+/// links move in proportion to an error of the angle.
+ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction& drive, const LinkMotion& links,
                                                             const Loads& here) const noexcept {
+  const RodMotion& now = filter().motion();
   const RodFilter::Belief::Matrix errors = filter().errors();
   LoadCovariance sum = LoadCovariance::Zero();
+  const double turned = errors.row(RodFilter::kAngle).norm();
+  if (!(turned > 0.0)) return sum;
+  const CrankAngle beside{now.state.angle.offset + turned, now.state.angle.side};
+  const Loads by_angle = (loads(now, filter().bodies().links(beside), drive) - here) / turned;
   const auto add = [&](const RodFilter::Belief::Vector& error, double weight) {
-    const Loads off = loads(filter().displaced(error), drive) - here;
+    const Loads off = loads(filter().displaced(error), links, drive) - here + error[RodFilter::kAngle] * by_angle;
     sum += weight * off * off.transpose();
   };
-  if (late_ > 0.0 && filter().hasStruck()) {
-    const Loads off = besideLater(drive, here, late_);
+  if (late_ > 0.0 && filter().hasStruck()) {  // a vibration read at a wrong time
+    RodMotion later = now;
+    filter().bodies().move(later.rod, filter().drive(later), late_, later.state);
+    const Loads off = loadsBeside(later, drive) - (here - rigidLoads(now, links, drive));
     sum += off * off.transpose();
   }
-  const bool worn = filter().motion().play > 0.0;
+  const bool worn = now.rod.play > 0.0;
   const double away = std::sqrt(3.0);
   for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i) {
     if (!(errors(i, i) > 0.0)) continue;
@@ -187,8 +190,10 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
 
 /// A Kalman correction by x'' = 0 +- what is expected of a vibration.
 ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, double ring) noexcept {
-  Loads mean = loads(filter().motion(), drive);
-  const LoadCovariance errors = covariance(drive, mean);
+  const RodMotion& now = filter().motion();
+  const LinkMotion links = filter().bodies().links(now.state.angle);
+  Loads mean = loads(now, links, drive);
+  const LoadCovariance errors = covariance(drive, links, mean);
   if (!filter().hasStruck()) squares_ = {};
   vibration_ = mean[kBesideRigid];
   squares_.add(square(vibration_));
@@ -199,26 +204,31 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
   }
   const Eigen::Matrix3d covariance =
       errors.topLeftCorner<3, 3>() - gain_.head<3>() * errors.col(kBesideRigid).head<3>().transpose();
-  mean = besideRigid(filter().motion(), drive, mean);
+  weigh(now, mean);
+  mean -= rigidLoads(now, links, drive);
   return {wrenchOf(mean.head<3>()), covariance, mean[kCrank]};
 }
 
-ElasticFollower::Loads ElasticFollower::besideRigid(const RodMotion& m, const DriveReaction& drive,
-                                                    Loads loads) const noexcept {
-  if (m.state.angle.side == Side::kAfterBlow) loads -= gain_ * loads[kBesideRigid];
-  return loads - rigidLoads(m, drive);
+void ElasticFollower::weigh(const RodMotion& m, Loads& loads) const noexcept {
+  if (m.state.angle.side == Side::kAfterBlow) loads -= (gain_ * loads[kBesideRigid]).eval();
 }
 
-ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, const Loads& beside,
-                                                    const DriveReaction& drive, const HullMotion& hull) const noexcept {
-  Instant instant{crankOf(there), {}, there.state};
-  instant.wrench = hullWrench(*model_, drive, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());
+ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, bool weighed, const DriveReaction& drive,
+                                                    const HullMotion& hull) const noexcept {
+  const LinkMotion links = filter().bodies().links(there.state.angle);
+  const Loads rigid = rigidLoads(there, links, drive);
+  Loads beside = loads(there, links, drive);
+  if (weighed) weigh(there, beside);
+  beside -= rigid;
+  Instant instant{{{blow_, there.state.angle}, there.state.speed, rigid[kCrank]}, {}, there.state, links};
+  instant.wrench = hullWrench(*model_, drive, links, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());
   instant.crank.acceleration += beside[kCrank];
   return instant;
 }
 
-LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const DriveReaction& drive) const noexcept {
-  const LinkMotion links = withRocker(filter().bodies().links(s.angle), s.beside);
+LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const LinkMotion& rigid,
+                                      const DriveReaction& drive) const noexcept {
+  const LinkMotion links = withRocker(rigid, s.beside);
   const HullWrench minus = hullWrenchOf(model_->mechanism(), links, filter().bodies().linkSpeeds(s, links), Gravity{});
   const double drive_y = drive.by_crank * s.speed;
   return {-1.0 * minus + HullWrench{0.0, 0.0, drive_y}, drive_y};
@@ -226,7 +236,7 @@ LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const DriveReaction
 
 ElasticFollower::Impulse ElasticFollower::impulse(const DriveReaction& drive, double from, double to) const noexcept {
   const auto lost = [&](const TwoBodyState& a, const TwoBodyState& b) {
-    const LoadImpulse before = momentum(a, drive), after = momentum(b, drive);
+    const LoadImpulse before = momentumOf(a, drive), after = momentumOf(b, drive);
     return LoadImpulse{before.all + -1.0 * after.all, before.drive_y - after.drive_y};
   };
   const TwoBodyState begin = motionAt(from).state, end = motionAt(to).state;
@@ -242,10 +252,10 @@ ElasticFollower::Impulse ElasticFollower::impulse(const DriveReaction& drive, do
 
 HullWrench ElasticFollower::momentumDeviation(const DriveReaction& drive) const noexcept {
   const RodFilter::Belief::Matrix errors = filter().errors();
-  const Eigen::Vector3d here = vectorOf(momentum(filter().motion().state, drive).all);
+  const Eigen::Vector3d here = vectorOf(momentumOf(filter().motion().state, drive).all);
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i)
-    squares += (vectorOf(momentum(filter().displaced(errors.col(i)).state, drive).all) - here).cwiseAbs2();
+    squares += (vectorOf(momentumOf(filter().displaced(errors.col(i)).state, drive).all) - here).cwiseAbs2();
   return wrenchOf(squares.cwiseSqrt());
 }
 
@@ -253,7 +263,7 @@ PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, dou
   const RodMotion& m = filter().motion();
   const TwoBodies& bodies = filter().bodies();
   const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
-  TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, rigid);
+  TwoBodyAccelerations a = bodies.accelerations(m.rod, filter().drive(m), m.state, rigid);
   const double beside = besideRigidly(m.state, a, rigid);
   a.crank -= gain_[kCrank] * beside;
   a.rocker -= (rigid.rocker.u * gain_[kCrank] + gain_[kBesideRigid]) * beside;

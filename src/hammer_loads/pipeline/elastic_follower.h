@@ -79,20 +79,19 @@ class ElasticFollower {
     CrankEstimate crank;
     HullWrench wrench;
     TwoBodyState bodies;
+    LinkMotion links;  ///< as those of a rigid rod
   };
   Instant at(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
-    const RodMotion there = motionAt(time);
-    return instantOf(there, besideRigid(there, drive, loads(there, drive)), drive, hull);
+    return instantOf(motionAt(time), true, drive, hull);
   }
   /// Instant by the two bodies alone, unweighted; at the step's end the state before the sample there. The uncertain
   /// moment of an impact affects the force at a given time, but not its extreme.
   Instant onItsWay(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
-    const RodMotion there = filter().between(time);
-    return instantOf(there, loads(there, drive) - rigidLoads(there, drive), drive, hull);
+    return instantOf(filter().between(time), false, drive, hull);
   }
   bool isBesideBlowAt(double time) const noexcept;
-  /// Momentum of links and drive, relative to the hull.
-  LoadImpulse momentum(const TwoBodyState& bodies, const DriveReaction& drive) const noexcept;
+  /// Momentum of links and drive, relative to the hull; links: as those of a rigid rod.
+  LoadImpulse momentum(const TwoBodyState& bodies, const LinkMotion& links, const DriveReaction& drive) const noexcept;
   /// Impulse like motionImpulse(), which leaves out the jump at the blow as well; doubt: standard deviation by the
   /// uncertain restitution.
   struct Impulse {
@@ -113,15 +112,19 @@ class ElasticFollower {
   enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
   RodMotion motionAt(double time) const noexcept { return time < length_ ? filter().between(time) : filter().motion(); }
   CrankEstimate crankOf(const RodMotion& motion) const noexcept;
-  Instant instantOf(const RodMotion& motion, const Loads& beside, const DriveReaction& drive,
+  Instant instantOf(const RodMotion& motion, bool weighed, const DriveReaction& drive,
                     const HullMotion& hull) const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
-  Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
-  /// Difference of these loads to those of a rigid rod, weighted.
-  Loads besideRigid(const RodMotion& motion, const DriveReaction& drive, Loads loads) const noexcept;
-  Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
-  Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;
-  LoadCovariance covariance(const DriveReaction& drive, const Loads& here) const noexcept;
+  LoadImpulse momentumOf(const TwoBodyState& s, const DriveReaction& drive) const noexcept {
+    return momentum(s, filter().bodies().links(s.angle), drive);
+  }
+  /// links: as those of a rigid rod.
+  Loads loads(const RodMotion& motion, const LinkMotion& links, const DriveReaction& drive) const noexcept;
+  Loads rigidLoads(const RodMotion& motion, const LinkMotion& links, const DriveReaction& drive) const noexcept;
+  Loads loadsBeside(const RodMotion& motion, const DriveReaction& drive) const noexcept;
+  /// Weights the loads as beside() does.
+  void weigh(const RodMotion& motion, Loads& loads) const noexcept;
+  LoadCovariance covariance(const DriveReaction& drive, const LinkMotion& links, const Loads& here) const noexcept;
   void followRods(const CrankFollower& crank, Gravity gravity) noexcept;
   void begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept;
   const RodFilter& likelier() const noexcept;

@@ -6,6 +6,7 @@
 
 #include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/settings/channel_names.h"
+#include "hammer_loads/util/parts.h"
 
 namespace hammer_loads {
 namespace {
@@ -124,7 +125,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
   const StepEnd end(result);
   std::array<double, kHullChannels> expected;
   wrenchValues(rod.onItsWay(step.length(), drive, result.hull.motion).wrench, expected.data());
-  const auto count = static_cast<int>(std::ceil(step.length() / kRingStep));
+  const int count = partsOf(step.length(), kRingStep);
   const bool strikes = rod.filter().blowOfStep().has_value();
   const CrankStep::Passage* passage = step.begin();
   const auto endTurnsUntil = [&](double time) {

@@ -11,6 +11,7 @@
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/parts.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -128,7 +129,7 @@ void RodRing::moveThrough(const CrankAngle& angle, double speed, double accelera
 
 void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   if (!moves_ || !(to > from)) return;
-  const int parts = static_cast<int>(std::ceil((to - from) / kLongest));
+  const int parts = partsOf(to - from, kLongest);
   const double time = (to - from) / parts;
   for (int i = 0; i < parts && moves_; ++i) {
     CrankEstimate crank = step.at(step.length());  // turned back at its speed: the lever needs no more
@@ -156,7 +157,7 @@ void RodRing::restart(const CrankFilter& tracker) noexcept {
   } else {
     strike(std::sqrt(energy / loadAt(0.0).inertia) / tracker.blowFactor().mean, tracker.blowFactor());
   }
-  const int parts = static_cast<int>(std::ceil((at.offset - from) / kPart));
+  const int parts = partsOf(at.offset - from, kPart);
   const double part = (at.offset - from) / parts;
   for (int i = 0; i < parts && moves_; ++i) {
     const CrankAngle middle{from + (i + 0.5) * part, at.side};

@@ -9,6 +9,7 @@
 
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/util/parts.h"
 
 namespace hammer_loads {
 
@@ -55,7 +56,7 @@ template <typename OnPlace, typename OnTurn>
 void forEachStepExtreme(const StepLoad& load, const CrankStep& step, const OnPlace& at, const OnTurn& turn) noexcept {
   const auto alongSpan = [&](const SmoothSpan& span) {
     if (!(span.to > span.from)) return;
-    const int count = std::max(1, static_cast<int>(std::ceil((span.to - span.from) / kPulseStep)));
+    const int count = partsOf(span.to - span.from, kPulseStep);
     SmoothSpan part{span.from, span.from, span.begin, span.begin};
     for (int i = 1; i <= count; ++i) {
       const bool last = i == count;

@@ -6,6 +6,7 @@
 
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/pipeline/crank_trust.h"
+#include "hammer_loads/util/parts.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -41,9 +42,8 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
 TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
   const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
   const ElasticFollower::Instant there = elastic_->onItsWay(time, drive, hull_);
-  const HullWrench momentum = elastic_->momentum(there.bodies, drive).all;
-  const CrankMotion motion = motionOf(there.crank);
-  const HullWrench added = frameWrench(*model_, step_->linksAt(motion.angle), motion.speed, hull_);
+  const HullWrench momentum = elastic_->momentum(there.bodies, there.links, drive).all;
+  const HullWrench added = frameWrench(*model_, there.links, there.crank.speed, hull_);
   return {origin + time,
           there.wrench,
           {momentum.force_x, momentum.force_z, momentum.torque_y},
@@ -54,7 +54,7 @@ TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
 /// Between points of the turn [s]; pins with joint clearance meet for a few tenths of a millisecond.
 double TurnFollower::partOfStep(bool rings) const noexcept {
   if (!rings) return kPulseStep;
-  return elastic_->filter().motion().play > 0.0 ? kRingStep : kRingPart;
+  return elastic_->filter().motion().rod.play > 0.0 ? kRingStep : kRingPart;
 }
 
 /// Points of the turn in (from, to] [s] after the step's start.
@@ -62,7 +62,7 @@ void TurnFollower::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
   const double origin = seconds(step_->start() - epoch_);
   const bool rings = elastic_->ranOverStep();
-  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / partOfStep(rings))));
+  const int count = partsOf(to - from, partOfStep(rings));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
     const TurnInstant point = rings ? ringing(origin, time) : instant(origin + time, step_->at(time));
