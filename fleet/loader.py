@@ -3,10 +3,8 @@ import datetime
 import json
 
 import programs  # noqa: F401  (sets the path of report)
-from report.boom_health import OF_TURNS
-from report.database import RECORDING, Database
-from report.problem import Problem
-from report.quantities import QUANTITIES, value_of
+from report.database import RECORDING, Database, Problem
+from report.quantities import CYLINDERS, QUANTITIES, value_of
 from store import COLUMN_TEXT
 
 # Copied as they are, with another run_id.
@@ -24,14 +22,6 @@ def of_stamp(stamp_ns):
     return day.isoformat(), f"{year}-W{week:02d}"
 
 
-def recording(path):
-    """The database of a bag, and the keys of its runs."""
-    source = Database(path)
-    if source.kind != RECORDING:
-        raise Problem(f"{path}: is no result of process_bag")
-    return source, [key for key, in source.rows("SELECT run_key FROM runs ORDER BY run_id")]
-
-
 class Loader:
     """For one transaction of the store."""
 
@@ -39,7 +29,6 @@ class Loader:
         self.store, self.tables = store, COPIED + OPTIONAL.get(rows, [])
         self._next_run = (store.row("SELECT max(run_id) FROM runs")[0] or 0) + 1
         self._next_bag = (store.row("SELECT max(bag_id) FROM bags")[0] or 0) + 1
-        self._columns = {}
 
     def add(self, outcome_path):
         """True if the merged file changed."""
@@ -48,24 +37,27 @@ class Loader:
         source, keys = None, []
         if outcome["status"] == "done":
             try:
-                source, keys = recording(outcome_path[:-len(".json")] + ".sqlite")
+                source = Database(outcome_path[:-len(".json")] + ".sqlite")
+                if source.kind != RECORDING:
+                    raise Problem(f"{source.path}: is no result of process_bag")
+                keys = [key for key, in source.rows("SELECT run_key FROM runs ORDER BY run_id")]
                 self._look_for_twin(outcome, keys)
             except Problem as problem:
                 outcome.update(status="failed", reason=str(problem))
-        if self._is_known(outcome, keys if outcome["status"] == "done" else []):
+        if outcome["status"] != "done":
+            source, keys = None, []
+        if self._is_known(outcome, keys):
             return False
         self._remove(outcome)
-        self.store.execute("SAVEPOINT before_the_bag")
+        self.store.rows("SAVEPOINT before_the_bag")
         try:
-            bag_id = self._add_bag(outcome)
-            if outcome["status"] == "done":
-                self._add_runs(source, bag_id)
+            self._add_bag(outcome, source)
         except (Problem, self.store.Refusal) as problem:
-            self.store.execute("ROLLBACK TO SAVEPOINT before_the_bag")
+            self.store.rows("ROLLBACK TO SAVEPOINT before_the_bag")
             outcome.update(status="failed", reason=" ".join(str(problem).split()))
-            self._add_bag(outcome)
-        self.store.execute("RELEASE SAVEPOINT before_the_bag")
-        self.store.execute("DELETE FROM stale_machines WHERE machine = ?", outcome["machine"])
+            self._add_bag(outcome, None)
+        self.store.rows("RELEASE SAVEPOINT before_the_bag")
+        self.store.rows("DELETE FROM stale_machines WHERE machine = ?", outcome["machine"])
         self.store.insert("stale_machines", ["machine"], [(outcome["machine"],)])
         return True
 
@@ -80,56 +72,43 @@ class Loader:
     def _is_known(self, outcome, keys):
         found = self.store.row("SELECT bag_id, status, reason, input_sha256, parameters_sha256 FROM bags "
                                "WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
-        if found is None or tuple(found[1:]) != tuple(outcome[k] for k in OUTCOME[2:]):
-            return False
-        return keys == [key for key, in self.store.rows(
-            "SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])]
+        return (found is not None and tuple(found[1:]) == tuple(outcome[k] for k in OUTCOME[2:]) and
+                keys == [key for key, in self.store.rows("SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])])
 
     def _remove(self, outcome):
         """Removes the rows of the bag from before it or its parameters changed."""
-        found = self.store.row("SELECT bag_id FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
-        if found is None:
-            return
-        for table in COPIED + ["run_figures", "run_cylinders"] + [t for t in OPTIONAL["turns"] if self.store.columns(t)]:
-            self.store.execute(f"DELETE FROM {table} WHERE run_id IN (SELECT run_id FROM runs WHERE bag_id = ?)", found[0])
-        self.store.execute("DELETE FROM runs WHERE bag_id = ?", found[0])
-        self.store.execute("DELETE FROM bags WHERE bag_id = ?", found[0])
+        bag = "bag_id IN (SELECT bag_id FROM bags WHERE machine = ? AND bag = ?)"
+        for table in [*COPIED, "run_figures", "run_cylinders", *filter(self.store.columns, OPTIONAL["turns"])]:
+            self.store.rows(f"DELETE FROM {table} WHERE run_id IN (SELECT run_id FROM runs WHERE {bag})",
+                            outcome["machine"], outcome["bag"])
+        for table in ("runs", "bags"):
+            self.store.rows(f"DELETE FROM {table} WHERE {bag}", outcome["machine"], outcome["bag"])
 
-    def _add_bag(self, outcome):
+    def _add_bag(self, outcome, source):
+        """source: its database, or nothing."""
         bag_id, self._next_bag = self._next_bag, self._next_bag + 1
         self.store.insert("bags", ["bag_id", *OUTCOME], [(bag_id, *(outcome[k] for k in OUTCOME))])
-        return bag_id
-
-    def _add_runs(self, source, bag_id):
-        first = self._next_run
+        if source is None:
+            return
+        shift = self._next_run - 1
         for run in source.records("SELECT * FROM runs ORDER BY run_id"):
-            run_id, own = first + run["run_id"] - 1, run["run_id"]
-            self._next_run = max(self._next_run, run_id + 1)
-            self._add_parameters(source, run)
-            run.update(run_id=run_id, bag_id=bag_id)
-            run["day"], run["week"] = of_stamp(run["first_stamp_ns"])
-            names = [name for name in self._columns_of("runs") if name in run]
-            self.store.insert("runs", names, [[run[name] for name in names]])
-            self.store.insert("run_figures", ["run_id", "quantity", "count", "least", "mean", "greatest", "total"],
-                              figures(source, own, run_id))
-            self._add_cylinders(source, own, run_id)
+            self._next_run = shift + run["run_id"] + 1
+            self._add_run(source, run, bag_id, shift + run["run_id"])
         for table in self.tables:
-            self._copy(source, table, first - 1)
+            self._copy(source, table, shift)
         self._describe(source)
 
-    def _describe(self, source):
-        """Units and descriptions of the columns that were copied."""
-        if "columns" not in source.tables():
-            return
-        known = set(self.store.rows("SELECT table_name, column_name FROM columns"))
-        self.store.insert("columns", COLUMN_TEXT, [
-            row for row in source.rows("SELECT table_name, column_name, unit, description FROM columns")
-            if row[:2] not in known and row[0] in ["runs", *self.tables] and row[1].lower() in self._columns_of(row[0])])
-
-    def _add_cylinders(self, source, own, run_id):
-        self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_std",
-                                            "doubtful"],
-                          [(run_id, *row) for row in source.rows(OF_TURNS, own)])
+    def _add_run(self, source, run, bag_id, run_id):
+        own = run["run_id"]
+        self._add_parameters(source, run)
+        day, week = of_stamp(run["first_stamp_ns"])
+        run.update(run_id=run_id, bag_id=bag_id, day=day, week=week)
+        names = [name for name in self.store.columns("runs") if name in run]
+        self.store.insert("runs", names, [[run[name] for name in names]])
+        self.store.insert("run_figures", ["run_id", "quantity", "count", "least", "mean", "greatest", "total"],
+                          figures(source, own, run_id))
+        self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_std", "doubtful"],
+                          [(run_id, *row) for row in source.rows("SELECT " + CYLINDERS.format(runs="run_id = ?"), own)])
 
     def _add_parameters(self, source, run):
         key = (run["parameters_sha256"], run["version"])
@@ -141,43 +120,42 @@ class Loader:
                           [(*key, *row) for row in source.rows(
                               "SELECT key, value, shipped FROM parameters WHERE run_id = ?", run["run_id"])])
 
-    def _columns_of(self, table):
-        """Columns in the spelling of SQLite; PostgreSQL has all in lower case."""
-        if table not in self._columns:
-            self._columns[table] = {name.lower() for name in self.store.columns(table)}
-        return self._columns[table]
-
     def _copy(self, source, table, shift):
         columns = source.columns(table)
         if not columns:  # recordings of before 1.0 have neither alarms nor a reference
             return
-        self._make_rows_of_turns(table, columns)
-        known = self._columns_of(table)
+        if table not in COPIED:
+            self._make_rows_of_turns(table, [c for c in columns if c not in ("run_id", "turn", "stamp_ns")])
+        known = self.store.columns(table)
         names = [name for name in columns if name.lower() in known]
         listed = ", ".join(f"run_id + {shift}" if name == "run_id" else name for name in names)
         self.store.insert(table, names, source.rows(f"SELECT {listed} FROM {table}"))
 
-    def _make_rows_of_turns(self, table, columns):
+    def _make_rows_of_turns(self, table, fields):
         """Tables of turns have a column for each field of a message: as the first bag has them, later ones are added."""
-        if table in COPIED:
-            return
-        fields = [c for c in columns if c not in ("run_id", "turn", "stamp_ns")]
-        if not self._columns_of(table):
-            self.store.execute(f"CREATE TABLE {table}(run_id INTEGER NOT NULL, turn BIGINT NOT NULL, stamp_ns BIGINT, " +
-                               "".join(f"{name} DOUBLE PRECISION, " for name in fields) + "PRIMARY KEY(run_id, turn))")
-            del self._columns[table]
+        known = self.store.columns(table)
+        if not known:
+            self.store.rows(f"CREATE TABLE {table}(run_id INTEGER NOT NULL, turn BIGINT NOT NULL, stamp_ns BIGINT, "
+                            "PRIMARY KEY(run_id, turn))")
         for name in fields:
-            if name.lower() not in self._columns_of(table):
-                self.store.execute(f"ALTER TABLE {table} ADD COLUMN {name} DOUBLE PRECISION")
-                del self._columns[table]
+            if name.lower() not in known:
+                self.store.rows(f"ALTER TABLE {table} ADD COLUMN {name} DOUBLE PRECISION")
+
+    def _describe(self, source):
+        """Units and descriptions of the columns that were copied."""
+        if "columns" not in source.tables():
+            return
+        known = set(self.store.rows("SELECT table_name, column_name FROM columns"))
+        copied = {table: self.store.columns(table) for table in ["runs", *self.tables]}
+        self.store.insert("columns", COLUMN_TEXT, [
+            row for row in source.rows("SELECT table_name, column_name, unit, description FROM columns")
+            if row[:2] not in known and row[1].lower() in copied.get(row[0], [])])
 
 
 def figures(source, own, run_id):
     """Figures of each quantity over all revolutions: count, least, mean, greatest, total."""
-    for table in ("turns", "blows"):
-        quantities = [q for q in QUANTITIES if q.table == table]
-        values = [value_of(q) for q in quantities]
-        listed = ", ".join(f"count({v}), min({v}), avg({v}), max({v}), sum({v})" for v in values)
-        values = next(iter(source.rows(f"SELECT {listed} FROM {table} WHERE run_id = ?", own)))
-        for at, quantity in enumerate(quantities):
-            yield (run_id, quantity.key, *values[5 * at:5 * at + 5])
+    for quantity in QUANTITIES:
+        value = value_of(quantity)
+        row = next(source.rows(f"SELECT count({value}), min({value}), avg({value}), max({value}), sum({value}) "
+                               f"FROM {quantity.table} WHERE run_id = ?", own))
+        yield (run_id, quantity.key, *row)

@@ -26,7 +26,7 @@ def merged(target, outcomes, rows):
     for machine, in list(target.rows("SELECT machine FROM stale_machines ORDER BY machine")):
         target.begin()
         write_sums(target, machine)
-        target.execute("DELETE FROM stale_machines WHERE machine = ?", machine)
+        target.rows("DELETE FROM stale_machines WHERE machine = ?", machine)
         target.commit()
     return given, changed
 

@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 
-from programs import program
+from programs import inputs, program
 
 LONGEST_REASON = 500
 
@@ -40,11 +40,8 @@ def processed(bags, parameters, options, database):
             return "failed", "is still being written, or was left by a power cut: rosbag reindex makes it a bag"
         if not os.path.isfile(bag):
             return "failed", "does not exist" if not os.path.exists(bag) else "is no regular file"
-    arguments = [program("process_bag"), "--no-bag", *bags, "--db", database, *options]
-    for file in parameters:
-        arguments += ["--params", file]
-    done = subprocess.run(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, encoding="utf-8",
-                          errors="replace")
+    options = options + [word for file in parameters for word in ("--params", file)]
+    done = inputs.process(bags, options, database, program("process_bag"), stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
     return ("done", None) if done.returncode == 0 else ("failed", reason_of(done))
 
 

@@ -28,10 +28,27 @@ class BadStore(Exception):
     """One line that names the file or the server."""
 
 
-class SqliteStore:
-    """Opened for writing: a new file gets its tables, another database is refused."""
+class Store:
+    """Opened for writing: a new one gets its tables. One writer at a time; another one waits."""
 
+    def rows(self, sql, *values):
+        cursor = self._connection.cursor()
+        cursor.execute(sql.replace("?", self._mark), values)
+        return cursor
+
+    def row(self, sql, *values):
+        return self.rows(sql, *values).fetchone()
+
+    def commit(self):
+        self._connection.commit()
+
+    def close(self):
+        self._connection.close()
+
+
+class SqliteStore(Store):
     Refusal = sqlite3.IntegrityError  # of a row
+    _mark = "?"
 
     def __init__(self, path):
         self.name = path
@@ -44,51 +61,38 @@ class SqliteStore:
             self._check()
         except sqlite3.Error as error:
             raise BadStore(f"{path}: {error}")
+        self.commit()
 
     def _check(self):
         application, = self.row("PRAGMA application_id")
         version, = self.row("PRAGMA user_version")
         if application == 0 and self.row("SELECT count(*) FROM sqlite_master") == (0,):
             for statement in SCHEMA.read_text(encoding="utf-8").split(";\n"):
-                self._connection.execute(statement)
+                self.rows(statement)
             self.insert("columns", COLUMN_TEXT, column_texts())
-            self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            self._connection.execute(f"PRAGMA user_version = {VERSION}")
+            self.rows(f"PRAGMA application_id = {APPLICATION_ID}")
+            self.rows(f"PRAGMA user_version = {VERSION}")
         elif application != APPLICATION_ID:
             raise BadStore(f"{self.name}: is another database, no merged file")
         elif version != VERSION:
             raise BadStore(f"{self.name}: merged file of version {version}, this program writes version {VERSION}")
-        self.commit()
 
     def begin(self):
-        """One writer at a time; another one waits."""
-        self._connection.execute("BEGIN IMMEDIATE")
-
-    def commit(self):
-        self._connection.execute("COMMIT")
-
-    def rows(self, sql, *values):
-        return self._connection.execute(sql, values)
-
-    def row(self, sql, *values):
-        return self._connection.execute(sql, values).fetchone()
-
-    def execute(self, sql, *values):
-        self._connection.execute(sql, values)
+        self.rows("BEGIN IMMEDIATE")
 
     def insert(self, table, columns, rows):
         marks = ",".join("?" * len(columns))
         self._connection.executemany(f"INSERT INTO {table}({','.join(columns)}) VALUES({marks})", rows)
 
     def columns(self, table):
-        return [row[1] for row in self.rows(f"PRAGMA table_info({table})")]
-
-    def close(self):
-        self._connection.close()
+        """Names in lower case; nothing for a table that is not there."""
+        return [row[1].lower() for row in self.rows(f"PRAGMA table_info({table})")]
 
 
-class PostgresStore:
-    """Opened for writing; tables are made in the first schema of the search path."""
+class PostgresStore(Store):
+    """Tables are made in the first schema of the search path."""
+
+    _mark = "%s"
 
     def __init__(self, url):
         import psycopg2
@@ -98,43 +102,24 @@ class PostgresStore:
             self._connection = psycopg2.connect(url)
         except psycopg2.Error as error:
             raise BadStore("PostgreSQL: " + " ".join(str(error).split()))
-        self._cursor = self._connection.cursor()
         self.begin()
         if not self.columns("bags"):
-            self._cursor.execute(SCHEMA.read_text(encoding="utf-8"))
+            self.rows(SCHEMA.read_text(encoding="utf-8"))
             self.insert("columns", COLUMN_TEXT, column_texts())
         self.commit()
 
     def begin(self):
-        """One writer at a time; another one waits."""
-        self._cursor.execute("SELECT pg_advisory_xact_lock(%s)", (APPLICATION_ID,))
-
-    def commit(self):
-        self._connection.commit()
-
-    def rows(self, sql, *values):
-        cursor = self._connection.cursor()
-        cursor.execute(sql.replace("?", "%s"), values)
-        return cursor
-
-    def row(self, sql, *values):
-        return self.rows(sql, *values).fetchone()
-
-    def execute(self, sql, *values):
-        self.rows(sql, *values)
+        self.rows("SELECT pg_advisory_xact_lock(?)", APPLICATION_ID)
 
     def insert(self, table, columns, rows):
-        rows = iter(rows)
+        rows, cursor = iter(rows), self._connection.cursor()
         for some in iter(lambda: list(itertools.islice(rows, ROWS_AT_ONCE)), []):
-            self._extras.execute_values(self._cursor, f"INSERT INTO {table}({','.join(columns)}) VALUES %s", some,
-                                        page_size=ROWS_AT_ONCE)
+            self._extras.execute_values(cursor, f"INSERT INTO {table}({','.join(columns)}) VALUES %s", some, page_size=ROWS_AT_ONCE)
 
     def columns(self, table):
+        """Names in lower case; nothing for a table that is not there."""
         return [name for name, in self.rows("SELECT column_name FROM information_schema.columns WHERE table_name = ? "
                                             "AND table_schema = current_schema()", table)]
-
-    def close(self):
-        self._connection.close()
 
 
 def opened(target):

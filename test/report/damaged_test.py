@@ -118,8 +118,8 @@ class Damaged(ReportTest):
 
     def test_a_query_without_end_can_be_stopped(self):
         program = ("import signal, sys; sys.path.insert(0, sys.argv[2])\n"
-                   "from report.database import Database, Interrupt\n"
-                   "signal.signal(signal.SIGTERM, Interrupt.handler)\n"
+                   "from report.database import Database\n"
+                   "signal.signal(signal.SIGTERM, signal.default_int_handler)\n"
                    "database = Database(sys.argv[1])\n"
                    "try:\n    print('begins', flush=True)\n    database.value('WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT 1 FROM n) "
                    "SELECT count(*) FROM n')\n"

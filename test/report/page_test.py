@@ -58,9 +58,9 @@ class Page(ReportTest):
     def test_sensor_health_is_shown(self):
         page = self.page_of(self.file)
         health = page.table("The crank's sensor")
-        self.assertEqual(health["Consistency"]["Verdict"], "sound")
+        self.assertEqual(health["Consistency"]["Status"], "ok")
         self.assertEqual(health["Restarts"]["Value"], "2")
-        self.assertEqual((health["Hull pitch"]["Value"], health["Hull pitch"]["Verdict"]), ("0.35 rad", "sound"))
+        self.assertEqual((health["Hull pitch"]["Value"], health["Hull pitch"]["Status"]), ("0.35 rad", "ok"))
         self.assertEqual(health["Refused samples"]["Value"].split()[0], "10")
         self.assertEqual(page.table("Refused samples by reason")["duplicate"]["Samples"], "7")
 

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
 """report, budget, check and test_report, by its name: pages and figures of recordings and ledgers."""
-import importlib
 import pathlib
 import sys
 
@@ -12,9 +11,9 @@ for home in (HERE.parent, HERE.parents[1] / SHARE, HERE.parent / SHARE):  # in t
         break
 sys.dont_write_bytecode = True  # the source tree stays as it is
 
-MODULES = {"report": "command", "budget": "budget", "check": "check", "test_report": "test_report"}
 name = pathlib.Path(sys.argv[0]).stem
 try:
-    sys.exit(importlib.import_module("report." + MODULES.get(name, "command")).main(sys.argv[1:]))
+    from report.command import main  # the path must be set first
+    sys.exit(main(sys.argv[1:], name if name in ("budget", "check", "test_report") else "report"))
 except ImportError as error:
     sys.exit(f"{name}: {error}; needs the Python packages pandas, jinja2 and matplotlib")

@@ -2,14 +2,12 @@
 import math
 
 from report.formats import NOTHING, Table, measured, number
+from report.pictures import COLOURS, CURVES, Picture
+from report.quantities import CYLINDERS
 
 CHANGED = 3.0  # deviations: once in three hundred comparisons by chance
 MOST = 0.5     # of a run's turns
 
-# Means of a run: stiffness over that of the boom file, its deviation, share of turns whose damping no oil makes.
-OF_TURNS = ("SELECT cylinder, count(*) AS turns, avg(stiffness_ratio) AS stiffness, avg(stiffness_ratio_std) AS "
-            "deviation, avg(doubtful) AS doubtful FROM boom_cylinders WHERE run_id = ? GROUP BY cylinder ORDER BY cylinder")
-ALL_TURNS = OF_TURNS[len("SELECT "):].replace("run_id = ?", "{runs}").replace("GROUP BY", "GROUP BY run_id,")
 OF_RUNS = ("cylinder, stiffness_ratio AS stiffness, stiffness_ratio_std AS deviation, doubtful FROM run_cylinders "
            "WHERE {runs} ORDER BY cylinder")
 MODES = ("SELECT mode, count(*), min(frequency), avg(frequency), max(frequency), avg(damping_ratio), "
@@ -19,7 +17,7 @@ MODES = ("SELECT mode, count(*), min(frequency), avg(frequency), max(frequency),
 def cylinders_of(subject):
     """(name, rows of its runs in the order of time)."""
     tables = subject.database.tables()
-    sql = OF_RUNS if "run_cylinders" in tables else ALL_TURNS if "boom_cylinders" in tables else None
+    sql = OF_RUNS if "run_cylinders" in tables else CYLINDERS if "boom_cylinders" in tables else None
     rows = subject.frame(sql, text=["cylinder"]).dropna(subset=["stiffness"]) if sql else None
     return [] if rows is None else list(rows.fillna(0.0).groupby("cylinder"))
 
@@ -61,7 +59,6 @@ def mode_table(subject):
 
 def stiffness_picture(found):
     """A point a run with its standard deviation; none where no cylinder has two runs."""
-    from report.pictures import COLOURS, CURVES, Picture  # here: a fleet takes OF_TURNS from this file and draws nothing
     drawn = [(colour, name, runs) for colour, (name, runs) in zip(CURVES, found) if len(runs) > 1]
     if not drawn:
         return None
@@ -76,7 +73,6 @@ def stiffness_picture(found):
 
 
 def boom_health(subject):
-    found = cylinders_of(subject)
-    if not found:
+    if not (found := cylinders_of(subject)):
         return None
     return {"table": cylinder_table(found), "modes": mode_table(subject), "picture": stiffness_picture(found)}

@@ -1,20 +1,18 @@
 """Uncertainty budget of a machine's figures, and the quantity to measure next (JCGM 100, 5): section and command."""
 import csv
+import io
 import json
 import math
-import sys
 import tempfile
 
-from report.command import Parser, add_bag_options, databases, guarded
-from report.database import LEDGER, Database
-from report.formats import Table, in_unit, measured, number
-from report.names import in_words
-from report.problem import Problem
+from report import inputs
+from report.command import Parser
+from report.database import LEDGER, Problem
+from report.formats import Table, in_unit, in_words, measured, number
 from report.subjects import subjects_of
 
 REST = "the rest"
 COLOURS = 7  # of sources in the bars, the rest beside
-TEXT, JSON, CSV = "text", "json", "csv"
 LEAST_SHOWN = 5e-4
 
 
@@ -56,7 +54,7 @@ def bars(figures):
     for figure in figures:
         for source, share in figure.shares:
             order[source] = order.get(source, 0.0) + share
-    colours = {source: f"c{at}" for at, source in enumerate(sorted(order, key=lambda source: -order[source])[:COLOURS])}
+    colours = {source: f"c{at}" for at, source in enumerate(sorted(order, key=order.get, reverse=True)[:COLOURS])}
     shown = []
     for figure in figures:
         parts = [(colours[source], source, share) for source, share in figure.shares if source in colours]
@@ -69,7 +67,7 @@ def budget_row(figure):
     factor, unit = in_unit(figure.unit)
     source, share = figure.shares[0]
     relative = 100.0 / abs(figure.value) if figure.value else math.nan
-    return [in_words(figure.quantity), unit, measured(figure.value * factor, figure.deviation * factor),
+    return [in_words(figure.quantity), unit, measured(figure.value, figure.deviation, factor),
             number(relative * figure.deviation, 2), f"{source} ({100 * share:.0f} %)", number(relative * figure.halved, 2)]
 
 
@@ -80,82 +78,72 @@ def budget(subject):
     shown, keys = bars(figures)
     return {"bars": shown, "legend": keys, "table": Table(
         "Uncertainty budget", ["Figure", "Unit", "Value", "Deviation [%]", "Largest source", "With it halved [%]"],
-        [budget_row(figure) for figure in figures])}
+        list(map(budget_row, figures)))}
 
 
 def parser():
     result = Parser(
+        dict(metavar="FILE", help="bags, or a database of process_bag --db; splits of one recording count as one"),
         prog="budget", description="Where the uncertainty of a machine's figures comes from, and what to measure next.",
         epilog="Shares are those of the variance and sum to 1 (JCGM 100, 5.1.2). Deviations are those of one revolution's "
                "figures. Errors are one line each; exit code 1, or 2 for wrong usage.")
-    result.add_argument("files", nargs="+", metavar="FILE",
-                        help="bags, or a database of process_bag --db; splits of one recording count as one")
     kind = result.add_mutually_exclusive_group()
-    for name in (JSON, CSV):
-        kind.add_argument(f"--{name}", dest="kind", action="store_const", const=name, default=TEXT,
-                          help=f"print {name.upper()}")
-    add_bag_options(result)
+    kind.add_argument("--json", dest="text_of", action="store_const", const=as_json, default=as_text, help="print JSON")
+    kind.add_argument("--csv", dest="text_of", action="store_const", const=as_csv, help="print CSV")
     return result
+
+
+def figures_in(subject):
+    """Figures of a machine; refuses a file without."""
+    if figures := budget_of(subject):
+        return figures
+    raise Problem(f"{subject.database.path}: holds no budget; it has no whole revolution, or is of an older process_bag --db")
 
 
 def budgets_of(database):
     """(machine, figures) of each machine in a file."""
     if database.kind == LEDGER:
         raise Problem(f"{database.path}: is a ledger, which keeps no sources; give the bags or process_bag --db")
-    budgets = [(subject.label, budget_of(subject)) for subject in subjects_of(database)]
-    if not any(figures for _, figures in budgets):
-        raise Problem(f"{database.path}: holds no budget; it has no whole revolution, or is of an older process_bag --db")
-    return budgets
+    return [(subject.label, figures_in(subject)) for subject in subjects_of(database)]
 
 
 def share_lines(shares):
     """Lines; one for all that would be 0.0 %."""
     seen = [one for one in shares if one[1] >= LEAST_SHOWN]
-    few = [f"  {100.0 * share:5.1f} %  {source}" for source, share in seen]
-    rest = len(shares) - len(seen)
-    return few + [f"  {100.0 * sum(share for _, share in shares[len(seen):]):5.1f} %  {rest} more"] * (rest > 0)
+    rest = [share for _, share in shares[len(seen):]]
+    return [f"  {100.0 * share:5.1f} %  {source}"
+            for source, share in seen + ([(f"{len(rest)} more", sum(rest))] if rest else [])]
 
 
 def as_text(budgets):
-    lines = []
     for machine, figures in budgets:
-        lines.append(f"{machine}: standard deviations of one revolution, by source")
+        yield f"{machine}: standard deviations of one revolution, by source"
         for f in figures:
             unit = f" {f.unit}" if f.unit != "-" else ""
-            lines.append(f"{in_words(f.quantity)}: {f.value:.5g} +- {f.deviation:.2g}{unit}; "
-                         f"{f.halved:.2g}{unit} with the largest source halved")
-            lines += share_lines(f.shares)
-    return "\n".join(lines) + "\n"
+            yield (f"{in_words(f.quantity)}: {f.value:.5g} +- {f.deviation:.2g}{unit}; "
+                   f"{f.halved:.2g}{unit} with the largest source halved")
+            yield from share_lines(f.shares)
 
 
 def as_json(budgets):
-    return json.dumps({"machines": [
+    yield json.dumps({"machines": [
         {"machine": machine,
          "figures": [{"quantity": f.quantity, "unit": f.unit, "value": f.value, "std": f.deviation,
                       "std_with_largest_halved": f.halved,
                       "sources": [{"source": source, "share": share} for source, share in f.shares]} for f in figures]}
-        for machine, figures in budgets]}, indent=2) + "\n"
+        for machine, figures in budgets]}, indent=2)
 
 
-def write_csv(budgets, stream):
-    writer = csv.writer(stream, lineterminator="\n")
+def as_csv(budgets):
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["machine", "quantity", "unit", "value", "std", "std_with_largest_halved", "source", "share"])
-    for machine, figures in budgets:
-        for f in figures:
-            for source, share in f.shares:
-                writer.writerow([machine, f.quantity, f.unit, f.value, f.deviation, f.halved, source, share])
+    writer.writerows((machine, f.quantity, f.unit, f.value, f.deviation, f.halved, *share)
+                     for machine, figures in budgets for f in figures for share in f.shares)
+    yield text.getvalue().rstrip("\n")
 
 
 def run(given):
     with tempfile.TemporaryDirectory(prefix="hammer_loads_budget") as folder:
-        budgets = [budget for path in databases(given, folder) for budget in budgets_of(Database(path))]
-    if given.kind == CSV:
-        write_csv(budgets, sys.stdout)
-    else:
-        sys.stdout.write(as_json(budgets) if given.kind == JSON else as_text(budgets))
-
-
-def main(arguments):
-    """Exit code."""
-    options = parser()
-    return guarded(run, options.parse_args(arguments), options)
+        budgets = [budget for database in inputs.databases(given, folder) for budget in budgets_of(database)]
+    print("\n".join(given.text_of(budgets)))

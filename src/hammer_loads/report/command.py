@@ -1,5 +1,6 @@
-"""Command line of report."""
+"""Command lines: what report, budget, check and test_report share, and report itself."""
 import argparse
+import importlib
 import os
 import pathlib
 import signal
@@ -8,13 +9,10 @@ import tempfile
 import warnings
 import xml.etree.ElementTree as ElementTree
 
-from report import bags, csv_tables, output
-from report.database import Database, Interrupt
-from report.problem import Problem, one_line
+from report import csv_tables, inputs, output
+from report.database import Problem, one_line
 from report.subjects import notes
 
-TOPICS = {"crank-topic": "the crank's samples", "joint-states-topic": "the boom's joints", "imu-topic": "the hull's IMU",
-          "pressures-topic": "the cylinders' pressures, a prefix", "reference-topic": "a measured load on the hull"}
 WRONG_USAGE, FAILURE, INTERRUPTED = 2, 1, 130
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -28,72 +26,47 @@ def package_version():
     raise Problem(f"{HERE}: no package.xml above it; the installation is not whole")
 
 
+class Usage(Problem):
+    """Wrong usage; the command ends with code 2."""
+
+
 class Parser(argparse.ArgumentParser):
+    """Parser of a command whose inputs may be bags."""
+
+    def __init__(self, files, **words):
+        super().__init__(**words)
+        self.add_argument("files", nargs="+", **files)
+        inputs.add_bag_options(self)
+        self.add_argument("--version", action="version", version=f"hammer_loads {package_version()}",
+                          help="print the version and end")
+
     def error(self, message):
         self.exit(WRONG_USAGE, f"{self.prog}: {' '.join(message.split())} (--help shows the options)\n")
 
 
-class Version(argparse.Action):
-    def __call__(self, parser, *_):
-        print(f"hammer_loads {package_version()}")
-        parser.exit(0)
-
-
 def parser():
     result = Parser(
+        dict(metavar="FILE", help="a database of process_bag --db, a ledger, a fleet's merged file, or a bag; splits of one "
+             "recording of the node count as one"),
         prog="report", description="One page, and tables, from what process_bag --db and the ledgers hold.",
         epilog="The page needs no other file and no network. Two or more machines are compared. Errors are one line "
                "each; exit code 1, or 2 for wrong usage.")
-    result.add_argument("files", nargs="+", metavar="FILE",
-                        help="a database of process_bag --db, a ledger, a fleet's merged file, or a bag; splits of one "
-                             "recording of the node count as one")
     result.add_argument("--html", metavar="OUT.html", help="page to write, which must not exist")
     result.add_argument("--csv", metavar="DIRECTORY", help="every table as CSV into a new directory")
     result.add_argument("--machine", metavar="NAME", help="of a fleet's merged file this machine alone")
-    add_bag_options(result)
     result.add_argument("--force", action="store_true", help="replace what this command wrote")
     return result
 
 
-def add_bag_options(to):
-    to.add_argument("--params", action="append", default=[], metavar="FILE.yaml",
-                    help="for bags: parameters, as of process_bag; may be repeated")
-    to.add_argument("--urdf", metavar="FILE.urdf", help="for bags: robot description")
-    to.add_argument("--reference", metavar="FILE.csv",
-                    help="for bags: a measured load of the hull, as of process_bag")
-    for topic, of in TOPICS.items():
-        to.add_argument(f"--{topic}", metavar="TOPIC", help=f"for bags: of {of}; else as in their run_info")
-    to.add_argument("--version", action=Version, nargs=0, help="print the version and end")
-
-
 def run(given):
+    if given.html is None and given.csv is None:
+        raise Usage("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
     if given.html is not None:
-        output.check_file(given.html, given.files, given.force, output.why_page_must_stay)
+        output.check_file(given.html, given.files, given.force)
     if given.csv is not None:
-        needed = [*given.files, *([given.html] if given.html else [])]
-        output.check_directory(given.csv, needed, given.force, csv_tables.why_directory_must_stay)
+        output.check_directory(given.csv, [*given.files, *([given.html] if given.html else [])], given.force)
     with tempfile.TemporaryDirectory(prefix="hammer_loads_report") as folder:
-        write(given, [Database(path) for path in databases(given, folder)])
-
-
-def bag_options(given):
-    """Options of process_bag that were given."""
-    options = [word for file in given.params for word in ("--params", file)]
-    for name in ("urdf", "reference", *TOPICS):
-        value = getattr(given, name.replace("-", "_"))
-        options += [f"--{name}", value] if value is not None else []
-    return options
-
-
-def databases(given, folder):
-    """Paths in the order of the files given; the splits of one recording are one, at the place of the first."""
-    splits_of = {splits[0]: splits for splits in bags.recordings(list(filter(bags.is_bag, given.files)))}
-    later = {bag for splits in splits_of.values() for bag in splits[1:]}
-    for path in given.files:
-        if not bags.is_bag(path):
-            yield path
-        elif path not in later:
-            yield bags.database_of(splits_of[path], bag_options(given), folder)
+        write(given, list(inputs.databases(given, folder)))
 
 
 def write(given, databases):
@@ -109,28 +82,27 @@ def write(given, databases):
         print(f"{given.csv}: {len(os.listdir(given.csv))} tables")
 
 
-def main(arguments):
-    """Exit code."""
-    options = parser()
+def main(arguments, name="report"):
+    """Exit code of the command of this name; its module has parser() and run()."""
+    module = importlib.import_module("report." + ("command" if name == "report" else name))
+    options = module.parser()
     given = options.parse_args(arguments)
-    if given.html is None and given.csv is None:
-        options.error("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
-    return guarded(run, given, options)
-
-
-def guarded(run, given, options):
-    """Exit code of run(given)."""
-    if bag_options(given) and not any(map(bags.is_bag, given.files)):
-        options.error("--params, --urdf and topics are for bags; a database has its parameters")
     warnings.simplefilter("ignore")  # of numpy: what is no number is shown as such; stderr has this command's own lines alone
-    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(name) != signal.SIG_IGN:
-            signal.signal(name, Interrupt.handler)
+    for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(ending) != signal.SIG_IGN:
+            signal.signal(ending, signal.default_int_handler)
     try:
-        run(given)
+        if inputs.bag_options(given) and not any(map(inputs.is_bag, given.files)):
+            raise Usage("--params, --urdf and topics are for bags; a database has its parameters")
+        module.run(given)
         return 0
+    except Usage as problem:
+        options.error(str(problem))
     except Problem as problem:
         print(problem, file=sys.stderr)
+        return FAILURE
+    except OSError as error:
+        print(one_line(f"{error.filename}: {error.strerror}"), file=sys.stderr)
         return FAILURE
     except (ArithmeticError, AttributeError, LookupError, MemoryError, RecursionError, TypeError, ValueError) as error:
         # What stands in the tables is no number, too large, or missing where the page must have it.

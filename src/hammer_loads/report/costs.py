@@ -2,12 +2,9 @@
 import numpy
 import pandas
 
-from report.channel import Channel
-from report.damage import columns_of
 from report.database import FLEET
-from report.formats import Table, moment, number, utc
-from report.names import recording_of, in_words
-from report.subjects import MOST_TURNS_ONE_BY_ONE, add_piece
+from report.formats import Table, in_words, moment, number, utc
+from report.subjects import MOST_TURNS_ONE_BY_ONE
 
 SLOPE = 5.0  # where no S-N curve is given
 PARTS = (0.01, 0.03, 0.1, 0.3, 0.5)
@@ -33,12 +30,13 @@ def damage_of_each(channel, ranges, means):
     """Damage of one cycle of each range and mean: by the S-N curve, else relative at SLOPE."""
     if channel.curve is not None:
         return channel.curve.of_each(ranges, means)[0]
-    return (ranges / (channel.count.greatest - channel.count.least)) ** SLOPE
+    least, greatest, _ = channel.count.grid
+    return (ranges / (greatest - least)) ** SLOPE
 
 
 def damage_of(channel):
     """Damage of all counted cycles."""
-    ranges, means, counts = columns_of(channel.count.ranges_and_means())
+    ranges, means, counts = channel.cycles
     return (counts * damage_of_each(channel, ranges, means)).sum()
 
 
@@ -55,30 +53,29 @@ def turn_costs(subject, channel):
 
 def dearest_share(damages, part):
     """Share of the damage that is due to the most damaging part of the revolutions."""
-    ordered = numpy.sort(damages)[::-1]
-    return ordered[:max(1, round(part * len(ordered)))].sum() / ordered.sum()
+    return damages.nlargest(max(1, round(part * len(damages)))).sum() / damages.sum()
 
 
 def shares_table(caption, title, counted, groups):
-    """groups: (name, count, damage); nothing where there is one group alone."""
-    if len(groups) < 2:
+    """groups: (name, count, damage), equal names together; nothing where there is one group alone."""
+    sums = pandas.DataFrame(groups, columns=["name", "count", "damage"]).groupby("name", sort=False).sum()
+    if len(sums) < 2:
         return None
-    count_all = sum(count for _, count, _ in groups) or 1
-    damage_all = sum(damage for _, _, damage in groups) or 1.0
+    parts = 100.0 * sums / sums.sum().replace(0, 1)
     return Table(caption, [title, counted, f"{counted} [%]", "Damage [%]"],
-                 [[name, count, number(100.0 * count / count_all, 3), number(100.0 * damage / damage_all, 3)]
-                  for name, count, damage in groups])
+                 [[name, int(count), number(share, 3), number(damage, 3)]
+                  for name, count, share, damage in zip(sums.index, sums["count"], parts["count"], parts.damage)])
 
 
 def grouped_table(caption, title, turns, stretch_ns, name_of):
     """Shares by stretches of time. name_of(stamp_ns): name of the stretch that begins then."""
-    groups = turns.damage.groupby((turns.stamp_ns // stretch_ns).astype(int)).agg(["size", "sum"])
-    return shares_table(caption, title, "Turns", [(name_of(at * stretch_ns), int(count), damage)
-                                                  for at, count, damage in groups.itertuples()])
+    begins = (turns.stamp_ns // stretch_ns * stretch_ns).astype("int64")
+    return shares_table(caption, title, "Turns", [(name_of(at), len(damage), damage.sum())
+                                                  for at, damage in turns.damage.groupby(begins)])
 
 
 def dearest_turns(subject, turns):
-    names = recording_of(subject)
+    names = subject.recordings()
     dearest = turns.sort_values(["damage", "stamp_ns"], ascending=[False, True]).head(DEAREST)
     rows = [[moment(turn.stamp_ns), names[subject.runs[turn.run]["run_id"]], int(turn.turn),
              number(100.0 * turn.damage / turns.damage.sum(), 2), turn.peak] for turn in dearest.itertuples()]
@@ -103,34 +100,25 @@ def by_recording(subject, channel):
     """Shares by the counted cycles of each run, and by day for a machine of a fleet."""
     if len(subject.runs) > MOST_RECORDINGS:
         return []
-    names, groups, days = recording_of(subject), [], {}
-    for run in subject.runs:
-        for row in subject.database.records("SELECT * FROM channels WHERE run_id = ? AND name = ? AND counted",
-                                            run["run_id"], channel.name):
-            piece = Channel.of(row, run["equivalent_cycles_per_hour"])
-            add_piece(piece, subject.database, run, row)
-            groups.append((names[run["run_id"]], run["blows"] or 0, damage_of(piece)))
-            day = days.setdefault(run.get("day") or "?", [0, 0.0])
-            day[0] += groups[-1][1]
-            day[1] += groups[-1][2]
-    tables = [shares_table("Damage by recording", "Recording", "Blows", groups)]
+    names = subject.recordings()
+    groups = [(run, run["blows"] or 0, damage_of(piece)) for run, piece in subject.pieces(channel.name)]
+    tables = [shares_table("Damage by recording", "Recording", "Blows", [(names[run["run_id"]], *rest) for run, *rest in groups])]
     if subject.database.kind == FLEET:
-        tables.append(shares_table("Damage by day", "Day (UTC)", "Blows", [(day, *tally) for day, tally in days.items()]))
+        tables.append(shares_table("Damage by day", "Day (UTC)", "Blows", [(run["day"] or "?", *rest) for run, *rest in groups]))
     return tables
 
 
 def life_factors(channel, factors):
     """Life over that of now, by the S-N curve, with all loads multiplied by each factor."""
-    ranges, means, counts = columns_of(channel.count.ranges_and_means())
+    ranges, means, counts = channel.cycles
     damages = [(counts * channel.curve.of_each(ranges * factor, means * factor)[0]).sum() for factor in (1.0, *factors)]
     return [damages[0] / damage if damage > 0.0 else float("inf") for damage in damages[1:]]
 
 
 def doubling_factor(channel):
     """Factor of the load at which the life by the channel's curve is twice as long, to 0.001."""
-    factors = [0.001 * i for i in range(200, 1001)]
-    long_enough = [factor for factor, life in zip(factors, life_factors(channel, factors)) if life >= 2.0]
-    return max(long_enough, default=None)
+    factors = numpy.arange(200, 1001) * 0.001
+    return max((factor for factor, life in zip(factors, life_factors(channel, factors)) if life >= 2.0), default=None)
 
 
 def back_calculation(channels):

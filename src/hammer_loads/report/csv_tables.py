@@ -1,12 +1,10 @@
 """Every table of the files as CSV: TABLE.csv, ledgers' as ledger_TABLE.csv. The first line is a comment with the units,
 the second the header; the first column is the file."""
 import csv
-import os
 import re
 
-from report.database import LEDGER, quoted
-from report.names import stem
-from report.problem import Problem, one_line
+from report.database import LEDGER, Problem, one_line, quoted
+from report.subjects import stem
 
 COMMENT = "# hammer_loads"
 # A spreadsheet runs what begins so; a text that it does not run begins with a quotation mark.
@@ -35,39 +33,25 @@ def write_tables(databases, directory):
             tables.setdefault(file_name(database, table), []).append((database, table))
     for name, sources in tables.items():
         columns = list(dict.fromkeys(c for database, table in sources for c in database.columns(table)))
+        units = {column: unit for source in sources for column, unit in units_of(*source)}
         with open(directory / name, "w", encoding="utf-8", newline="") as file:
-            units = {column: unit for database, table in sources for column, unit in units_of(database, table).items()}
-            file.write(f"{COMMENT}, units: " + ", ".join(f"{c} [{units.get(c, '-')}]" for c in ["file", *columns]) + "\n")
+            listed = ", ".join(f"{c} [{units.get(c, '-')}]" for c in ["file", *columns])
+            file.write(one_line(f"{COMMENT}, units: {listed}") + "\n")
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(["file", *map(plain, columns)])
             for database, table in sources:
-                write_rows(writer, database, table, columns)
+                writer.writerows(rows_of(database, table, columns))
 
 
 def units_of(database, table):
-    """{column: unit} by the table `columns`."""
-    if "columns" not in database.tables():
-        return {}
-    return {one_line(column): one_line(unit) for column, unit in database.rows(
-        "SELECT column_name, unit FROM columns WHERE table_name = ?", table)}
+    """(column, unit) by the table `columns`."""
+    if "columns" in database.tables():
+        yield from database.rows("SELECT column_name, unit FROM columns WHERE table_name = ?", table)
 
 
-def write_rows(writer, database, table, columns):
+def rows_of(database, table, columns):
     present = database.columns(table)
     listed = ", ".join(quoted(c) if c in present else "NULL" for c in columns)
     order = ", ".join(map(quoted, present[:4]))
-    label = stem(database.path)
     for row in database.rows(f"SELECT {listed} FROM {quoted(table)} ORDER BY {order}"):
-        writer.writerow([plain(label), *map(plain, row)])
-
-
-def why_directory_must_stay(name):
-    """A directory of nothing but such files may be replaced."""
-    for entry in sorted(os.listdir(name)):
-        path = os.path.join(name, entry)
-        if not (entry.endswith(".csv") and os.path.isfile(path) and not os.path.islink(path)):
-            return f"{entry} is none of its tables"
-        with open(path, "rb") as file:
-            if not file.read(len(COMMENT)) == COMMENT.encode():
-                return f"{entry} is none of its tables"
-    return None
+        yield [plain(stem(database.path)), *map(plain, row)]

@@ -1,27 +1,26 @@
-"""Reads a database of this package; every problem becomes one line with the file's name."""
+"""Databases of this package, opened for reading; every problem becomes one line with the file's name."""
 import os
 import sqlite3
-import stat
+import unicodedata
 import urllib.parse
-
-from report.problem import Problem
 
 RECORDING, LEDGER, FLEET = "recording", "ledger", "fleet"
 KINDS = {0x484C5242: RECORDING, 0x484C4C31: LEDGER, 0x484C5246: FLEET}
-VERSIONS = {RECORDING: (1,), LEDGER: (1,), FLEET: (1,)}
+VERSION = 1  # of each kind
 STEPS = 100000  # of SQLite's machine, some ms, between two looks for a signal
 BUSY_S = 5.0  # a node that writes its ledger needs some ms
 
 
-class Interrupt:
-    """A signal that must end the command; SQLite stops by it within a query as well."""
+def one_line(text):
+    """Text without line breaks and without codes that a terminal obeys."""
+    return "".join("\ufffd" if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp") else c for c in str(text))
 
-    came = False
 
-    @classmethod
-    def handler(cls, *_):
-        cls.came = True
-        raise KeyboardInterrupt
+class Problem(Exception):
+    """One line that names the file and the reason; the command ends with code 1."""
+
+    def __str__(self):
+        return one_line(super().__str__())
 
 
 def quoted(name):
@@ -38,24 +37,16 @@ class Database:
         address = "file:" + urllib.parse.quote(os.path.abspath(self.path)) + "?mode=ro"
         self._connection = self._guarded(sqlite3.connect, address, uri=True, isolation_level=None, timeout=BUSY_S)
         self._connection.text_factory = lambda data: data.decode("utf-8", "replace")
-        self._connection.set_progress_handler(lambda: int(Interrupt.came), STEPS)
+        # Python handles a signal in this function; an exception there ends the query.
+        self._connection.set_progress_handler(lambda: 0, STEPS)
         self._guarded(self._connection.execute, "BEGIN")
         self.kind = self._kind()
         self._check_tables()
 
-    def _check_tables(self):
-        """Refuses views: a name must stand for a table, whose rows end."""
-        for name, kind in self.rows("SELECT name, type FROM sqlite_master WHERE type IN ('view', 'trigger') OR "
-                                    "sql LIKE 'CREATE VIRTUAL%' ORDER BY name"):
-            if self.kind == FLEET and (kind, name) == ("view", "parameters"):
-                continue  # its own (fleet/merged_schema.sql)
-            raise Problem(f"{self.path}: {kind} {name}: must hold tables alone, as this package writes them")
-
     def _check_file(self):
+        if os.path.exists(self.path) and not os.path.isfile(self.path):
+            raise Problem(f"{self.path}: is no regular file")
         try:
-            mode = os.stat(self.path).st_mode
-            if not stat.S_ISREG(mode):
-                raise Problem(f"{self.path}: is no regular file")
             with open(self.path, "rb") as file:
                 if file.read(16) != b"SQLite format 3\0":
                     raise Problem(f"{self.path}: is no SQLite file")
@@ -63,33 +54,36 @@ class Database:
             raise Problem(f"{self.path}: cannot be read: {error.strerror}")
 
     def _kind(self):
-        application = self.value("PRAGMA application_id")
+        application, version = self.value("PRAGMA application_id"), self.value("PRAGMA user_version")
         kind = KINDS.get(application)
         if kind is None:
             raise Problem(f"{self.path}: is another database (application_id {application}), must be written by "
                           "process_bag --db, --ledger or the fleet")
-        version, known = self.value("PRAGMA user_version"), VERSIONS[kind]
-        if version not in known:
-            age = "an older" if version < known[0] else "a newer"
-            raise Problem(f"{self.path}: {kind} of {age} version, {version}; this program reads version {known[-1]}")
-        self.version = version
+        if version != VERSION:
+            age = "an older" if version < VERSION else "a newer"
+            raise Problem(f"{self.path}: {kind} of {age} version, {version}; this program reads version {VERSION}")
         return kind
+
+    def _check_tables(self):
+        """Refuses views: a name must stand for a table, whose rows end."""
+        for name, kind in self.rows("SELECT name, type FROM sqlite_master WHERE type IN ('view', 'trigger') OR "
+                                    "sql LIKE 'CREATE VIRTUAL%' ORDER BY name"):
+            if (self.kind, kind, name) != (FLEET, "view", "parameters"):  # its own (fleet/merged_schema.sql)
+                raise Problem(f"{self.path}: {kind} {name}: must hold tables alone, as this package writes them")
 
     def _guarded(self, call, *arguments, **options):
         try:
             return call(*arguments, **options)
         except (sqlite3.Error, OSError, OverflowError, UnicodeError, MemoryError) as error:  # pandas' is an OSError
-            if Interrupt.came:
+            reason = " ".join(str(error.__cause__ or error).split())
+            if reason == "interrupted":
                 raise KeyboardInterrupt
-            raise Problem(f"{self.path}: cannot be read: {' '.join(str(error.__cause__ or error).split())}")
+            raise Problem(f"{self.path}: cannot be read: {reason}")
 
     def rows(self, sql, *values):
         """Iterates over tuples."""
         cursor = self._guarded(self._connection.execute, sql, values)
-        while True:
-            some = self._guarded(cursor.fetchmany, 1000)
-            if not some:
-                return
+        while some := self._guarded(cursor.fetchmany, 1000):
             yield from some
 
     def frame(self, sql, *values):
@@ -104,8 +98,8 @@ class Database:
         return [dict(zip(names, row)) for row in self._guarded(cursor.fetchall)]
 
     def value(self, sql, *values):
-        row = self._guarded(self._guarded(self._connection.execute, sql, values).fetchone)
-        return row[0] if row else None
+        """First column of the first row; None without rows."""
+        return next(self.rows(sql, *values), (None,))[0]
 
     def tables(self):
         return [name for name, in self.rows(

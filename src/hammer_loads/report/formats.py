@@ -1,18 +1,18 @@
-"""Numbers, times and tables as a page shows them. Templates escape all text."""
+"""Numbers, times, names and tables as a page shows them. Templates escape all text."""
 from collections import namedtuple
 import datetime
 import math
 import numbers
+import re
 import unicodedata
 
 from markupsafe import Markup
 
-UNITS = {"N": (1e-3, "kN"), "N m": (1e-3, "kN m"), "N s": (1.0, "N s"), "-": (1.0, ""), "MPa": (1.0, "MPa"), "Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
+UNITS = {"N": (1e-3, "kN"), "N m": (1e-3, "kN m"), "-": (1.0, ""), "Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
 NOTHING = "\u2013"
 
 # The first column names the row. kind: classes of the table, `numbers` or `words`.
-Table = namedtuple("Table", "caption header rows kind")
-Table.__new__.__defaults__ = ("numbers",)
+Table = namedtuple("Table", "caption header rows kind", defaults=("numbers",))
 
 
 def clean(text):
@@ -24,9 +24,7 @@ def shown(value):
     """Value of a template as text."""
     if hasattr(value, "__html__"):
         return value
-    if isinstance(value, str):
-        return clean(value)
-    return number(value)
+    return clean(value) if isinstance(value, str) else number(value)
 
 
 def is_nothing(value):
@@ -38,27 +36,26 @@ def number(value, digits=4):
         return NOTHING
     if isinstance(value, float) and math.isinf(value):
         return "no end" if value > 0 else "-\u221e"
-    if isinstance(value, numbers.Integral):
-        return f"{value:,}".replace(",", "\u202f")
-    text = f"{value:.{digits}g}"
+    text = f"{value:,}" if isinstance(value, numbers.Integral) else f"{value:.{digits}g}"
     if "e" in text and 1e-4 <= abs(value) < 1e7:
         text = f"{value:.0f}"
-    return text.replace("-", "\u2212")
+    return text.replace(",", "\u202f").replace("-", "\u2212")
 
 
-def places_of(deviation):
-    """Decimal places up to its second digit (JCGM 100, 7.2.6); below zero where that stands before the point."""
-    return 1 - math.floor(math.log10(deviation))
-
-
-def measured(value, deviation):
-    """Value and deviation, the value to the place of the deviation's second digit."""
-    if is_nothing(value) or is_nothing(deviation) or not deviation or not math.isfinite(value + deviation):
-        return number(value)
-    places = places_of(deviation)
+def rounded(value, deviation):
+    """Value and deviation, both to the place of the deviation's second digit (JCGM 100, 7.2.6)."""
+    if is_nothing(value) or is_nothing(deviation) or not deviation > 0.0 or not math.isfinite(value + deviation):
+        return number(value), number(deviation)
+    places = 1 - math.floor(math.log10(deviation))  # below zero where the digit stands before the point
     if places <= 0:
-        return f"{number(round(value))} \u00b1 {number(round(deviation))}"
-    return f"{value:.{places}f} \u00b1 {deviation:.{places}f}".replace("-", "\u2212")
+        return tuple(number(int(round(x, places))) for x in (value, deviation))
+    return tuple(f"{x:.{places}f}".replace("-", "\u2212") for x in (value, deviation))
+
+
+def measured(value, deviation, factor=1.0):
+    """Value \u00b1 deviation, or the value alone; both times the factor."""
+    value, deviation = rounded(scaled(value, factor), scaled(deviation, factor))
+    return value if deviation in (NOTHING, "0") else f"{value} \u00b1 {deviation}"
 
 
 def in_unit(unit):
@@ -77,8 +74,17 @@ def titled(title, unit):
 def utc(stamp_ns):
     if is_nothing(stamp_ns):
         return NOTHING
-    moment_ = datetime.datetime(1970, 1, 1) + datetime.timedelta(microseconds=int(stamp_ns) // 1000)
-    return moment_.strftime("%Y-%m-%d %H:%M:%S") + f".{int(stamp_ns) // 1000000 % 1000:03d}"
+    at = datetime.datetime(1970, 1, 1) + datetime.timedelta(microseconds=int(stamp_ns) // 1000)
+    return at.isoformat(" ", "milliseconds")
+
+
+def moment(stamp_ns, to="seconds"):
+    """UTC; the page's script writes the reader's local time beside it. Bytes of a page depend on no time zone."""
+    if is_nothing(stamp_ns):
+        return NOTHING
+    whole = utc(stamp_ns)[:19]
+    return Markup('<time datetime="{}Z" data-to="{}">{}</time>').format(
+        whole.replace(" ", "T"), to, whole if to == "seconds" else whole[:16])
 
 
 def duration(seconds):
@@ -92,10 +98,28 @@ def duration(seconds):
     return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
 
 
-def moment(stamp_ns, to="seconds"):
-    """UTC; the page's script writes the reader's local time beside it. Bytes of a page depend on no time zone."""
-    if is_nothing(stamp_ns):
-        return NOTHING
-    whole = utc(stamp_ns)[:19]
-    return Markup('<time datetime="{}Z" data-to="{}">{}</time>').format(
-        whole.replace(" ", "T"), to, whole if to == "seconds" else whole[:16])
+WORDS = {
+    "pulse/amplitude": "peak force along the tool",
+    "pulse/impulse": "impulse of the pulse",
+    "pulse/turn_impulse_x": "impulse of a revolution across the tool",
+    "pulse/turn_impulse_z": "impulse of a revolution along the tool",
+    "blow/energy": "blow energy",
+    "blow/restitution": "restitution",
+    "hull_wrench/force_x": "force across the tool, Fx",
+    "hull_wrench/force_z": "force along the tool, Fz",
+    "hull_wrench/torque_y": "moment about the rocker pivot, My",
+}
+TOPICS = {"joint_loads": "", "section_loads": "section ", "stress": "stress at "}
+
+
+def in_words(quantity):
+    """Words for a channel (topic/field, topic/name/field, stress/NAME) or a figure of the budget."""
+    if band := re.fullmatch(r"(.*)_below_([0-9.e+-]+)Hz", quantity):
+        return f"{in_words(band[1])}, below {band[2]} Hz"
+    if slope := re.fullmatch(r"equivalent_range_(\d+)/(.*)", quantity):
+        return f"damage-equivalent range (slope {slope[1]}) of {in_words(slope[2])}"
+    topic, _, rest = quantity.partition("/")
+    if quantity in WORDS or topic not in TOPICS:
+        return WORDS.get(quantity, quantity)
+    name, _, field = rest.partition("/")
+    return TOPICS[topic] + name + (", " + field.replace("_", " ") if field else "")

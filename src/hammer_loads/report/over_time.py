@@ -1,6 +1,7 @@
 """Blow rate, energy, restitution, peak force and hold-down over the time of work, and how often which value came."""
 from matplotlib.ticker import MaxNLocator
 import numpy
+import pandas
 
 from report.formats import Table, number, titled
 from report.pictures import COLOURS, Picture
@@ -34,10 +35,9 @@ def summary_table(series):
 def by_time_table(series):
     """The pictures in numbers."""
     step = max((s.points.x.max() for s in series.values() if len(s)), default=0.0) / STRETCHES or 1.0
-    means = [series[q.key].on_grid(step, STRETCHES).middle for q in QUANTITIES]
-    rows = [[f"{number(at * step, 3)} to {number((at + 1) * step, 3)}", *(float(column[at]) for column in means)]
-            for at in range(STRETCHES)]
-    rows = [row for row in rows if not all(numpy.isnan(row[1:]))]
+    means = pandas.DataFrame({key: values.points.middle.groupby((values.points.x // step).clip(upper=STRETCHES - 1)).mean()
+                              for key, values in series.items()})
+    rows = [[f"{number(at * step, 3)} to {number((at + 1) * step, 3)}", *row] for at, *row in means.itertuples()]
     return Table("Means by time", ["Time of work [s]", *(titled(q.title, q.unit) for q in QUANTITIES)], rows)
 
 
@@ -80,7 +80,7 @@ def histogram(quantity, values):
     edges = bins(usual(values))
     counts = numpy.histogram(values[values < edges[-1]], edges)[0]
     picture = Picture(titled(quantity.title.lower(), quantity.unit), "blows")
-    picture.axes.bar(edges[:-1], counts, numpy.diff(edges), align="edge", color=COLOURS["first"], alpha=0.75)
+    picture.bars(edges, counts)
     low, high = numpy.floor(values[values < edges[0]].min(initial=edges[0])), edges[-1]
     if values.max() >= high:
         high = numpy.nextafter(numpy.ceil(values.max()), numpy.inf)

@@ -1,9 +1,8 @@
 """Runs, totals and parameters of a machine, and its warnings."""
 import os
 
-from report import limits
+from report.conditions import limit_lines
 from report.formats import NOTHING, Table, duration, measured, moment, number
-from report.names import recording_of
 from report.quantities import QUANTITIES
 
 MOST_RUNS_SHOWN = 50
@@ -19,12 +18,10 @@ def warnings_of(subject):
         found["no run at all: the recording holds no sample of a crank"] = []
     elif subject.total("turns") == 0:
         found["no whole revolution: there is nothing about blows, pulses and revolutions"] = []
-    withheld = subject.blows_without_energy()
-    if withheld:
+    if withheld := subject.blows_without_energy():
         found[f"blows whose energy and restitution are withheld: {withheld} of {subject.total('blows')}; they are in no "
               "picture and no figure"] = []
-    found.update(dict.fromkeys(limits.lines(subject), []))
-    return found
+    return {**found, **dict.fromkeys(limit_lines(subject), [])}
 
 
 def failed_lines(subject):
@@ -41,22 +38,21 @@ def failed_lines(subject):
 
 def warnings_list(subjects, mixed):
     """(machine, line) of all subjects; bags that gave nothing are the last lines."""
-    name = {id(s): s.label if len(subjects) > 1 else "" for s in subjects}
-    lines = [("", line) for line in mixed]
+    lines, last = [("", line) for line in mixed], []
     for subject in subjects:
+        name = subject.label if len(subjects) > 1 else ""
         for words, runs in warnings_of(subject).items():
             if len(subject.runs) > 1 and runs:
                 listed = ", ".join(map(str, runs[:MOST_RUNS_NAMED])) + (" ..." if len(runs) > MOST_RUNS_NAMED else "")
                 words = f"{words} (runs {listed})"
-            lines.append((name[id(subject)], words))
-    return lines + [(name[id(s)], line) for s in subjects for line in failed_lines(s)]
+            lines.append((name, words))
+        last += [(name, line) for line in failed_lines(subject)]
+    return lines + last
 
 
 def energy_text(joules):
-    for factor, unit in ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ")):
-        if joules >= factor:
-            return f"{number(joules / factor)} {unit}"
-    return f"{number(joules)} J"
+    factor, unit = next(((f, u) for f, u in ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ")) if joules >= f), (1.0, "J"))
+    return f"{number(joules / factor)} {unit}"
 
 
 def total_energy(subject, series):
@@ -83,7 +79,7 @@ def truth_of(subject):
     if "truth" not in subject.database.tables():
         return {}
     true = dict(subject.database.rows("SELECT quantity, value FROM truth"))
-    shown = [("blows", "", 1.0)] + [(quantity.key, quantity.unit, quantity.factor) for quantity in QUANTITIES]
+    shown = [("blows", "", 1.0), *((quantity.key, quantity.unit, quantity.factor) for quantity in QUANTITIES)]
     return {key: f", true {number(true[key] * factor)} {unit}".rstrip() for key, unit, factor in shown if key in true}
 
 
@@ -106,7 +102,7 @@ def key_figures(subject, series):
 
 
 def runs_table(subject):
-    names = recording_of(subject)
+    names = subject.recordings()
     rows = [[str(at), names[run["run_id"]], moment(run["first_stamp_ns"]), moment(run["last_stamp_ns"]),
              duration(run["duration"]), number(run["turns"]), number(run["blows"]), run["level"] or NOTHING,
              f"{run['version']} ({run['revision'][:10]})"] for at, run in enumerate(subject.runs[:MOST_RUNS_SHOWN], 1)]
@@ -116,12 +112,11 @@ def runs_table(subject):
 
 def parameters_table(subject):
     """Parameters that differ from the shipped ones, each combination once."""
-    changed = subject.frame("key, value, shipped FROM parameters WHERE {runs} AND value IS NOT shipped",
-                            text=["key", "value", "shipped"])[["key", "value", "shipped"]]
-    combinations = sorted(set(changed.itertuples(index=False, name=None)), key=lambda row: tuple(map(str, row)))
-    return Table("Parameters that differ from the shipped ones", ["Parameter", "In force", "Shipped"],
-                 [[key, NOTHING if value is None else value, "none" if shipped is None else shipped]
-                  for key, value, shipped in combinations], "words")
+    names = ["key", "value", "shipped"]
+    changed = subject.frame("key, value, shipped FROM parameters WHERE {runs} AND value IS NOT shipped", text=names)
+    rows = changed.drop_duplicates(names).sort_values(names).fillna({"value": NOTHING, "shipped": "none"})
+    return Table("Parameters that differ from the shipped ones", ["Parameter", "In force", "Shipped"], rows[names].values.tolist(),
+                 "words")
 
 
 def overview(subject, series):

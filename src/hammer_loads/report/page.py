@@ -4,27 +4,22 @@ import pathlib
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from report.boom_health import boom_health
-from report.boom_loads import boom_loads
 from report.budget import budget
-from report.check import check_section
+from report.checks import check_section, sensor_health
 from report.comparison import comparison, runs_compared
+from report.conditions import limits, misuse, reference
 from report.costs import costs
 from report.cycle_figures import cycle_figures
-from report.database import LEDGER, RECORDING
+from report.database import FLEET, LEDGER, RECORDING
 from report.formats import shown, utc
-from report.ledger_section import ledger_section
-from report.limits import limits
-from report.misuse import misuse
-from report.names import stem
+from report.ledger import epoch_content, epochs_of
+from report.loads import boom_loads, turn_pictures
 from report.over_time import MOST_POINTS, over_time
 from report.overview import overview, warnings_list
 from report.pictures import with_own_ids
 from report.quantities import QUANTITIES
-from report.reference import reference
-from report.sensor_health import sensor_health
 from report.series import series_of
-from report.subjects import mixed_machines, subjects_of
-from report.turn_pictures import turn_pictures
+from report.subjects import mixed_machines, stem, subjects_of
 
 TEMPLATES = pathlib.Path(__file__).resolve().parent / "templates"
 MOST_IN_FULL = 4  # machines; beyond, the page compares them and no more
@@ -40,11 +35,11 @@ def rendered(template, **content):
 def machine(subject, series, most_points):
     """Content of one machine's section, by the names that machine.html has for it."""
     channels = subject.counted_channels()
-    return {"label": subject.label, "runs": subject.runs, "turns": turn_pictures(subject),
+    return {"label": subject.label, "runs": subject.runs, "first": utc(subject.first_ns), "last": utc(subject.last_ns),
             "check": check_section(subject) if subject.database.kind == RECORDING and subject.runs else None,
-            "first": utc(subject.first_ns), "last": utc(subject.last_ns), "overview": overview(subject, series), "compared": runs_compared(subject, series),
-            "work": over_time(series, most_points), "loads": boom_loads(subject),
-            "health": boom_health(subject), "misuse": misuse(subject), "limits": limits(subject), "reference": reference(subject),
+            "turns": turn_pictures(subject), "overview": overview(subject, series), "compared": runs_compared(subject, series),
+            "work": over_time(series, most_points), "loads": boom_loads(subject), "health": boom_health(subject),
+            "misuse": misuse(subject), "limits": limits(subject), "reference": reference(subject),
             "cycles": cycle_figures(channels) if channels else None, "costs": costs(subject, channels),
             "budget": budget(subject), "sensor": sensor_health(subject)}
 
@@ -60,14 +55,14 @@ def distinct_labels(subjects):
 def page(databases, version, only_machine=None):
     """The page's bytes: the same for the same files."""
     subjects = [s for database in databases for s in subjects_of(database, only_machine)]
-    if all(d.kind != "fleet" for d in databases):
+    if all(d.kind != FLEET for d in databases):  # labels of a fleet are the names of its machines
         distinct_labels(subjects)
     series = {s.label: {q.key: series_of(s, q) for q in QUANTITIES} for s in subjects}
-    title = f"{subjects[0].label}, {utc(subjects[0].first_ns)[:10]}" if len(subjects) == 1 else None
     in_full = subjects if len(subjects) <= MOST_IN_FULL else []
     return rendered(
-        "page.html", version=version, title=title,
-        warnings=warnings_list(subjects, mixed_machines(databases, subjects)), whole=len(in_full) == len(subjects),
+        "page.html", version=version,
+        title=f"{subjects[0].label}, {utc(subjects[0].first_ns)[:10]}" if len(subjects) == 1 else None,
+        warnings=warnings_list(subjects, mixed_machines(subjects)), whole=len(in_full) == len(subjects),
         compared=comparison(subjects, series) if len(subjects) > 1 else None,
         machines=[machine(s, series[s.label], MOST_POINTS // len(subjects)) for s in in_full],
-        ledgers=[(stem(d.path), ledger_section(d)) for d in databases if d.kind == LEDGER])
+        ledgers=[(stem(d.path), list(map(epoch_content, epochs_of(d)))) for d in databases if d.kind == LEDGER])

@@ -86,6 +86,9 @@ class Picture:
             self.line(x[alone], middle[alone], name, linestyle="", marker="o", markersize=3.0)
             self.axes.vlines(x[alone], low[alone], high[alone], color=COLOURS[name], alpha=0.4)
 
+    def bars(self, edges, heights):
+        self.axes.bar(edges[:-1], heights, numpy.diff(edges), align="edge", color=COLOURS["first"], alpha=0.75)
+
     def boxes(self, corners, name, strength):
         """corners: (left, right, bottom, top) of each; strength: of their colour, up to 1."""
         self.axes.add_collection(PolyCollection(

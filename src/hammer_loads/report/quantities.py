@@ -1,4 +1,4 @@
-"""Quantities that are shown over time, with a value for each revolution."""
+"""Quantities with a value for each revolution, and the SQL of figures of runs: for pages and for the merged file of a fleet."""
 from collections import namedtuple
 
 # expression: of the table's columns; factor: from its unit to the one shown; deviation: column of the measurement's.
@@ -24,3 +24,8 @@ def value_of(quantity):
     if quantity.table != "blows":
         return quantity.expression
     return f"CASE WHEN energy IS NOT NULL THEN {quantity.expression} END"
+
+
+# Means of a run: stiffness over that of the boom file, its deviation, share of turns whose damping no oil makes.
+CYLINDERS = ("cylinder, count(*) AS turns, avg(stiffness_ratio) AS stiffness, avg(stiffness_ratio_std) AS deviation, "
+             "avg(doubtful) AS doubtful FROM boom_cylinders WHERE {runs} GROUP BY run_id, cylinder ORDER BY cylinder")

@@ -35,10 +35,10 @@ class Series:
     def of_run(self, run):
         return Series(self.points[self.points.run == run], self.deviation, self.of_runs)
 
-    def _stretches(self):
-        """Places at which stretches of uninterrupted work begin. Values of runs stand alone."""
+    def _stretches(self, together):
+        """Places at which stretches of uninterrupted work begin; so many values of runs stand alone."""
         if self.of_runs:
-            return numpy.arange(len(self))
+            return numpy.arange(0, len(self), together)
         steps = self.points.groupby("run").x.diff()
         usual = steps.groupby(self.points.run).transform("median").fillna(0.0)
         return numpy.flatnonzero(steps.isna() | (steps > numpy.maximum(PAUSE_S, PAUSE_TURNS * usual)))
@@ -47,9 +47,10 @@ class Series:
         """At most some `most` points; neighbours become one with least, mean and greatest. No number where work paused."""
         if not len(self):
             return self.points
-        begins, count = self._stretches(), len(self)
+        count, together = len(self), -(-len(self) // most)
+        begins = self._stretches(together)
         place = numpy.arange(count) - numpy.repeat(begins, numpy.diff(begins, append=count))
-        starts = numpy.flatnonzero(place % int(numpy.ceil(count / most)) == 0)
+        starts = numpy.flatnonzero(place % together == 0)
         x, least, middle, greatest = (self.points[name].to_numpy() for name in ("x", *BAND))
         merged = {"x": x[starts], "least": numpy.minimum.reduceat(least, starts),
                   "middle": numpy.add.reduceat(middle, starts) / numpy.diff(starts, append=count),
@@ -57,37 +58,28 @@ class Series:
         pauses = numpy.searchsorted(starts, begins[1:])
         return pandas.DataFrame({name: numpy.insert(column, pauses, numpy.nan) for name, column in merged.items()})
 
-    def on_grid(self, step, count):
-        """Least, mean and greatest in each interval of time; no number where there is nothing."""
-        place = (self.points.x / step).astype(int).clip(0, count - 1)
-        cells = self.points.groupby(place).agg({"least": "min", "middle": "mean", "greatest": "max"}).reindex(range(count))
-        return cells.assign(x=(cells.index + 0.5) * step)
-
 
 def time_of_work(subject, rows):
     """[s] of rows with `run` and `stamp_ns`: runs follow each other without the time between them."""
-    firsts = numpy.array([run["first_stamp_ns"] or 0 for run in subject.runs], dtype=float)
-    lasts = numpy.array([run["last_stamp_ns"] or 0 for run in subject.runs], dtype=float)
-    spans = numpy.maximum(0.0, lasts - firsts)
-    begins = numpy.concatenate([[0.0], numpy.cumsum(spans)[:-1]]) if len(spans) else spans
-    run = rows.run.to_numpy(dtype=int)
-    return (rows.stamp_ns - firsts[run] + begins[run]) * 1e-9
+    spans = pandas.DataFrame([(run["first_stamp_ns"] or 0, run["last_stamp_ns"] or 0) for run in subject.runs],
+                             columns=["first", "last"], dtype=float)
+    lasted = (spans["last"] - spans["first"]).clip(lower=0.0)
+    since = lasted.cumsum() - lasted - spans["first"]
+    return (rows.stamp_ns + rows.run.map(since)) * 1e-9
 
 
 def series_of(subject, quantity):
     """Values of turns in the unit shown, or of runs where the file has no rows of turns."""
     of_runs = not subject.has_rows(quantity.table)
     if of_runs:
-        rows = subject.frame("(first_stamp_ns + last_stamp_ns) / 2 AS stamp_ns, least, mean AS middle, greatest, "
-                             "NULL AS deviation FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?", quantity.key)
+        rows = subject.frame("(first_stamp_ns + last_stamp_ns) / 2 AS stamp_ns, least, mean AS middle, greatest, NULL AS deviation "
+                             "FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?", quantity.key)
     else:
-        columns = subject.database.columns(quantity.table)
-        deviation = quantity.deviation if quantity.deviation in columns else "NULL"
+        deviation = quantity.deviation if quantity.deviation in subject.database.columns(quantity.table) else "NULL"
         rows = subject.frame(f"stamp_ns, {value_of(quantity)} AS middle, {deviation} AS deviation "
                              f"FROM {quantity.table} WHERE {{runs}} ORDER BY turn")
         rows = rows.assign(least=rows.middle, greatest=rows.middle)
     rows = rows.dropna(subset=["stamp_ns", "middle"])
-    points = pandas.DataFrame({"run": rows.run, "x": time_of_work(subject, rows),
-                               **{name: rows[name] * quantity.factor for name in BAND}})
+    points = pandas.DataFrame({"run": rows.run, "x": time_of_work(subject, rows), **(rows[BAND] * quantity.factor)})
     known = rows.deviation.dropna() * quantity.factor
     return Series(points.reset_index(drop=True), known.median() if len(known) else None, of_runs)

@@ -1,12 +1,18 @@
-"""Machines of a page: each with its runs in one file, in the order of time."""
+"""Machines of a page: each with its runs in one file, in the order of time. A database holds no path: names are those of the
+given files."""
+from collections import Counter
+import itertools
+import pathlib
 import re
 
-from report.channel import Channel
-from report.database import FLEET, LEDGER, RECORDING
-from report.names import stem
-from report.problem import Problem
+from report.cycles import Channel
+from report.database import FLEET, LEDGER, RECORDING, Problem
 
 MOST_TURNS_ONE_BY_ONE = 500000  # beyond: a run is a point, where the file has figures of runs
+
+
+def stem(path):
+    return pathlib.Path(path).stem
 
 
 class Subject:
@@ -21,12 +27,32 @@ class Subject:
     def last_ns(self):
         return max((r["last_stamp_ns"] for r in self.runs if r["last_stamp_ns"] is not None), default=None)
 
-    def total(self, name):
-        return sum(run[name] or 0 for run in self.runs)
-
     @property
     def hours(self):
         return self.total("duration") / 3600.0
+
+    def total(self, name):
+        return sum(run[name] or 0 for run in self.runs)
+
+    def worst(self, name):
+        """The value of the runs that is farthest from 0; None where none has one."""
+        return max((run[name] for run in self.runs if run[name] is not None), key=abs, default=None)
+
+    def recordings(self):
+        """{run_id: name of the recording}; several runs of one name are numbered, bags of one name have their folder."""
+        if self.database.kind == FLEET:
+            bags = dict(self.database.rows("SELECT bag_id, bag FROM bags ORDER BY bag_id"))
+            short = Counter(map(stem, bags.values()))
+            names = {at: stem(bag) if short[stem(bag)] == 1 else str(pathlib.PurePath(bag).with_suffix(""))
+                     for at, bag in bags.items()}
+            named = [(run["run_id"], names.get(run["bag_id"], "?")) for run in self.runs]
+        else:
+            named = [(run["run_id"], stem(self.database.path)) for run in self.runs]
+        count, seen, result = Counter(name for _, name in named), Counter(), {}
+        for run_id, name in named:
+            seen[name] += 1
+            result[run_id] = f"{name}, run {seen[name]}" if count[name] > 1 else name
+        return result
 
     def frame(self, sql, *values, text=()):
         """Rows of all runs in their order. sql: from the columns on, {runs} is its condition for the runs; `run` is added:
@@ -47,9 +73,7 @@ class Subject:
 
     def blows_without_energy(self):
         """Blows whose energy and restitution are withheld, since no value within their bounds fits: in no figure."""
-        if not self.has_rows("blows"):
-            return 0
-        return len(self.frame("turn FROM blows WHERE {runs} AND energy IS NULL"))
+        return len(self.frame("turn FROM blows WHERE {runs} AND energy IS NULL")) if self.has_rows("blows") else 0
 
     def failed_bags(self):
         """(bag, reason) of a merged file's bags that gave nothing."""
@@ -58,53 +82,44 @@ class Subject:
         return list(self.database.rows(
             "SELECT bag, reason FROM bags WHERE machine = ? AND status <> 'done' ORDER BY bag", self.label))
 
+    def pieces(self, name=None):
+        """(run, Channel) of each counted channel of each run, or of the one with this name."""
+        for run in self.runs:
+            for row in self.database.records("SELECT * FROM channels WHERE run_id = ? AND counted AND name = coalesce(?, name) "
+                                             "ORDER BY channel", run["run_id"], name):
+                channel = Channel(row, run["equivalent_cycles_per_hour"])
+                channel.add(row, (run["duration"] or 0.0) / 3600.0)
+                read_cycles(channel, self.database, "", "run_id = ? AND channel = ?", run["run_id"], row["channel"])
+                yield run, channel
+
     def counted_channels(self):
         """Channels with their cycles over all runs: pieces add exactly. A changed grid begins another channel."""
         if self.database.kind == FLEET:
-            return fleet_channels(self)
+            return list(self._sums())
         channels = {}
-        for run in self.runs:
-            for row in self.database.records("SELECT * FROM channels WHERE run_id = ? AND counted ORDER BY channel",
-                                             run["run_id"]):
-                key = (row["name"], row["least"], row["greatest"], row["classes"])
-                if key not in channels:
-                    channels[key] = Channel.of(row, run["equivalent_cycles_per_hour"])
-                add_piece(channels[key], self.database, run, row)
+        for _, piece in self.pieces():
+            key = (piece.name, *piece.count.grid)
+            if key in channels:
+                channels[key].join(piece)
+            else:
+                channels[key] = piece
         return list(channels.values())
 
-
-def add_piece(channel, database, run, row):
-    place = (run["run_id"], row["channel"])
-    channel.add_sums(row)
-    channel.hours += (run["duration"] or 0.0) / 3600.0
-    channel.count.add_closed(database.rows(
-        "SELECT steps, low, count FROM cycles WHERE run_id = ? AND channel = ?", *place))
-    channel.count.join([c for c, in database.rows(
-        "SELECT class FROM residues WHERE run_id = ? AND channel = ? ORDER BY place", *place)])
-
-
-def fleet_channels(subject):
-    """A merged file has the sums of each machine already."""
-    channels, database = [], subject.database
-    per_hour = max((r["equivalent_cycles_per_hour"] or 0.0 for r in subject.runs), default=0.0)
-    for row in database.records("SELECT * FROM machine_channels WHERE machine = ? ORDER BY machine_channel",
-                                subject.label):
-        channel = Channel.of(row, per_hour)
-        channel.add_sums(row)
-        channel.hours = row["hours"]
-        at = row["machine_channel"]
-        channel.count.add_closed(database.rows("SELECT steps, low, count FROM machine_cycles WHERE machine_channel = ?", at))
-        channel.count.residue = [c for c, in database.rows(
-            "SELECT class FROM machine_residues WHERE machine_channel = ? ORDER BY place", at)]
-        channels.append(channel)
-    return channels
+    def _sums(self):
+        """Channels of a merged file, which has the sums of each machine already."""
+        per_hour = max((run["equivalent_cycles_per_hour"] or 0.0 for run in self.runs), default=0.0)
+        for row in self.database.records("SELECT * FROM machine_channels WHERE machine = ? ORDER BY machine_channel", self.label):
+            channel = Channel(row, per_hour)
+            channel.add(row, row["hours"])
+            read_cycles(channel, self.database, "machine_", "machine_channel = ?", row["machine_channel"])
+            yield channel
 
 
-def grouped(runs, key):
-    groups = {}
-    for run in runs:
-        groups.setdefault(run[key], []).append(run)
-    return groups
+def read_cycles(channel, database, prefix, condition, *place):
+    """Adds the cycles and the residue in the tables with this prefix."""
+    channel.count.add_closed(database.rows(f"SELECT steps, low, count FROM {prefix}cycles WHERE {condition}", *place))
+    channel.count.join(c for c, in database.rows(
+        f"SELECT class FROM {prefix}residues WHERE {condition} ORDER BY place", *place))
 
 
 def by_number(name):
@@ -112,9 +127,17 @@ def by_number(name):
     return [(int(part), "") if part.isdigit() else (0, part) for part in re.split(r"([0-9]+)", name)]
 
 
+def grouped(runs, key):
+    """{value of the key: its runs}."""
+    groups = {}
+    for run in runs:
+        groups.setdefault(run[key], []).append(run)
+    return groups
+
+
 def fleet_subjects(database, only_machine):
     """Every machine that has a bag, also one whose bags all failed."""
-    names = [name for name, in database.rows("SELECT DISTINCT machine FROM bags ORDER BY machine")]
+    names = [name for name, in database.rows("SELECT DISTINCT machine FROM bags")]
     if only_machine is not None and only_machine not in names:
         raise Problem(f"{database.path}: --machine {only_machine}: no bag of it")
     runs = grouped(database.records("SELECT runs.*, bags.machine AS owner FROM runs JOIN bags USING(bag_id) "
@@ -131,27 +154,21 @@ def subjects_of(database, only_machine=None):
         return fleet_subjects(database, only_machine)
     if only_machine is not None:
         raise Problem(f"{database.path}: --machine is for merged files, this is a recording of one bag")
-    groups = grouped(database.records("SELECT * FROM runs ORDER BY first_stamp_ns, run_id"), "machine")
+    groups = grouped(database.records("SELECT * FROM runs ORDER BY first_stamp_ns, run_id"), "machine") or {None: []}
     name = stem(database.path)
-    if len(groups) < 2:
-        return [Subject(database, name, runs) for runs in groups.values()] or [Subject(database, name, [])]
-    return [Subject(database, f"{name}, machine {at}", runs) for at, runs in enumerate(groups.values(), 1)]
+    return [Subject(database, name if len(groups) == 1 else f"{name}, machine {at}", runs)
+            for at, runs in enumerate(groups.values(), 1)]
 
 
-def mixed_machines(databases, subjects):
-    """Lines for files with more than one machine: their cycles are never added."""
-    lines = []
-    for database in databases:
-        count = sum(s.database is database for s in subjects)
-        if count > 1 and database.kind == RECORDING:
-            lines.append(f"{stem(database.path)}: holds {count} machines (hammer, boom or their parameters differ); "
-                         "each stands alone")
-    return lines
+def mixed_machines(subjects):
+    """Lines for recordings with more than one machine: their cycles are never added."""
+    counts = Counter(subject.database for subject in subjects if subject.database.kind == RECORDING)
+    return [f"{stem(database.path)}: holds {count} machines (hammer, boom or their parameters differ); each stands alone"
+            for database, count in counts.items() if count > 1]
 
 
 def notes(databases):
     """Notes for the user of the command, one line each."""
-    subjects = [s for database in databases for s in subjects_of(database)]
-    lines = mixed_machines(databases, subjects)
-    return lines + [f"{s.label}: {'no whole revolution' if s.runs else 'no run at all'}" for s in subjects
-                    if not s.total("turns")]
+    subjects = list(itertools.chain.from_iterable(map(subjects_of, databases)))
+    return mixed_machines(subjects) + [f"{s.label}: {'no whole revolution' if s.runs else 'no run at all'}"
+                                       for s in subjects if not s.total("turns")]

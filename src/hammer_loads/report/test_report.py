@@ -1,29 +1,19 @@
 """A test report, and its command: one page with results, their uncertainty, inputs, checks and method."""
 import tempfile
 
-from report import output
-from report.budget import budget_of
-from report.command import Parser, add_bag_options, databases, guarded, package_version
-from report.database import RECORDING, Database
-from report.formats import NOTHING, Table, duration, in_unit, is_nothing, number, places_of, scaled, utc
-from report.names import in_words
+from report import inputs, output
+from report.budget import figures_in
+from report.checks import LOOK, refusals_of, sensor_rows
+from report.command import Parser, package_version
+from report.database import RECORDING, Problem
+from report.formats import NOTHING, Table, duration, in_unit, in_words, rounded, scaled, utc
 from report.overview import warnings_of
 from report.page import rendered
-from report.problem import Problem
-from report.sensor_health import DOUBTFUL, health_rows, refusals_of
 from report.subjects import subjects_of
 
 COVERAGE = 2   # k of the expanded uncertainty: some 95 % of a normal distribution (JCGM 100, 6.3.3)
 NOT_GIVEN = {"rod_stiffness_N_m", "rod_damping_ratio", "pin_play_m"}  # where the files have 0 or nothing
 LISTED = 0.01  # of the variance of a measurand: a source that makes more is an input quantity
-
-
-def rounded(value, uncertainty):
-    """Value and uncertainty, rounded to the second digit of the uncertainty (JCGM 100, 7.2.6)."""
-    if is_nothing(value) or is_nothing(uncertainty) or not uncertainty > 0.0:
-        return number(value), number(uncertainty)
-    places = places_of(uncertainty)
-    return tuple(f"{round(x, places):.{max(places, 0)}f}" for x in (value, uncertainty))
 
 
 def results(figures):
@@ -44,7 +34,7 @@ def deviation_key(key, keys):
                  if (name := "_".join(parts[:at] + ["std"] + parts[at:])) in keys), None)
 
 
-def inputs(subject, figures):
+def input_quantities(subject, figures):
     """Sources of more than LISTED of the variance of any measurand, the largest share first."""
     rows = subject.frame("key, value FROM parameters WHERE {runs}", text=["key", "value"])
     parameters = dict(zip(rows.key, rows.value))
@@ -66,38 +56,33 @@ def inputs(subject, figures):
 
 def test_report(subject, version, site=""):
     """The page's bytes: the same for the same file."""
-    figures = budget_of(subject)
-    if not figures:
-        raise Problem(f"{subject.database.path}: holds no budget; it has no whole revolution, or is of an older process_bag --db")
-    checks = [row for row in health_rows(subject) if row[2]]
+    figures, checks = figures_in(subject), [row for row in sensor_rows(subject) if row[2]]
+    failed = [f"{name}: {found}, {status} ({meaning})" for name, found, status, meaning in checks if status == LOOK]
     return rendered(
         "test_report.html", version=version, label=subject.label, site=site, run=subject.runs[0], first=utc(subject.first_ns),
         last=utc(subject.last_ns), work=duration(subject.total("duration")), turns=subject.total("turns"),
-        blows=subject.total("blows"), results=results(figures), inputs=inputs(subject, figures),
-        checks=Table("The crank's sensor", ["Check", "Found", "Verdict"], [row[:3] for row in checks], "words"),
-        refusals=refusals_of(subject),
-        reservations=[*warnings_of(subject), *(f"{name}: {found}, {verdict} ({meaning})"
-                                               for name, found, verdict, meaning in checks if verdict == DOUBTFUL)])
+        blows=subject.total("blows"), results=results(figures), inputs=input_quantities(subject, figures),
+        checks=Table("The crank's sensor", ["Check", "Found", "Status"], [row[:3] for row in checks], "words"),
+        refusals=refusals_of(subject), reservations=[*warnings_of(subject), *failed])
 
 
 def parser():
     result = Parser(
+        dict(metavar="FILE",
+             help="bags of one machine, or a database of process_bag --db; splits of one recording count as one"),
         prog="test_report",
         description="A test report of one recording: results with their uncertainty, inputs, checks, method.",
         epilog="One page of A4; the same bags, parameters and version give the same bytes. Words and rules are those of "
                "JCGM 100:2008. Errors are one line each; exit code 1, or 2 for wrong usage.")
-    result.add_argument("files", nargs="+", metavar="FILE",
-                        help="bags of one machine, or a database of process_bag --db; splits of one recording count as one")
     result.add_argument("--html", required=True, metavar="OUT.html", help="page to write, which must not exist")
     result.add_argument("--machine", metavar="NAME", help="of a file with more than one")
     result.add_argument("--site", default="", metavar="TEXT", help="place of the measurement, printed as it is")
     result.add_argument("--force", action="store_true", help="replace a page of this package")
-    add_bag_options(result)
     return result
 
 
-def the_subject(paths, machine):
-    found = [s for path in paths for s in subjects_of(Database(path), machine) if s.database.kind == RECORDING]
+def the_subject(databases, machine):
+    found = [s for database in databases for s in subjects_of(database, machine) if database.kind == RECORDING]
     if len(found) != 1:
         raise Problem(f"a test report is of one machine's recording, not of {len(found)}"
                       + (": " + ", ".join(s.label for s in found) if found else ""))
@@ -105,15 +90,8 @@ def the_subject(paths, machine):
 
 
 def run(given):
-    output.check_file(given.html, given.files, given.force, output.why_page_must_stay)
+    output.check_file(given.html, given.files, given.force)
     with tempfile.TemporaryDirectory(prefix="hammer_loads_test_report") as folder:
-        content = test_report(the_subject(databases(given, folder), given.machine), package_version(),
-                              given.site)
+        content = test_report(the_subject(inputs.databases(given, folder), given.machine), package_version(), given.site)
     output.publish_file(given.html, content, given.force)
     print(f"{given.html}: {len(content) / 1e3:.0f} kB")
-
-
-def main(arguments):
-    """Exit code."""
-    options = parser()
-    return guarded(run, options.parse_args(arguments), options)

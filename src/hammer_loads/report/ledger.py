@@ -1,0 +1,89 @@
+"""The ledger of a machine, months of work by epoch and by day: the figures that the command life prints."""
+from report.costs import back_calculation, damage_of, judged_channel, rule_of, shares_table
+from report.cycle_figures import cycle_figures
+from report.cycles import SLOPES, Channel, Count
+from report.formats import Table, in_unit, in_words, measured, titled
+
+DEVIATION_UNITS = 1024.0  # per class width, in tallies.deviation_sum
+TALLY = """SELECT sum(counted) AS samples, sum(skipped) AS skipped, sum(below) AS below, sum(above) AS above, sum(gaps) AS gaps,
+    sum(deviation_sum) * ? / nullif(sum(deviations), 0) AS mean_std,
+    sum(range_own) * 1.0 / nullif(sum(range_square), 0) AS range_own_std,
+    sum(range_common) * 1.0 / nullif(sum(range_square), 0) AS range_systematic_std
+    FROM tallies WHERE channel = ? AND day IN ({})"""
+CYCLES = "SELECT steps, low, sum(count) FROM cycles WHERE channel = ? AND day IN ({}) GROUP BY steps, low"
+
+
+class Epoch:
+    """Period of work with one hammer, boom and set of grids. days: rows of the table for each run and date, in their order."""
+
+    def __init__(self, database, row):
+        self.number, self.per_hour = row["epoch"], row["equivalent_cycles_per_hour"]
+        self.database = database
+        self.days = database.frame("SELECT day, run, date, duration_ns / 3600e9 AS hours, turns AS blows FROM days "
+                                   "WHERE epoch = ? ORDER BY run, day", self.number)
+        self.runs = database.value("SELECT count(*) FROM runs WHERE epoch = ?", self.number)
+        self.hours, self.blows = self.days.hours.sum(), int(self.days.blows.sum())
+        self._rows = database.records("SELECT * FROM channels WHERE epoch = ? ORDER BY channel", self.number)
+
+    def by_date(self):
+        """(date, its days)."""
+        return self.days.groupby("date")
+
+    def channels(self, days=None):
+        """Channels with the cycles that closed on these days; over all of them (None) with the residue, which is of no day."""
+        return [self._channel(row, self.days if days is None else days, days is None) for row in self._rows]
+
+    def _channel(self, row, days, is_whole):
+        channel, ids = Channel(row, self.per_hour), [int(day) for day in days.day]
+        marks = ", ".join("?" * len(ids))
+        unit = channel.count.width / DEVIATION_UNITS
+        channel.add(self.database.records(TALLY.format(marks), unit, row["channel"], *ids)[0], days.hours.sum())
+        channel.count.add_closed(self.database.rows(CYCLES.format(marks), row["channel"], *ids))
+        total, last_day = Count(*channel.count.grid), self.days.groupby("run").day.last()
+        for run, residue in self._residues(row["channel"]).items():
+            across = total.join(residue)  # belongs to the last day of the run
+            if is_whole or last_day.get(run) in ids:
+                channel.count.add_closed(across)
+        if is_whole:
+            channel.count.residue = total.residue
+        return channel
+
+    def _residues(self, channel):
+        residues = {}
+        for run, level in self.database.rows("SELECT run, class FROM residues WHERE channel = ? ORDER BY run, place", channel):
+            residues.setdefault(run, []).append(level)
+        return residues
+
+
+def days_table(epoch, channels_by_day):
+    """Damage-equivalent range at slope 5 and damage of each channel, by day."""
+    header, rows = ["Day (UTC)", "Hours", "Blows"], []
+    for channel in epoch.channels():
+        name = in_words(channel.name)
+        header.append(titled(name, in_unit(channel.unit)[1]) + ", slope 5")
+        header += [f"{name}, damage"] if channel.curve is not None else []
+    for (date, days), channels in zip(epoch.by_date(), channels_by_day):
+        row = [date, days.hours.sum(), int(days.blows.sum())]
+        for channel in channels:
+            row.append(measured(*channel.equivalents()[SLOPES.index(5.0)], in_unit(channel.unit)[0]))
+            row += [measured(*channel.damage())] if channel.curve is not None else []
+        rows.append(row)
+    return Table("By the day on which a cycle closed", header, rows)
+
+
+def epoch_content(epoch):
+    channels = epoch.channels()
+    if not channels or epoch.days.empty:
+        return {"epoch": epoch, "cycles": None}
+    channels_by_day = [epoch.channels(days) for _, days in epoch.by_date()]
+    judged = judged_channel(channels)
+    at = channels.index(judged)
+    shares = shares_table(f"Share of the damage by day: {rule_of(judged)}", "Day (UTC)", "Blows",
+                          [(date, days.blows.sum(), damage_of(of_day[at]))
+                           for (date, days), of_day in zip(epoch.by_date(), channels_by_day)])
+    return {"epoch": epoch, "cycles": cycle_figures(channels), "days": days_table(epoch, channels_by_day), "shares": shares,
+            "life": back_calculation(channels)}
+
+
+def epochs_of(database):
+    return [Epoch(database, row) for row in database.records("SELECT * FROM epochs ORDER BY epoch")]

@@ -1,0 +1,127 @@
+"""Pictures of loads: the typical and the worst revolution; hull, boom joints, cylinders and sections by revolution."""
+import numpy
+
+from report.formats import Table, in_unit, in_words, number, scaled, utc
+from report.over_time import time_unit
+from report.pictures import CURVES, Picture
+from report.series import BAND, Series, time_of_work
+
+KINDS = [("typical", "Typical revolution"), ("worst", "Worst revolution")]
+FORCES = ["force_x", "force_z", "force_z_std", "torque_y"]
+MOST_ROWS = 20
+KEYS = [("line first", "along the tool, Fz"), ("band first", "\u00b1 one standard deviation"),
+        ("line third", "half-sine pulse"), ("line second", "across, Fx")]
+MOST_POINTS = 200
+MOST_OPEN = 2  # pictures of channels; the others are folded
+
+
+def trace_of(subject, kind):
+    """Samples of the run with the strongest (worst) or the most turns (typical); none where there is none."""
+    rows = subject.frame("turn, time, force_x, force_z, force_z_std, torque_y FROM traces "
+                         "WHERE {runs} AND kind = ? ORDER BY place", kind)
+    peaks = rows.force_z.abs().groupby(rows.run).max().dropna()
+    if not len(peaks):
+        return rows[:0]
+    rank = peaks if kind == "worst" else peaks.index.map(lambda run: subject.runs[run]["turns"])
+    return rows[rows.run == peaks.index[int(numpy.argmax(rank))]]
+
+
+def force_picture(rows, pulse, caption):
+    """pulse: row of the table turns, None where there is none."""
+    picture = Picture("time since the blow before [ms]", "force on the hull [kN]")
+    times, force_z, deviation = rows.time * 1e3, rows.force_z * 1e-3, rows.force_z_std * 1e-3
+    picture.band(times, force_z - deviation, force_z + deviation, "first")
+    picture.line(times, rows.force_x * 1e-3, "second", linewidth=1.2)
+    period = (pulse or {}).get("period") or rows.time.max()
+    if pulse and None not in (pulse["amplitude"], pulse["angular_frequency"], pulse["start"]):
+        at = numpy.linspace(0.0, period, 200)
+        half_sine = pulse["amplitude"] * numpy.sin(pulse["angular_frequency"] * (at - pulse["start"]))
+        picture.line(at * 1e3, numpy.where(at >= pulse["start"], half_sine, 0.0) * 1e-3, "third", linestyle="--")
+    picture.line(times, force_z, "first")
+    picture.axes.set_xlim(0.0, period * 1e3 or 1.0)
+    return picture.figure(caption, KEYS)
+
+
+def turn_table(title, rows):
+    some = rows[::max(1, len(rows) // MOST_ROWS)]
+    cells = (some[["time", *FORCES]] * [1e3, *([1e-3] * len(FORCES))]).values.tolist()
+    return Table(f"Samples of the {title.lower()}", ["Time [ms]", "Fx [kN]", "Fz [kN]", "deviation of Fz [kN]", "moment [kN m]"],
+                 cells)
+
+
+def caption_of(title, turn, pulse):
+    caption = f"{title}, number {turn}"
+    if not pulse or None in (pulse["amplitude"], pulse["half_sine_rms_error"]):
+        return caption
+    return (f"{caption}, ends {utc(pulse['stamp_ns'])} UTC: peak {number(pulse['amplitude'] * 1e-3)} kN along the tool, "
+            f"half-sine's error {number(100 * pulse['half_sine_rms_error'], 2)} % rms")
+
+
+def turn_pictures(subject):
+    """(picture, table) of each kind that the file holds."""
+    result = []
+    for kind, title in KINDS if "traces" in subject.database.tables() else []:
+        rows = trace_of(subject, kind)
+        if len(rows):
+            run, turn = subject.runs[rows.run.iloc[0]], int(rows.turn.iloc[0])
+            pulse = next(iter(subject.database.records("SELECT * FROM turns WHERE run_id = ? AND turn = ?", run["run_id"], turn)),
+                         None)
+            result.append((force_picture(rows, pulse, caption_of(title, turn, pulse)), turn_table(title, rows)))
+    return result
+
+
+def loads_of(subject):
+    """Rows of neighbouring turns together: name and unit of the channel, turns, least, middle, greatest, x."""
+    together = max(1, -(-subject.total("turns") // MOST_POINTS))
+    rows = subject.frame(
+        "channels.name, coalesce(channels.unit, '') AS unit, count(*) AS turns, "
+        "min(turn_loads.minimum) AS least, avg(mean) AS middle, max(turn_loads.maximum) AS greatest, min(stamp_ns) AS stamp_ns "
+        "FROM turn_loads JOIN turns USING(run_id, turn) JOIN channels USING(run_id, channel) WHERE {runs} AND "
+        f"turn_loads.minimum IS NOT NULL GROUP BY run_id, channel, turn / {together} ORDER BY channel, min(turn)",
+        text=["name", "unit"])
+    return rows.assign(x=time_of_work(subject, rows))
+
+
+def picture_of(group, unit, channels):
+    """Channels of one kind and unit: the parts of a joint's torque, the forces of a section. channels: {name: rows}."""
+    factor, shown = in_unit(unit)
+    seconds, time = time_unit(max(rows.x.max() for rows in channels.values()))
+    picture, keys = Picture(f"time of work [{time}]", f"load [{shown}]"), []
+    for name, colour in zip(channels, CURVES):
+        points = Series(channels[name].dropna(subset=["x", "middle"])).thinned(MOST_POINTS)
+        picture.curve((points[BAND] * factor).assign(x=points.x / seconds), colour, len(channels))
+        keys.append((f"line {colour}", name.rpartition("/")[2]))
+    return picture.figure(group, keys)
+
+
+def loads_table(rows):
+    result = []
+    for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
+        factor, shown = in_unit(unit)
+        mean = (some.middle * some.turns).sum() / some.turns.sum()
+        result.append([in_words(name), shown, *(scaled(v, factor) for v in (some.least.min(), mean, some.greatest.max())),
+                       int(some.turns.sum())])
+    return Table("Loads over all revolutions", ["Channel", "Unit", "Least", "Mean of revolutions", "Greatest", "Turns"], result)
+
+
+def groups_of(rows):
+    """{name: rows} of each picture, that of the joint with the largest range first."""
+    groups, reach = {}, {}
+    for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
+        kind = (name.rpartition("/")[0] or name, unit)
+        groups.setdefault(kind, {})[name] = some
+        if name.startswith("joint_loads/") and unit == "N m":
+            reach[kind] = max(reach.get(kind, 0.0), some.greatest.max() - some.least.min())
+    for kind in sorted(groups, key=lambda kind: kind != max(reach, key=reach.get, default=None)):
+        names = list(groups[kind])
+        for at in range(0, len(names), len(CURVES)):
+            yield kind, {name: groups[kind][name] for name in names[at:at + len(CURVES)]}
+
+
+def boom_loads(subject):
+    rows = loads_of(subject) if "turn_loads" in subject.database.tables() else ()
+    if not len(rows):
+        return None
+    pictures = [picture_of(*kind, channels) for kind, channels in groups_of(rows)]
+    return {"table": loads_table(rows), "open": pictures[:MOST_OPEN], "folded": pictures[MOST_OPEN:],
+            "sections": any(rows.name.str.startswith("section_loads/"))}
