@@ -15,7 +15,7 @@ from report.quantities import QUANTITIES
 
 MOST_RUNS = 50
 MOST_SIDE_BY_SIDE = 4  # beyond: a machine is a row
-MOST_POINTS = 200  # of a curve
+MOST_POINTS = 400  # of all curves of a picture
 
 # Figures that a warning makes doubtful, by the warning's key.
 CRANK = "crank"    # everything that comes from the crank's estimate
@@ -168,7 +168,7 @@ def overlaid(subjects, series):
         seconds, unit = time_unit(longest)
         picture, keys = Picture(f"time of work [{unit}]", titled(quantity.title.lower(), quantity.unit)), []
         for colour, (label, values) in zip(CURVES, curves):
-            points = values.thinned(MOST_POINTS)
+            points = values.thinned(MOST_POINTS // len(curves))
             picture.curve(points.assign(x=points.x / seconds), colour, len(curves))
             keys.append((f"line {colour}", label))
         picture.axes.margins(x=0.02)
