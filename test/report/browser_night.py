@@ -7,9 +7,10 @@ import os
 import pathlib
 import re
 import subprocess
-import unittest
 
-from support import ReportTest, report
+import pytest
+
+from support import report_here
 import sample_database as sample
 
 # In the page: what a user would see, told to the frame around it.
@@ -43,71 +44,69 @@ def chromium(folder, *arguments, width=1280, height=2400):
     return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
 
 
-class Browser(ReportTest):
-    def setUp(self):
-        super().setUp()
-        self.pictures = pathlib.Path(os.environ.get("HAMMER_LOADS_PICTURES", self.directory))
-        self.pictures.mkdir(parents=True, exist_ok=True)
+@pytest.fixture
+def pictures(tmp_path):
+    folder = pathlib.Path(os.environ.get("HAMMER_LOADS_PICTURES", tmp_path))
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
-    def page(self, name, *files):
-        out = self.directory / (name + ".html")
-        outcome = report(*files, "--html", out)
-        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+
+@pytest.fixture
+def page(tmp_path):
+    def make(name, *files):
+        out = tmp_path / (name + ".html")
+        done = report_here(*files, "--html", out)
+        assert done.returncode == 0, done.stderr
         return out
-
-    def seen(self, page, width):
-        """Result of the probe at a window of this width, and the picture."""
-        probed = page.with_name(page.stem + "_probed.html")
-        probed.write_text(page.read_text(encoding="utf-8").replace("</body>", PROBE + "</body>"), encoding="utf-8")
-        frame = page.with_name("frame.html")
-        frame.write_text(FRAME.format(page=probed.name, width=width, height=2400))
-        dom, errors = chromium(self.directory, "--dump-dom", frame.as_uri(), width=width)
-        frame.write_text(FRAME.format(page=page.name, width=width, height=6000))
-        picture = self.pictures / f"{page.stem}_{width}.png"
-        _, more = chromium(self.directory, f"--screenshot={picture}", frame.as_uri(), width=width, height=6000)
-        self.assertGreater(picture.stat().st_size, 30000)
-        found = re.search(r"<title>(\{.*?\})</title>", dom)
-        self.assertTrue(found, f"no word from the page; console: {errors}")
-        return json.loads(found.group(1).replace("&quot;", '"')), errors + more
-
-    def assertGood(self, page, pictures):
-        for width in (1280, 400):
-            seen, errors = self.seen(page, width)
-            self.assertEqual(errors, [])
-            self.assertEqual(seen["width"], width)
-            self.assertLessEqual(seen["scroll"], width, seen["wide"])
-            self.assertEqual(seen["wide"], [])
-            self.assertGreaterEqual(seen["pictures"], pictures)
-            self.assertEqual(seen["drawn"], seen["pictures"])
-            self.assertGreater(seen["local"], 0)
-
-    def test_an_error_would_be_seen(self):
-        page = self.directory / "bad.html"
-        page.write_text("<!DOCTYPE html><body><p>x</p><script>throw new Error('seen')</script></body>")
-        _, errors = chromium(self.directory, "--dump-dom", page.as_uri())
-        self.assertTrue([line for line in errors if "seen" in line])
-
-    def test_the_page_of_one_machine_is_good(self):
-        file = self.directory / "machine.sqlite"
-        sample.make(file, seconds=300.0, warnings=[("jitter", "crank stamps jitter by 0.23 ms")], refusals={"duplicate": 3})
-        page = self.page("machine", file)
-        self.assertGood(page, 30)
-        paper = self.pictures / "machine.pdf"
-        chromium(self.directory, "--no-pdf-header-footer", f"--print-to-pdf={paper}", page.as_uri())
-        self.assertGreater(paper.stat().st_size, 50000)
-
-    def test_the_page_of_two_machines_is_good(self):
-        files = []
-        for name, peak in (("first", 40000.0), ("second", 60000.0)):
-            files.append(self.directory / (name + ".sqlite"))
-            sample.make(files[-1], sample.Machine(name, peak_N=peak), seconds=60.0)
-        self.assertGood(self.page("two", *files), 65)
-
-    def test_hostile_names_are_escaped(self):
-        file = self.directory / "idle.sqlite"
-        sample.make(file, seconds=0.0, boom=False, warnings=[("k", "<script>throw 1</script>" * 20)])
-        self.assertGood(self.page("idle", file), 0)
+    return make
 
 
-if __name__ == "__main__":
-    unittest.main()
+def seen(page, width, pictures):
+    """Result of the probe at a window of this width, and errors."""
+    probed, frame = page.with_name(page.stem + "_probed.html"), page.with_name("frame.html")
+    probed.write_text(page.read_text(encoding="utf-8").replace("</body>", PROBE + "</body>"), encoding="utf-8")
+    frame.write_text(FRAME.format(page=probed.name, width=width, height=2400))
+    dom, errors = chromium(page.parent, "--dump-dom", frame.as_uri(), width=width)
+    frame.write_text(FRAME.format(page=page.name, width=width, height=6000))
+    picture = pictures / f"{page.stem}_{width}.png"
+    _, more = chromium(page.parent, f"--screenshot={picture}", frame.as_uri(), width=width, height=6000)
+    assert picture.stat().st_size > 30000
+    found = re.search(r"<title>(\{.*?\})</title>", dom)
+    assert found, f"no word from the page; console: {errors}"
+    return json.loads(found.group(1).replace("&quot;", '"')), errors + more
+
+
+def assert_good(page, least, pictures):
+    """No error, nothing too wide, at least so many pictures, each drawn."""
+    for width in (1280, 400):
+        found, errors = seen(page, width, pictures)
+        assert errors == []
+        assert (found["width"], found["wide"]) == (width, [])
+        assert found["scroll"] <= width
+        assert found["drawn"] == found["pictures"] >= least
+        assert found["local"] > 0
+
+
+def test_an_error_would_be_seen(tmp_path):
+    bad = tmp_path / "bad.html"
+    bad.write_text("<!DOCTYPE html><body><p>x</p><script>throw new Error('seen')</script></body>")
+    assert [line for line in chromium(tmp_path, "--dump-dom", bad.as_uri())[1] if "seen" in line]
+
+
+def test_the_page_of_one_machine_is_good(made, page, pictures, tmp_path):
+    written = page("machine", made("machine", seconds=300.0, boom=True, refusals={"duplicate": 3},
+                                   warnings=[("jitter", "crank stamps jitter by 0.23 ms")]))
+    assert_good(written, 30, pictures)
+    paper = pictures / "machine.pdf"
+    chromium(tmp_path, "--no-pdf-header-footer", f"--print-to-pdf={paper}", written.as_uri())
+    assert paper.stat().st_size > 50000
+
+
+def test_the_page_of_two_machines_is_good(made, page, pictures):
+    files = [made(name, machine=sample.Machine(name, peak_N=peak), seconds=60.0, boom=True)
+             for name, peak in (("first", 40000.0), ("second", 60000.0))]
+    assert_good(page("two", *files), 65, pictures)
+
+
+def test_hostile_names_are_escaped(made, page, pictures):
+    assert_good(page("idle", made("idle", seconds=0.0, warnings=[("k", "<script>throw 1</script>" * 20)])), 0, pictures)

@@ -6,16 +6,21 @@ import os
 import pathlib
 import re
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
-import unittest
 import xml.etree.ElementTree as ElementTree
+
+import pytest
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(SOURCE / "src" / "hammer_loads")]
+import sample_database  # noqa: E402  (the path must be set first)
+
 PAGES = {}  # by the files and options
+DATA = SOURCE / "test" / "data"
 REPORT = SOURCE / "src" / "hammer_loads" / "commands" / "report_main.py"
 
 
@@ -25,24 +30,64 @@ def program(name):
     return str(path) if os.environ.get("HAMMER_LOADS_PROGRAMS") and path.exists() else None
 
 
-def report_here(*arguments):
-    """(exit code, stdout, stderr) of the command in this process: without a second to start each."""
+needs_programs = pytest.mark.skipif(not (program("process_bag") and program("life")), reason="needs the built commands")
+
+
+def report_here(*arguments, command="report"):
+    """The finished command, in this process: without a second to start each."""
     from report.command import main  # here: the path is set above
-    out, said = io.StringIO(), io.StringIO()
+    out, err = io.StringIO(), io.StringIO()
     signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     before = [signal.getsignal(name) for name in signals]
     try:
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
-            code = main([str(argument) for argument in arguments])
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = main([str(argument) for argument in arguments], command)
+    except SystemExit as exit_:
+        code = exit_.code
     finally:
         for name, handler in zip(signals, before):
             signal.signal(name, handler)
-    return code, out.getvalue(), said.getvalue()
+    return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
 
 
-def report(*arguments):
+def report(*arguments, **options):
+    """The finished command, as a process of its own."""
     return subprocess.run([sys.executable, str(REPORT), *map(str, arguments)], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, universal_newlines=True)
+                          stderr=subprocess.PIPE, universal_newlines=True, **options)
+
+
+def page_of(*files, options=(), note=""):
+    """The page as a Reader. note: the one that the command gives. The same files give the same page: it is made once."""
+    key = (*((file.name, file.read_bytes()) for file in files), *map(str, options))
+    if key not in PAGES:
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "page.html"
+            done = report_here(*files, "--html", out, *options)
+            assert (done.returncode, done.stderr) == (0, note and f"note: {note}\n")
+            PAGES[key] = Reader(out.read_text(encoding="utf-8"))
+    return PAGES[key]
+
+
+def assert_refused(done, *words, code=1):
+    """Exit code, one line that holds the words, nothing on stdout."""
+    assert (done.returncode, done.stderr.count("\n"), done.stdout) == (code, 1, ""), done.stderr
+    for word in words:
+        assert str(word) in done.stderr
+
+
+def execute(path, *statements):
+    """Rows of the last statement."""
+    with contextlib.closing(sqlite3.connect(str(path), isolation_level=None)) as database:
+        return [database.execute(statement).fetchall() for statement in statements][-1]
+
+
+def with_budget(path, rows):
+    """The database, with rows of its table budget: quantity, value, std, source, share."""
+    with contextlib.closing(sqlite3.connect(str(path))) as database, database:
+        database.execute("CREATE TABLE budget(run_id INTEGER, quantity TEXT, unit TEXT, value REAL, std REAL, source TEXT, share REAL)")
+        database.executemany("INSERT INTO budget VALUES(1,?,?,?,?,?,?)",
+                             [(quantity, sample_database.unit_of(quantity), *row) for quantity, *row in rows])
+    return path
 
 
 def elements(tree, tag):
@@ -111,6 +156,7 @@ class Reader(html.parser.HTMLParser):
 
     def __init__(self, page):
         super().__init__()
+        self.size = len(page)
         self.pictures = [Drawn(svg) for svg in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
         self.text, self.tables, self.ids, self.tags, self.scripts, self.links = "", {}, [], [], [], []
         self.pieces = []  # (tag, text) of every piece of text
@@ -163,28 +209,3 @@ class Reader(html.parser.HTMLParser):
     def drawn(self, title):
         """The picture whose title begins so."""
         return next(picture for picture in self.pictures if picture.title.startswith(title))
-
-
-class ReportTest(unittest.TestCase):
-    def setUp(self):
-        self._directory = tempfile.TemporaryDirectory()
-        self.addCleanup(self._directory.cleanup)
-        self.directory = pathlib.Path(self._directory.name)
-
-    def page_of(self, *files, options=(), note=""):
-        """`note`: the one that the command gives. The same files give the same page: it is made once."""
-        key = (*((file.name, file.read_bytes()) for file in files), *map(str, options))
-        if key not in PAGES:
-            out = self.directory / "page.html"
-            code, _, said = report_here(*files, "--html", out, *options)
-            self.assertEqual((code, said), (0, note and f"note: {note}\n"))
-            PAGES[key] = Reader(out.read_text(encoding="utf-8"))
-        return PAGES[key]
-
-    def assertRefused(self, outcome, *words, code=1):
-        """Exit code, one line that holds the words, nothing on stdout."""
-        self.assertEqual(outcome.returncode, code, outcome.stderr)
-        self.assertEqual(outcome.stderr.count("\n"), 1, outcome.stderr)
-        self.assertEqual(outcome.stdout, "")
-        for word in words:
-            self.assertIn(str(word), outcome.stderr)

@@ -1,290 +1,209 @@
 """Work, its pauses, its values, and what they cost: the page against formulas and SQL of the same database."""
-import os
-import sqlite3
 import statistics
-import subprocess
-import sys
-import unittest
 
-from support import REPORT, Reader, ReportTest, value as number
+import pytest
+
+from support import execute, page_of, value
 import sample_database as sample
 
-IMPOSSIBLE = ("UPDATE blows SET restitution = NULL, energy = NULL WHERE turn IN (10, 20, 30, 40, 50)",)
+
+@pytest.fixture
+def site(made):
+    return made(seconds=200.0)
 
 
-class Work(ReportTest):
-    def setUp(self):
-        super().setUp()
-        self.file = self.directory / "site.sqlite"
-        sample.make(self.file, seconds=200.0)
-
-    def ask(self, *sql):
-        db = sqlite3.connect(str(self.file))
-        rows = [db.execute(line).fetchall() for line in sql][-1]
-        db.commit()
-        db.close()
-        return rows
-
-    def figures(self, page):
-        """{name: value} of the large numbers."""
-        return dict(zip(self._parts(page, "dt"), self._parts(page, "dd")))
-
-    @staticmethod
-    def _parts(page, tag):
-        return [text for name, text in page.pieces if name == tag]
-
-    def test_nothing_is_drawn_where_there_was_no_work(self):
-        """Two runs, one with a pause, have no line from a blow before the pause to the one after it."""
-        sample.make(self.file, seconds=100.0, runs=2)
-        self.ask(*(f"DELETE FROM {t} WHERE run_id = 1 AND turn BETWEEN 200 AND 260" for t in ("turns", "blows", "turn_loads")))
-        page = self.page_of(self.file)
-        pictures = [p for p in page.pictures if p.title.startswith(("Blow rate:", "Blow energy:", "Restitution:", "joint_loads/"))]
-        self.assertGreater(len(pictures), 5)
-        for picture in pictures:
-            for kind in picture.classes("line"):
-                lines = [piece for piece in picture.curves(kind) if len(piece) > 2]
-                self.assertEqual(len(lines) % 3, 0, picture.title)  # three stretches of work, of the mean or of each edge
-        minutes = [(line[0][0], line[-1][0]) for line in page.drawn("Blow energy:").curves("line first")]
-        for (first, last), (begin, end) in zip(minutes, ((0.0, 39.8), (52.2, 100.0), (100.0, 200.0))):
-            self.assertAlmostEqual(60.0 * first, begin, delta=0.7)
-            self.assertAlmostEqual(60.0 * last, end, delta=0.7)
-
-    def test_blows_per_hour_and_energy_of_all(self):
-        blows, seconds = self.ask("SELECT blows, duration FROM runs")[0]
-        figures = self.figures(self.page_of(self.file))
-        self.assertAlmostEqual(number(figures["blows per hour of work"]), blows / seconds * 3600.0, delta=1.0)
-        energy = self.ask("SELECT sum(energy) FROM blows")[0][0]
-        self.assertAlmostEqual(number(figures["energy of all blows"]), energy / 1e3, delta=1e-3 * energy / 1e3)
-
-    def page_after(self, name, *sql):
-        """Page of a new file: a file that was read is not written again."""
-        self.file = self.directory / name
-        sample.make(self.file, seconds=20.0)
-        self.ask("SELECT 1", *sql)
-        return self.page_of(self.file, options=["--force"])
-
-    def test_exceeded_limits_are_shown(self):
-        limit = "INSERT INTO parameters VALUES(1, 'limit_peak_force_warn_N', '9000.0', NULL)"
-        self.assertIn("No limits were given", self.page_after("none.sqlite").text)
-        kept = self.page_after("kept.sqlite", limit)
-        self.assertIn("No limit was exceeded", kept.text)
-        self.assertNotIn("limit exceeded", kept.text)
-        start = 1700000060 * sample.SECOND
-        alarm = "INSERT INTO alarms VALUES(1, '%s', %d, 'N', %s, %s, %s, %d, %d, %d)"
-        page = self.page_after(
-            "exceeded.sqlite", limit,
-            alarm % ("peak_force", 1, 9120.0, 87.0, 9000.0, start, start + sample.SECOND, 6),
-            alarm % ("peak_force", 1, 9456.0, 91.0, 9000.0, start + 9 * sample.SECOND, start + 9 * sample.SECOND, 1),
-            alarm % ("hold_down_force", 2, 3100.0, "NULL", 3000.0, start, start + sample.SECOND, 1234))
-        lines = [words for tag, words in page.pieces if tag == "li" and words.startswith("limit exceeded")]
-        self.assertEqual(lines, ["limit exceeded (ERROR): hold_down_force 3100 N, limit 3000 N, in 1\u202f234 revolutions",
-                                 "limit exceeded (WARN): peak_force 9\u202f456 \u00b1 91 N, limit 9000 N, in 7 revolutions"])
-        row = page.table("Limits exceeded")["peak_force"]
-        self.assertEqual((row["Level"], row["Farthest beyond it"], row["Revolutions"], row["Times"]),
-                         ("WARN", "9\u202f456 \u00b1 91 N", "7", "2"))
-        self.assertIn("2023-11-14 22:14:20", row["First"])
-
-    def test_a_measured_load_is_compared_with_the_computed_one(self):
-        self.assertNotIn("Measured reference", self.page_after("alone.sqlite").text)
-        page = self.page_after("measured.sqlite", "INSERT INTO reference VALUES(1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, "
-                               "0.985, 0.99871, 0.968)")
-        row = page.table("Computed and measured load")["force_z"]
-        self.assertEqual((row["Samples"], row["Measured, rms"], row["Error, rms"], row["Error, relative"], row["Bias"]),
-                         ("20\u202f000", "4.2 kN", "0.084 kN", "2 %", "\u22120.03 kN"))
-        self.assertEqual((row["Scale"], row["Correlation"], row["Within two"]), ("0.985", "0.99871", "96.8 %"))
-
-    def test_median_and_spread_are_those_of_the_blows(self):
-        energies = sorted(e for e, in self.ask("SELECT energy FROM blows"))
-        median, spread = self.figures(self.page_of(self.file))["blow energy, median \u00b1 spread"].split("\u00b1")
-        self.assertAlmostEqual(number(median), statistics.median(energies), delta=0.1)
-        inside = [e for e in energies if abs(e - number(median)) <= number(spread)]
-        self.assertAlmostEqual(len(inside) / len(energies), 0.6827, delta=0.05)
-
-    def test_std_of_the_measurement_where_it_is_known(self):
-        self.ask("ALTER TABLE blows ADD COLUMN energy_std REAL", "UPDATE blows SET energy_std = 7.0")
-        figures = self.figures(self.page_of(self.file))
-        self.assertTrue(figures["blow energy, median \u00b1 deviation"].endswith("\u00b1 7.0 J"), figures)
-
-    def test_noise_within_the_std_looks_like_it(self):
-        """An axis of values is not finer than the standard deviation of their measurement."""
-        self.ask("ALTER TABLE blows ADD COLUMN restitution_std REAL", "UPDATE blows SET restitution_std = 0.3")
-        picture = self.page_of(self.file).drawn("Restitution:")
-        heights = [y for piece in picture.curves("band first") for _, y in piece]
-        axis = picture.y_range()
-        self.assertGreaterEqual(axis[1] - axis[0], 2 * 0.3)
-        self.assertLess(max(heights) - min(heights), 0.3 * (axis[1] - axis[0]))
-
-    def test_histograms_hold_every_blow(self):
-        page = self.page_of(self.file)
-        for caption, sql in (("Blows by blow energy", "SELECT energy FROM blows"),
-                             ("Blows by peak force along the tool", "SELECT amplitude / 1000 FROM turns")):
-            values = [v for v, in self.ask(sql)]
-            rows = page.table(caption)
-            self.assertEqual(sum(number(row["Blows"]) for row in rows.values()), len(values))
-            for edges, row in rows.items():
-                low, high = map(number, edges.split(" to "))
-                self.assertEqual(number(row["Blows"]), sum(low <= v < high for v in values), edges)
-
-    def test_starting_turns_do_not_stretch_a_histogram(self):
-        usual = self.page_of(self.file).drawn("Blow energy of")
-        self.ask("UPDATE blows SET energy = 1.0 WHERE turn < 4", "UPDATE blows SET energy = 90000.0 WHERE turn = 10")
-        page = self.page_of(self.file)
-        self.assertEqual(page.drawn("Blow energy of").x_range(), usual.x_range())
-        few, count = self.ask("SELECT sum(energy < 2.0 OR energy > 80000.0), count(*) FROM blows")[0]
-        self.assertIn(f"{few} of them, as at start and stop, lie beyond the picture", page.text)
-        rows = page.table("Blows by blow energy").values()
-        self.assertEqual(sum(number(row["Blows"]) for row in rows), count)
-
-    def test_omits_a_blow_whose_energy_is_withheld(self):
-        self.ask(*IMPOSSIBLE)
-        page = self.page_of(self.file)
-        self.assertGreater(min(y for piece in page.drawn("Blow energy:").curves("band first") for _, y in piece), 0.0)
-        rows = page.table("Over all revolutions")
-        good = self.ask("SELECT count(*), min(energy), sum(energy) FROM blows WHERE energy > 0")[0]
-        self.assertEqual(number(rows["Blow energy [J]"]["Values"]), good[0])
-        self.assertAlmostEqual(number(rows["Blow energy [J]"]["Least"]), good[1], delta=1e-3 * good[1])
-        self.assertGreater(number(rows["Restitution"]["Least"]), 0.0)
-        self.assertEqual(number(rows["Hold-down needed [kN]"]["Values"]), good[0] - 1)
-        self.assertEqual(sum(number(r["Blows"]) for r in page.table("Blows by blow energy").values()), good[0])
-        self.assertAlmostEqual(number(self.figures(page)["energy of all blows"]), good[2] / 1e3, delta=1e-3 * good[2] / 1e3)
-        self.assertIn("energy and restitution are withheld: 5 of 1000", page.text)
-
-    def test_names_are_shown_instead_of_hashes(self):
-        sample.make(self.file, seconds=60.0, runs=2)
-        page = self.page_of(self.file)
-        for column in ("machine", "input_sha256", "run_key"):
-            for value, in self.ask(f"SELECT {column} FROM runs"):
-                self.assertNotIn(value[:8], page.text)
-        self.assertEqual([row["Recording"] for row in page.table("Runs").values()], ["site, run 1", "site, run 2"])
-
-    def test_runs_of_one_machine_are_compared(self):
-        sample.make(self.file, seconds=60.0, runs=3)
-        self.ask("UPDATE blows SET energy = 1.2 * energy WHERE run_id = 3",
-                 "INSERT INTO warnings VALUES(2, 0, 'jitter', 'crank stamps jitter')")
-        medians = [statistics.median(e for e, in self.ask(f"SELECT energy FROM blows WHERE run_id = {run}"))
-                   for run in (1, 2, 3)]
-        header, *rows = self.page_of(self.file).tables["Runs below each other"][0]
-        at = header.index("Blow energy [J]")
-        self.assertEqual([row[0] for row in rows], ["site, run 1", "site, run 2", "site, run 3"])
-        for row, median in zip(rows, medians):
-            self.assertAlmostEqual(number(row[at]) / median, 1.0, delta=1e-2)
-        self.assertEqual(rows[0][at + 1], "")
-        self.assertAlmostEqual(number(rows[2][at + 1]), 100.0 * (medians[2] / medians[0] - 1.0), delta=1.0)
-        self.assertEqual([row[at].endswith("?") for row in rows], [False, True, False])
-
-    def test_local_time_is_the_readers(self):
-        """The page's script writes it: the page's bytes hold UTC alone, wherever it is made."""
-        pages = []
-        for zone in ("UTC", "Asia/Bishkek"):
-            out = self.directory / (zone[:4].strip("/") + ".html")
-            done = subprocess.run([sys.executable, str(REPORT), str(self.file), "--html", str(out)],
-                                  env=dict(os.environ, TZ=zone), stdout=subprocess.DEVNULL)
-            self.assertEqual(done.returncode, 0)
-            pages.append(out.read_bytes())
-        self.assertEqual(*pages)
-        times = [given["datetime"] for tag, given in Reader(pages[0].decode()).tags if tag == "time"]
-        self.assertIn("2023-11-14T22:13:20Z", times)
+def figures(page):
+    """{name: value} of the large numbers."""
+    parts = {tag: [text for name, text in page.pieces if name == tag] for tag in ("dt", "dd")}
+    return dict(zip(parts["dt"], parts["dd"]))
 
 
-class Costs(ReportTest):
+def test_nothing_is_drawn_where_there_was_no_work(made):
+    """Two runs, one with a pause, have no line from a blow before the pause to the one after it."""
+    file = made("site", *(f"DELETE FROM {t} WHERE run_id = 1 AND turn BETWEEN 200 AND 260" for t in ("turns", "blows", "turn_loads")),
+                seconds=100.0, runs=2, boom=True)
+    page = page_of(file)
+    pictures = [p for p in page.pictures if p.title.startswith(("Blow rate:", "Blow energy:", "Restitution:", "joint_loads/"))]
+    assert len(pictures) > 5
+    for picture in pictures:
+        for kind in picture.classes("line"):
+            lines = [piece for piece in picture.curves(kind) if len(piece) > 2]
+            assert len(lines) % 3 == 0, picture.title  # three stretches of work, of the mean or of each edge
+    seconds = [[60.0 * line[0][0], 60.0 * line[-1][0]] for line in page.drawn("Blow energy:").curves("line first")]
+    assert sum(seconds[:3], []) == pytest.approx([0.0, 39.8, 52.2, 100.0, 100.0, 200.0], abs=0.7)
+
+
+def test_key_figures_are_those_of_the_blows(site):
+    shown = figures(page_of(site))
+    blows, seconds = execute(site, "SELECT blows, duration FROM runs")[0]
+    energies = [energy for energy, in execute(site, "SELECT energy FROM blows")]
+    assert value(shown["blows per hour of work"]) == pytest.approx(blows / seconds * 3600.0, abs=1.0)
+    assert value(shown["energy of all blows"]) == pytest.approx(sum(energies) / 1e3, rel=1e-3)
+    median, spread = map(value, shown["blow energy, median \u00b1 spread"].split("\u00b1"))
+    assert median == pytest.approx(statistics.median(energies), abs=0.1)
+    assert sum(abs(e - median) <= spread for e in energies) / len(energies) == pytest.approx(0.6827, abs=0.05)
+
+
+LIMIT = "INSERT INTO parameters VALUES(1, 'limit_peak_force_warn_N', '9000.0', NULL)"
+START = 1700000060 * sample.SECOND
+
+
+def test_exceeded_limits_are_shown(made):
+    kept = page_of(made("kept", LIMIT)).text
+    assert "No limit was exceeded" in kept and "limit exceeded" not in kept
+    alarm = "INSERT INTO alarms VALUES(1, '%s', %d, 'N', %s, %s, %s, %d, %d, %d)"
+    page = page_of(made(
+        "exceeded", LIMIT, alarm % ("peak_force", 1, 9120.0, 87.0, 9000.0, START, START + sample.SECOND, 6),
+        alarm % ("peak_force", 1, 9456.0, 91.0, 9000.0, START + 9 * sample.SECOND, START + 9 * sample.SECOND, 1),
+        alarm % ("hold_down_force", 2, 3100.0, "NULL", 3000.0, START, START + sample.SECOND, 1234)))
+    assert [words for tag, words in page.pieces if tag == "li" and words.startswith("limit exceeded")] == [
+        "limit exceeded (ERROR): hold_down_force 3100 N, limit 3000 N, in 1\u202f234 revolutions",
+        "limit exceeded (WARN): peak_force 9\u202f456 \u00b1 91 N, limit 9000 N, in 7 revolutions"]
+    row = page.table("Limits exceeded")["peak_force"]
+    assert [row[name] for name in ("Level", "Farthest beyond it", "Revolutions", "Times")] == [
+        "WARN", "9\u202f456 \u00b1 91 N", "7", "2"]
+    assert "2023-11-14 22:14:20" in row["First"]
+
+
+def test_a_measured_load_is_compared_with_the_computed_one(made, site):
+    assert "Measured reference" not in page_of(site).text
+    page = page_of(made("measured", "INSERT INTO reference VALUES(1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, 0.985, 0.99871, 0.968)"))
+    assert page.table("Computed and measured load")["force_z"] == {
+        "Run": "1", "Samples": "20\u202f000", "Measured, rms": "4.2 kN", "Error, rms": "0.084 kN", "Error, relative": "2 %",
+        "Bias": "\u22120.03 kN", "Scale": "0.985", "Correlation": "0.99871", "Within two": "96.8 %"}
+
+
+def test_std_of_the_measurement_where_it_is_known(made):
+    """An axis of values is not finer than the standard deviation of their measurement: noise within it looks like it."""
+    page = page_of(made("site", "ALTER TABLE blows ADD COLUMN energy_std REAL", "ALTER TABLE blows ADD COLUMN restitution_std REAL",
+                        "UPDATE blows SET energy_std = 7.0, restitution_std = 0.3", seconds=200.0))
+    assert figures(page)["blow energy, median \u00b1 deviation"].endswith("\u00b1 7.0 J")
+    picture = page.drawn("Restitution:")
+    heights = [y for piece in picture.curves("band first") for _, y in piece]
+    low, high = picture.y_range()
+    assert high - low >= 2 * 0.3
+    assert max(heights) - min(heights) < 0.3 * (high - low)
+
+
+@pytest.mark.parametrize("caption, sql", [("Blows by blow energy", "SELECT energy FROM blows"),
+                                          ("Blows by peak force along the tool", "SELECT amplitude / 1000 FROM turns")])
+def test_histograms_hold_every_blow(site, caption, sql):
+    values, rows = [v for v, in execute(site, sql)], page_of(site).table(caption)
+    assert sum(value(row["Blows"]) for row in rows.values()) == len(values)
+    for edges, row in rows.items():
+        low, high = map(value, edges.split(" to "))
+        assert value(row["Blows"]) == sum(low <= v < high for v in values), edges
+
+
+def test_starting_turns_do_not_stretch_a_histogram(made, site):
+    page = page_of(made("odd", "UPDATE blows SET energy = 1.0 WHERE turn < 4", "UPDATE blows SET energy = 90000.0 WHERE turn = 10",
+                        seconds=200.0))
+    assert page.drawn("Blow energy of").x_range() == page_of(site).drawn("Blow energy of").x_range()
+    assert "4 of them, as at start and stop, lie beyond the picture" in page.text
+    assert sum(value(row["Blows"]) for row in page.table("Blows by blow energy").values()) == 1000
+
+
+def test_omits_a_blow_whose_energy_is_withheld(made):
+    file = made("site", "UPDATE blows SET restitution = NULL, energy = NULL WHERE turn IN (10, 20, 30, 40, 50)", seconds=200.0)
+    page = page_of(file)
+    assert min(y for piece in page.drawn("Blow energy:").curves("band first") for _, y in piece) > 0.0
+    rows = page.table("Over all revolutions")
+    count, least, total = execute(file, "SELECT count(*), min(energy), sum(energy) FROM blows WHERE energy > 0")[0]
+    assert value(rows["Blow energy [J]"]["Values"]) == count
+    assert value(rows["Blow energy [J]"]["Least"]) == pytest.approx(least, rel=1e-3)
+    assert value(rows["Restitution"]["Least"]) > 0.0
+    assert value(rows["Hold-down needed [kN]"]["Values"]) == count - 1
+    assert sum(value(row["Blows"]) for row in page.table("Blows by blow energy").values()) == count
+    assert value(figures(page)["energy of all blows"]) == pytest.approx(total / 1e3, rel=1e-3)
+    assert "energy and restitution are withheld: 5 of 1000" in page.text
+
+
+def test_runs_of_one_machine_are_compared_by_names_and_not_by_hashes(made):
+    file = made("site", "UPDATE blows SET energy = 1.2 * energy WHERE run_id = 3",
+                "INSERT INTO warnings VALUES(2, 0, 'jitter', 'crank stamps jitter')", seconds=60.0, runs=3)
+    medians = [statistics.median(e for e, in execute(file, f"SELECT energy FROM blows WHERE run_id = {run}")) for run in (1, 2, 3)]
+    page = page_of(file)
+    header, *rows = page.tables["Runs below each other"][0]
+    at = header.index("Blow energy [J]")
+    assert [row[0] for row in rows] == ["site, run 1", "site, run 2", "site, run 3"]
+    assert [row["Recording"] for row in page.table("Runs").values()] == [row[0] for row in rows]
+    assert [value(row[at]) for row in rows] == pytest.approx(medians, rel=1e-2)
+    assert rows[0][at + 1] == ""
+    assert value(rows[2][at + 1]) == pytest.approx(100.0 * (medians[2] / medians[0] - 1.0), abs=1.0)
+    assert [row[at].endswith("?") for row in rows] == [False, True, False]
+    for hashes in execute(file, "SELECT machine, input_sha256, run_key FROM runs"):
+        assert not [one for one in hashes if one[:8] in page.text]
+
+
+SLOPE, DEAR = 5.0, 30  # turns, of 1000, with twice the range
+
+
+@pytest.fixture
+def dear(made):
     """A channel of which three turns in a hundred have twice the range."""
-    DEAR, SLOPE = 0.03, 5.0
-
-    def setUp(self):
-        super().setUp()
-        self.file = self.directory / "site.sqlite"
-        sample.make(self.file, sample.Machine(curve=False), seconds=200.0, first_ns=1700002700 * sample.SECOND)
-        db = sqlite3.connect(str(self.file))
-        channel = db.execute("SELECT channel FROM channels WHERE name = 'hull_wrench/force_z'").fetchone()[0]
-        db.execute("UPDATE turn_loads SET minimum = 0.0, maximum = CASE WHEN turn <= 30 THEN 80e3 ELSE 40e3 END "
-                   "WHERE channel = ?", (channel,))
-        db.commit()
-        db.close()
-
-    def test_dearest_blows_are_named(self):
-        dear = self.DEAR * 2.0 ** self.SLOPE
-        share = 100.0 * dear / (dear + 1.0 - self.DEAR)
-        page = self.page_of(self.file)
-        said = page.text.split("; 3 % of the blows did ")[1].split(" %")[0]
-        self.assertAlmostEqual(float(said), share, delta=0.1)
-        dearest = page.table("Most damaging revolutions")
-        self.assertEqual({int(row["Turn"]) <= 30 for row in dearest.values()}, {True})
-
-    def test_damage_is_shown_by_hour(self):
-        """The recording begins 100 s before a full hour (22:58:20): the dear turns are in the first."""
-        rows = self.page_of(self.file).table("Damage by hour")
-        self.assertEqual(sorted(rows), ["2023-11-14 22:00", "2023-11-14 23:00"])
-        first, second = (rows[k] for k in sorted(rows))
-        self.assertAlmostEqual(number(first["Turns"]) + number(second["Turns"]), 1000, delta=0.5)
-        turns = number(first["Turns"])
-        damage = (30 * 2.0 ** self.SLOPE + turns - 30) / (30 * 2.0 ** self.SLOPE + 970)
-        self.assertAlmostEqual(number(first["Damage [%]"]), 100.0 * damage, delta=0.1)
-
-    def test_damage_by_recording_is_by_its_cycles(self):
-        sample.make(self.file, sample.Machine(curve=False), seconds=100.0, runs=2)
-        db = sqlite3.connect(str(self.file))
-        totals = []
-        for run in (1, 2):
-            closed = db.execute("SELECT y.steps, y.count FROM cycles y JOIN channels c USING(run_id, channel) "
-                                "WHERE run_id = ? AND name = 'hull_wrench/force_z'", (run,)).fetchall()
-            ends = [r for r, in db.execute("SELECT class FROM residues JOIN channels USING(run_id, channel) WHERE run_id = ? "
-                                           "AND name = 'hull_wrench/force_z' ORDER BY place", (run,))]
-            halves = [(abs(a - b), 0.5) for a, b in zip(ends, ends[1:])]
-            totals.append(sum(n * steps ** self.SLOPE for steps, n in closed + halves))
-        db.close()
-        rows = self.page_of(self.file).table("Damage by recording")
-        for run, total in enumerate(totals, 1):
-            self.assertAlmostEqual(number(rows[f"site, run {run}"]["Damage [%]"]), 100.0 * total / sum(totals), delta=0.1)
-
-    def test_the_life_follows_the_load(self):
-        rows = self.page_of(self.file).table("Life over that of now")
-        self.assertAlmostEqual(number(rows["0.9"]["slope 5"]), 0.9 ** -5, delta=0.005)
-        self.assertIn(f"slope 10: {2 ** -0.1:.3f} of the load", self.page_of(self.file, options=["--force"]).text)
-
-    def test_life_follows_a_curve_of_two_slopes(self):
-        """The life grows, where cycles fall below the knee, faster than by the steep slope, slower than by the other."""
-        file = self.directory / "curve.sqlite"
-        sample.make(file, seconds=100.0)
-        db = sqlite3.connect(str(file))
-        width, knee = db.execute("SELECT (greatest - least) / classes, sn_knee_range FROM channels "
-                                 "WHERE name = 'stress/boom_foot'").fetchone()
-        cycles = db.execute("SELECT steps, count FROM cycles JOIN channels USING(run_id, channel) "
-                            "WHERE name = 'stress/boom_foot'").fetchall()
-        db.close()
-        damage = lambda f: sum(n * (s * width * f / knee) ** (3.0 if s * width * f >= knee else 5.0)  # noqa: E731
-                               for s, n in cycles)
-        rows = self.page_of(file).table("Life over that of now")
-        for factor in ("0.8", "0.9", "1.1"):
-            life = damage(1.0) / damage(float(factor))
-            self.assertAlmostEqual(number(rows[factor]["stress at boom_foot"]) / life, 1.0, delta=0.02)
+    return made("site", "UPDATE turn_loads SET minimum = 0.0, maximum = CASE WHEN turn <= 30 THEN 80e3 ELSE 40e3 END WHERE channel = "
+                "(SELECT channel FROM channels WHERE name = 'hull_wrench/force_z')",
+                machine=sample.Machine(curve=False), seconds=200.0, first_ns=1700002700 * sample.SECOND)
 
 
-class Misuse(ReportTest):
-    def test_counts_per_hour_over_the_runs_that_know(self):
-        file = self.directory / "site.sqlite"
-        sample.make(file, sample.Machine(misuse=(6, 500, 20, 12.5)), seconds=100.0, runs=2)
-        db = sqlite3.connect(str(file))
-        db.execute("UPDATE runs SET blows_without_hold_down = NULL, still_time = NULL WHERE run_id = 2")
-        hours = [h for h, in db.execute("SELECT duration / 3600 FROM runs ORDER BY run_id")]
-        db.commit()
-        db.close()
-        rows = self.page_of(file).table("Misuse")
-        self.assertEqual(number(rows["Blank firing"]["Count"]), 12)
-        self.assertAlmostEqual(number(rows["Blank firing"]["Per hour"]), 12 / sum(hours), delta=0.5)
-        self.assertEqual(number(rows["Blows without hold-down force"]["Count"]), 20)
-        self.assertAlmostEqual(number(rows["Blows without hold-down force"]["Per hour"]), 20 / hours[0], delta=1.0)
-        self.assertIn("of 500 blows", rows["Blows without hold-down force"]["Meaning"])
-        self.assertAlmostEqual(number(rows["Hammering at one place [s]"]["Count"]), 12.5)
-
-    def test_unmeasured_values_are_not_zero(self):
-        file = self.directory / "site.sqlite"
-        sample.make(file, sample.Machine(misuse=(0, 0, None, None)), seconds=50.0)
-        rows = self.page_of(file).table("Misuse")
-        self.assertEqual(rows["Blank firing"]["Count"], "0")
-        self.assertEqual(rows["Blows without hold-down force"]["Count"], "not known")
-        self.assertEqual(rows["Hammering at one place [s]"]["Count"], "not known")
+def test_dearest_blows_are_named(dear):
+    share = 100.0 * DEAR * 2.0 ** SLOPE / (DEAR * 2.0 ** SLOPE + 1000 - DEAR)
+    page = page_of(dear)
+    assert float(page.text.split("; 3 % of the blows did ")[1].split(" %")[0]) == pytest.approx(share, abs=0.1)
+    assert all(int(row["Turn"]) <= DEAR for row in page.table("Most damaging revolutions").values())
 
 
+def test_damage_is_shown_by_hour(dear):
+    """The recording begins 100 s before a full hour (22:58:20): the dear turns are in the first."""
+    rows = page_of(dear).table("Damage by hour")
+    assert sorted(rows) == ["2023-11-14 22:00", "2023-11-14 23:00"]
+    first, second = (value(rows[k]["Turns"]) for k in sorted(rows))
+    assert first + second == 1000
+    damage = (DEAR * 2.0 ** SLOPE + first - DEAR) / (DEAR * 2.0 ** SLOPE + 1000 - DEAR)
+    assert value(rows[min(rows)]["Damage [%]"]) == pytest.approx(100.0 * damage, abs=0.1)
 
-if __name__ == "__main__":
-    unittest.main()
+
+def test_damage_by_recording_is_by_its_cycles(made):
+    file, totals = made(machine=sample.Machine(curve=False), seconds=100.0, runs=2), []
+    for run in (1, 2):
+        where = f"JOIN channels USING(run_id, channel) WHERE run_id = {run} AND name = 'hull_wrench/force_z'"
+        closed = execute(file, f"SELECT steps, count FROM cycles {where}")
+        ends = [r for r, in execute(file, f"SELECT class FROM residues {where} ORDER BY place")]
+        halves = [(abs(a - b), 0.5) for a, b in zip(ends, ends[1:])]
+        totals.append(sum(n * steps ** SLOPE for steps, n in closed + halves))
+    rows = page_of(file).table("Damage by recording")
+    assert [value(rows[f"site, run {run}"]["Damage [%]"]) for run in (1, 2)] == pytest.approx(
+        [100.0 * total / sum(totals) for total in totals], abs=0.1)
+
+
+def test_the_life_follows_the_load(dear):
+    page = page_of(dear)
+    assert value(page.table("Life over that of now")["0.9"]["slope 5"]) == pytest.approx(0.9 ** -5, abs=0.005)
+    assert f"slope 10: {2 ** -0.1:.3f} of the load" in page.text
+
+
+def test_life_follows_a_curve_of_two_slopes(made):
+    """The life grows, where cycles fall below the knee, faster than by the steep slope, slower than by the other."""
+    file = made("curve", seconds=100.0, boom=True)
+    width, knee = execute(file, "SELECT (greatest - least) / classes, sn_knee_range FROM channels WHERE name = 'stress/boom_foot'")[0]
+    cycles = execute(file, "SELECT steps, count FROM cycles JOIN channels USING(run_id, channel) WHERE name = 'stress/boom_foot'")
+    ranges = {factor: [(steps * width * factor, n) for steps, n in cycles] for factor in (0.8, 0.9, 1.0, 1.1)}
+    damage = {factor: sum(n * (r / knee) ** (3.0 if r >= knee else 5.0) for r, n in some) for factor, some in ranges.items()}
+    rows = page_of(file).table("Life over that of now")
+    for factor in (0.8, 0.9, 1.1):
+        assert value(rows[str(factor)]["stress at boom_foot"]) == pytest.approx(damage[1.0] / damage[factor], rel=0.02)
+
+
+def test_misuse_is_counted_over_the_runs_that_know(made):
+    file = made("site", "UPDATE runs SET blows_without_hold_down = NULL, still_time = NULL WHERE run_id = 2",
+                machine=sample.Machine(misuse=(6, 500, 20, 12.5)), seconds=100.0, runs=2)
+    hours = [h for h, in execute(file, "SELECT duration / 3600 FROM runs ORDER BY run_id")]
+    blank, without, still = page_of(file).table("Misuse").values()
+    assert (value(blank["Count"]), value(without["Count"]), value(still["Count"])) == (12, 20, 12.5)
+    assert value(blank["Per hour"]) == pytest.approx(12 / sum(hours), abs=0.5)
+    assert value(without["Per hour"]) == pytest.approx(20 / hours[0], abs=1.0)
+    assert "of 500 blows" in without["Meaning"]
+
+
+def test_misuse_that_nothing_measured_is_not_zero(site):
+    assert [row["Count"] for row in page_of(site).table("Misuse").values()] == ["0", "not known", "not known"]
