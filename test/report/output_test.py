@@ -128,7 +128,7 @@ def test_a_kill_while_replacing_leaves_one_whole_folder(made, tables):
 
 @pytest.mark.parametrize("stop", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 def test_a_failure_half_way_leaves_the_old_directory(tables, stop, monkeypatch):
-    """Whether it comes while the new one is filled, or between the two renames."""
+    """The failure comes while the new one is filled, and between the two renames."""
     tables.mkdir()
     (tables / "a.csv").write_text("file,\n")
 
