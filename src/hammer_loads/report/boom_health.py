@@ -1,7 +1,8 @@
 """The boom's oil and vibration as its sensors show them: air, worn pins and cracks come as a change over months."""
 import math
 
-from report.formats import NOTHING, Table, measured, number
+from report.blocks import Note, Table
+from report.formats import NOTHING, measured, number
 from report.pictures import COLOURS, CURVES, Picture
 from report.quantities import CYLINDERS
 
@@ -53,7 +54,7 @@ def mode_table(subject):
     rows = [[f"{mode}", f"{number(least, 3)} to {number(most, 3)}", number(mean, 3), measured(damping, deviation), turns]
             for mode, turns, least, mean, most, damping, deviation in
             subject.database.rows(MODES, subject.runs[-1]["run_id"])]
-    return Table("Modes of the last run, over its poses",
+    return None if not rows else Table("Modes of the last run, over its poses",
                  ["Mode", "Frequency [Hz]", "Mean [Hz]", "Damping ratio", "Turns"], rows)
 
 
@@ -68,11 +69,14 @@ def stiffness_picture(found):
         picture.line(place, runs.stiffness, colour, marker="o", markersize=4.0)
         picture.axes.vlines(place, runs.stiffness - runs.deviation, runs.stiffness + runs.deviation, color=COLOURS[colour])
     picture.axes.margins(x=0.05)
-    return picture.figure("Stiffness of the oil by run, \u00b1 one standard deviation",
-                          [(f"line {colour}", name) for colour, name, _ in drawn])
+    return [picture.figure("Stiffness of the oil by run, \u00b1 one standard deviation",
+                           [(f"line {colour}", name) for colour, name, _ in drawn])]
 
 
 def boom_health(subject):
-    if not (found := cylinders_of(subject)):
-        return None
-    return {"table": cylinder_table(found), "modes": mode_table(subject), "picture": stiffness_picture(found)}
+    found = cylinders_of(subject)
+    if not found:
+        return ["Not known: it needs boom_stiffness: identified, a boom file and hull_imu or cylinder_pressures."]
+    return [Note("Every blow is an impulse that is known: how the boom swings after it shows its oil. The ratio does not depend on "
+                 "the pose; an error of the boom file's masses is the same in every run."),
+            cylinder_table(found), mode_table(subject), stiffness_picture(found)]

@@ -6,9 +6,10 @@ import math
 import tempfile
 
 from report import inputs
+from report.blocks import Bars, Table
 from report.command import Parser
 from report.database import LEDGER, Problem
-from report.formats import Table, in_unit, in_words, measured, number
+from report.formats import in_unit, in_words, measured, number
 from report.subjects import subjects_of
 
 REST = "the rest"
@@ -74,11 +75,11 @@ def budget_row(figure):
 def budget(subject):
     figures = budget_of(subject)
     if not figures:
-        return None
-    shown, keys = bars(figures)
-    return {"bars": shown, "legend": keys, "table": Table(
-        "Uncertainty budget", ["Figure", "Unit", "Value", "Deviation [%]", "Largest source", "With it halved [%]"],
-        list(map(budget_row, figures)))}
+        return ["This file keeps no budget: process_bag --db of this version writes one."]
+    header = ["Figure", "Unit", "Value", "Deviation [%]", "Largest source", "With it halved [%]"]
+    return ["Standard deviations of one revolution's figures; measure next what makes most of one. Errors of constants are equal in all "
+            "revolutions: more hours do not lower them.",
+            Table("Uncertainty budget", header, list(map(budget_row, figures))), Bars("Shares of the variance", *bars(figures))]
 
 
 def parser():

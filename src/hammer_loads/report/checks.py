@@ -1,5 +1,6 @@
 """Checks of a recording: conditions with a status and the action, and the health of the crank's sensor."""
-from report.formats import Table, is_nothing, number, scaled
+from report.blocks import Note, Table
+from report.formats import is_nothing, number, scaled
 
 OK, LOOK, WRONG, UNKNOWN = "ok", "look", "wrong", "-"
 ORDER = (UNKNOWN, OK, LOOK, WRONG)
@@ -108,12 +109,6 @@ def verdict(rows):
     return VERDICT[worst_status(*(row[1] for row in rows))]
 
 
-def check_section(subject):
-    """For the top of a machine's page."""
-    rows = check_rows(subject)
-    return {"verdict": verdict(rows), "table": Table("Check of the recording", ["Check", "Status", "Finding", "What to do"], rows, "words")}
-
-
 def refusals_of(subject):
     """(reason, samples), the most first."""
     rows = subject.frame("reason, count AS samples FROM refusals WHERE {runs}", text=["reason"])
@@ -146,5 +141,9 @@ def sensor_rows(subject):
 
 
 def sensor_health(subject):
-    return {"table": Table("The crank's sensor", ["Figure", "Value", "Status", "Meaning"], sensor_rows(subject), "words"),
-            "refusals": Table("Refused samples by reason", ["Reason", "Samples"], refusals_of(subject))}
+    if not subject.runs:
+        return ["The file holds no run."]
+    refusals = refusals_of(subject)
+    return [Note("Of several runs the worst.") if len(subject.runs) > 1 else None,
+            Table("The crank's sensor", ["Figure", "Value", "Status", "Meaning"], sensor_rows(subject), "words"),
+            Table("Refused samples by reason", ["Reason", "Samples"], refusals) if refusals else "No sample was refused."]

@@ -3,11 +3,12 @@ from collections import namedtuple
 
 from markupsafe import Markup
 
+from report.blocks import Note, Table
 from report.checks import refusals_of
 from report.conditions import MISUSE, UNKNOWN, counter
 from report.cycles import SLOPES
-from report.formats import (NOTHING, Table, clean, duration, in_unit, in_words, is_nothing, measured, moment, number, scaled,
-                            shown, titled)
+from report.formats import (NOTHING, clean, duration, in_unit, in_words, is_nothing, measured, moment, number,
+                            scaled, shown, titled)
 from report.over_time import time_unit
 from report.overview import blows_per_hour, total_energy, with_spread
 from report.pictures import CURVES, Picture
@@ -176,8 +177,11 @@ def overlaid(subjects, series):
 
 
 def comparison(subjects, series):
-    doubts = list(map(doubts_of, subjects))
-    table = comparison_table([subject.label for subject in subjects],
-                             [by_name(figures_of(subject, series[subject.label])) for subject in subjects], doubts)
-    return {"table": table, "doubts": any(doubts), "pictures": list(overlaid(subjects, series)),
-            "curves": len(CURVES) if len(subjects) > len(CURVES) else None}
+    doubts, first = list(map(doubts_of, subjects)), len(CURVES)
+    return [comparison_table([subject.label for subject in subjects],
+                             [by_name(figures_of(subject, series[subject.label])) for subject in subjects], doubts),
+            Note("Median of the revolutions, \u00b1 the standard deviation of its measurement, or the spread where that is not known." +
+                 (" ?: a warning above affects the figure." if any(doubts) else "")),
+            Note("Line: mean, band: least and greatest. Runs follow each other without the time between them." +
+                 (f" Curves are those of the first {first} machines with a revolution." if len(subjects) > first else "")),
+            list(overlaid(subjects, series))]

@@ -1,5 +1,6 @@
 """Misuse, exceeded limits, and the computed load beside a measured one."""
-from report.formats import NOTHING, Table, in_unit, measured, moment, number
+from report.blocks import Note, Table
+from report.formats import NOTHING, in_unit, measured, moment, number
 
 UNKNOWN = "not known"
 MISUSE = [
@@ -33,7 +34,8 @@ def misuse(subject):
             judged = sum(run["judged_blows"] or 0 for run in subject.runs if run.get(name) is not None)
             meaning += f"; of {number(judged)} blows whose hold-down force was measured"
         rows.append([title, number(count), number(per_hour, 3), meaning])
-    return Table("Misuse", ["What", "Count", "Per hour", "Meaning"], rows, "words figures-first")
+    return [Table("Misuse", ["What", "Count", "Per hour", "Meaning"], rows, "words figures-first"),
+            Note("Per hour of work. What nothing measures is not known, which is not zero.")]
 
 
 def exceeded(subject):
@@ -55,21 +57,24 @@ def limit_lines(subject):
 
 
 def limits(subject):
-    """Exceeded limits by name and level; None where no limit was given."""
+    """Exceeded limits by name and level."""
     if "alarms" not in subject.database.tables() or subject.frame(
             "key FROM parameters WHERE {runs} AND key LIKE 'limit\\_%' ESCAPE '\\' LIMIT 1", text=["key"]).empty:
-        return None
+        return ["No limits were given (limits_file); a merged file does not hold what exceeded them."]
     rows = [[name, level, f"{number(at.limit_value)} {at.unit}", f"{measured(at.value, at.value_std)} {at.unit}",
              number(int(alarms.turns.sum())), number(len(alarms)), moment(alarms.since_ns.min())]
             for name, level, at, alarms in exceeded(subject)]
-    return Table("Limits exceeded", ["Limit", "Level", "Limit value", "Farthest beyond it", "Revolutions", "Times", "First"],
-                 rows, "words figures-first")
+    if not rows:
+        return [Note("No limit was exceeded.", "good")]
+    header = ["Limit", "Level", "Limit value", "Farthest beyond it", "Revolutions", "Times", "First"]
+    return [Table("Limits exceeded", header, rows, "words figures-first"),
+            Note("Judged once a revolution. The value farthest beyond the limit, \u00b1 its standard deviation where that is known.")]
 
 
 def reference(subject):
-    """Comparison over all runs with a measured load; None where none has."""
+    """Comparison over all runs with a measured load; nothing where none has."""
     if "reference" not in subject.database.tables() or not subject.runs:
-        return None
+        return []
     cells = []
     for row in subject.frame("component, unit, samples, rms, rms_error, bias, scale, correlation, within_two_std FROM reference "
                              "WHERE {runs} ORDER BY component", text=["component", "unit"]).itertuples():
@@ -80,4 +85,7 @@ def reference(subject):
                       f"{number(100.0 * row.within_two_std, 3)} %"])
     header = ["Component", "Run", "Samples", "Measured, rms", "Error, rms", "Error, relative", "Bias", "Scale", "Correlation",
               "Within two"]
-    return Table("Computed and measured load", header, cells) if cells else None
+    return cells and [
+        Table("Computed and measured load", header, cells),
+        Note("Computed load less the measured one at the stamps of the measured one, blows left out. Scale: slope of the computed "
+             "load over the measured one. Within two: errors within two of the stated standard deviations.")]

@@ -2,8 +2,9 @@
 import numpy
 import pandas
 
+from report.blocks import Block, Details, Note, Table, folded
 from report.database import FLEET
-from report.formats import Table, in_words, moment, number, utc
+from report.formats import in_words, moment, number, utc
 from report.subjects import MOST_TURNS_ONE_BY_ONE
 
 SLOPE = 5.0  # where no S-N curve is given
@@ -62,9 +63,9 @@ def shares_table(caption, title, counted, groups):
     if len(sums) < 2:
         return None
     parts = 100.0 * sums / sums.sum().replace(0, 1)
-    return Table(caption, [title, counted, f"{counted} [%]", "Damage [%]"],
-                 [[name, int(count), number(share, 3), number(damage, 3)]
-                  for name, count, share, damage in zip(sums.index, sums["count"], parts["count"], parts.damage)])
+    rows = [[name, int(count), number(share, 3), number(damage, 3)]
+            for name, count, share, damage in zip(sums.index, sums["count"], parts["count"], parts.damage)]
+    return folded(Table(caption, [title, counted, f"{counted} [%]", "Damage [%]"], rows), 24, f"rows: {caption}")
 
 
 def grouped_table(caption, title, turns, stretch_ns, name_of):
@@ -83,17 +84,19 @@ def dearest_turns(subject, turns):
 
 
 def by_turns(subject, channel):
-    """Tables and sentences about the revolutions; empty where none did damage."""
+    """Sentences and tables about the revolutions, and the details of the dearest; nothing where none did damage."""
     turns = turn_costs(subject, channel)
     held, counted = turns.damage.sum(), damage_of(channel)
     if not held > 0.0:
-        return {"words": "", "held": None, "tables": [], "dearest": None}
-    return {"words": "; ".join(f"{100 * part:g} % of the blows did {number(100.0 * dearest_share(turns.damage, part), 3)} %"
-                               for part in PARTS if part * len(turns) >= LEAST_TURNS),
-            "held": number(100.0 * held / counted, 3) if counted > 0.0 else None,
-            "tables": [grouped_table("Damage by day", "Day (UTC)", turns, 24 * HOUR_NS, lambda stamp: utc(stamp)[:10]),
-                       grouped_table("Damage by hour", "Hour (UTC)", turns, HOUR_NS, lambda stamp: moment(stamp, "minutes"))],
-            "dearest": dearest_turns(subject, turns)}
+        return [], []
+    words = "; ".join(f"{100 * part:g} % of the blows did {number(100.0 * dearest_share(turns.damage, part), 3)} %"
+                      for part in PARTS if part * len(turns) >= LEAST_TURNS)
+    share = number(100.0 * held / counted, 3) if counted > 0.0 else None
+    return [f"Of the damage {words}." if words else None,
+            share and Note(f"A revolution counts here with its range alone: that is {share} % of the damage of all counted cycles."),
+            grouped_table("Damage by day", "Day (UTC)", turns, 24 * HOUR_NS, lambda stamp: utc(stamp)[:10]),
+            grouped_table("Damage by hour", "Hour (UTC)", turns, HOUR_NS, lambda stamp: moment(stamp, "minutes"))
+            ], [Details("The most damaging revolutions", [dearest_turns(subject, turns)])]
 
 
 def by_recording(subject, channel):
@@ -122,19 +125,20 @@ def doubling_factor(channel):
 
 
 def back_calculation(channels):
-    """(words, table): life over that of now by the load over that of now."""
+    """Life over that of now by the load over that of now."""
     ways = [(f"slope {m:g}", [factor ** -m for factor in FACTORS], 2.0 ** (-1.0 / m)) for m in (3.0, 5.0, 10.0)]
     ways += [(in_words(c.name), life_factors(c, FACTORS), doubling_factor(c)) for c in channels
              if c.curve is not None and c.damage()[0] > 0.0]
     words = "; ".join(f"{name}: {number(double, 3)} of the load" for name, _, double in ways if double)
     rows = [[number(factor), *(number(lives[at], 3) for _, lives, _ in ways)] for at, factor in enumerate(FACTORS)]
-    return words, Table("Life over that of now", ["Load over that of now", *(name for name, _, _ in ways)], rows)
+    return Block("Another load, another life", [
+        f"Twice the life: {words}.", Table("Life over that of now", ["Load over that of now", *(name for name, _, _ in ways)], rows)])
 
 
 def costs(subject, channels):
     if not channels:
-        return None
+        return ["No channel was counted."]
     channel = judged_channel(channels)
-    turns = by_turns(subject, channel)
-    return {**turns, "title": f"Share of the damage: {rule_of(channel)}",
-            "tables": list(filter(None, turns["tables"] + by_recording(subject, channel))), "life": back_calculation(channels)}
+    turns, dearest = by_turns(subject, channel)
+    shares = [*turns, *by_recording(subject, channel), *dearest]
+    return [Block(f"Share of the damage: {rule_of(channel)}", shares) if any(shares) else None, back_calculation(channels)]

@@ -4,8 +4,9 @@ import math
 from matplotlib.ticker import FuncFormatter
 import numpy
 
+from report.blocks import Details, Note, Table
 from report.cycles import SLOPES
-from report.formats import Table, in_unit, in_words, measured, number
+from report.formats import in_unit, in_words, measured, number
 from report.pictures import Picture
 
 CELLS = 24  # of a matrix, each way
@@ -59,9 +60,9 @@ def histogram_picture(edges, counts, share, unit, title):
 
 
 def channel_pictures(channel):
-    """Pictures and their table; None for a channel without cycles."""
+    """Pictures and their table; nothing for a channel without cycles."""
     if not channel.cycles.size:
-        return None
+        return []
     factor, unit = in_unit(channel.unit)
     title, width = in_words(channel.name), channel.count.width * factor
     ranges, means, counts = channel.cycles * [[factor], [factor], [1.0]]
@@ -72,14 +73,19 @@ def channel_pictures(channel):
     rows = [[f"{number(low)} to {number(high)}", number(n, 6), *(number(100 * s, 3) for s in of_slopes)]
             for low, high, n, *of_slopes in zip(edges, edges[1:], tally, *shares) if n > 0.0]
     header = [f"Range [{unit}]", "Cycles", "Damage at slope 3 [%]", "at slope 5 [%]", "at slope 10 [%]"]
-    return {"pictures": [matrix_picture(ranges, means, counts, width, unit, title),
-                         histogram_picture(edges, tally, shares[SHARED.index(5.0)], unit, title)],
-            "name": title, "table": Table("Cycles by range", header, rows)}
+    return [[matrix_picture(ranges, means, counts, width, unit, title),
+             histogram_picture(edges, tally, shares[SHARED.index(5.0)], unit, title)],
+            Details(f"{title} by range as a table", [Table("Cycles by range", header, rows)])]
 
 
 def cycle_figures(channels):
     """Table and pictures; those of the force along the tool come first."""
-    ordered = sorted(channels, key=lambda c: not c.name.endswith("force_z"))
-    drawn = list(filter(None, map(channel_pictures, ordered)))
-    return {"table": equivalents_table(channels), "open": drawn[:1], "folded": drawn[1:],
-            "per_hour": next((c.cycles_per_hour for c in channels if c.cycles_per_hour), None)}
+    if not channels:
+        return ["No channel was counted."]
+    per_hour = next((c.cycles_per_hour for c in channels if c.cycles_per_hour), None)
+    first, *more = list(filter(None, map(channel_pictures, sorted(channels, key=lambda c: not c.name.endswith("force_z"))))) or [[]]
+    return [Note(f"A damage-equivalent range, repeated {number(per_hour)} times an hour, does the damage of all cycles on a material "
+                 "of this slope (3: welded steel, 5: below its knee, 10: composites). Cycles are those of ASTM E1049, the residue as "
+                 "half cycles. Deviations are those of the loads, all ranges erring alike."),
+            equivalents_table(channels), *first,
+            Details(f"Pictures of {len(more)} more channels", sum(more, [])) if more else None]

@@ -1,5 +1,4 @@
-"""Numbers, times, names and tables as a page shows them. Templates escape all text."""
-from collections import namedtuple
+"""Numbers, times and names as a page shows them."""
 import datetime
 import math
 import numbers
@@ -10,9 +9,6 @@ from markupsafe import Markup
 
 UNITS = {"N": (1e-3, "kN"), "N m": (1e-3, "kN m"), "-": (1.0, ""), "Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
 NOTHING = "\u2013"
-
-# The first column names the row. kind: classes of the table, `numbers` or `words`.
-Table = namedtuple("Table", "caption header rows kind", defaults=("numbers",))
 
 
 def clean(text):

@@ -1,8 +1,9 @@
 """The ledger of a machine, months of work by epoch and by day: the figures that the command life prints."""
+from report.blocks import Table
 from report.costs import back_calculation, damage_of, judged_channel, rule_of, shares_table
 from report.cycle_figures import cycle_figures
 from report.cycles import SLOPES, Channel, Count
-from report.formats import Table, in_unit, in_words, measured, titled
+from report.formats import in_unit, in_words, measured, number, titled
 
 DEVIATION_UNITS = 1024.0  # per class width, in tallies.deviation_sum
 TALLY = """SELECT sum(counted) AS samples, sum(skipped) AS skipped, sum(below) AS below, sum(above) AS above, sum(gaps) AS gaps,
@@ -71,19 +72,23 @@ def days_table(epoch, channels_by_day):
     return Table("By the day on which a cycle closed", header, rows)
 
 
-def epoch_content(epoch):
+def epoch_blocks(epoch):
+    title = f"Epoch {epoch.number}: {number(epoch.hours)} hours, {number(epoch.blows)} blows, {epoch.runs} runs."
     channels = epoch.channels()
     if not channels or epoch.days.empty:
-        return {"epoch": epoch, "cycles": None}
+        return [title, "Nothing was counted yet."]
     channels_by_day = [epoch.channels(days) for _, days in epoch.by_date()]
     judged = judged_channel(channels)
     at = channels.index(judged)
     shares = shares_table(f"Share of the damage by day: {rule_of(judged)}", "Day (UTC)", "Blows",
                           [(date, days.blows.sum(), damage_of(of_day[at]))
                            for (date, days), of_day in zip(epoch.by_date(), channels_by_day)])
-    return {"epoch": epoch, "cycles": cycle_figures(channels), "days": days_table(epoch, channels_by_day), "shares": shares,
-            "life": back_calculation(channels)}
+    return [title, *cycle_figures(channels), days_table(epoch, channels_by_day), shares, back_calculation(channels)]
 
 
 def epochs_of(database):
     return [Epoch(database, row) for row in database.records("SELECT * FROM epochs ORDER BY epoch")]
+
+
+def ledger_blocks(database):
+    return [block for epoch in epochs_of(database) for block in epoch_blocks(epoch)] or ["The ledger holds no epoch yet."]

@@ -1,7 +1,8 @@
 """Pictures of loads: the typical and the worst revolution; hull, boom joints, cylinders and sections by revolution."""
 import numpy
 
-from report.formats import Table, in_unit, in_words, number, scaled, utc
+from report.blocks import Details, Note, Table, folded
+from report.formats import in_unit, in_words, number, scaled, utc
 from report.over_time import time_unit
 from report.pictures import CURVES, Picture
 from report.series import BAND, Series, time_of_work
@@ -121,7 +122,11 @@ def groups_of(rows):
 def boom_loads(subject):
     rows = loads_of(subject) if "turn_loads" in subject.database.tables() else ()
     if not len(rows):
-        return None
+        return ["The file holds no loads per revolution."]
     pictures = [picture_of(*kind, channels) for kind, channels in groups_of(rows)]
-    return {"table": loads_table(rows), "open": pictures[:MOST_OPEN], "folded": pictures[MOST_OPEN:],
-            "sections": any(rows.name.str.startswith("section_loads/"))}
+    more = pictures[MOST_OPEN:]
+    return [Note("Line: mean of the revolutions; band: least and greatest within them, kept where revolutions are put together."),
+            pictures[:MOST_OPEN], Details(f"Pictures of {len(more)} more groups of channels", [more]) if more else None,
+            folded(loads_table(rows), 8, "channels as a table"),
+            None if any(rows.name.str.startswith("section_loads/")) else
+            "No sections: the boom file names none, or there was no robot description."]

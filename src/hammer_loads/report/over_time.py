@@ -3,7 +3,8 @@ from matplotlib.ticker import MaxNLocator
 import numpy
 import pandas
 
-from report.formats import Table, number, titled
+from report.blocks import Details, Note, Table, as_tables
+from report.formats import number, titled
 from report.pictures import COLOURS, Picture
 from report.quantities import QUANTITIES
 
@@ -20,8 +21,8 @@ def time_unit(longest_s):
     return next(unit for unit in TIME_UNITS if longest_s >= 3.0 * unit[0] or unit[0] == 1.0)
 
 
-def summary_table(series):
-    rows, of_runs = [], any(s.of_runs for s in series.values())
+def summary_table(series, of_runs):
+    rows = []
     for quantity in QUANTITIES:
         values = series[quantity.key]
         if len(values):
@@ -96,9 +97,13 @@ def histogram(quantity, values):
 def over_time(series, most):
     drawn = [q for q in QUANTITIES if len(series[q.key])]
     if not drawn:
-        return None
-    return {"table": summary_table(series), "of_runs": any(s.of_runs for s in series.values()),
-            "pictures": [time_picture(q, series[q.key], most) for q in drawn],
-            "histograms": [histogram(q, series[q.key].points.middle) for q in drawn
-                           if q.key in COUNTED and not series[q.key].of_runs],
-            "by_time": by_time_table(series)}
+        return ["There is no revolution, so there is nothing over time."]
+    of_runs = any(s.of_runs for s in series.values())
+    histograms = [histogram(q, series[q.key].points.middle) for q in drawn if q.key in COUNTED and not series[q.key].of_runs]
+    return [summary_table(series, of_runs),
+            None if of_runs else Note("Spread: of the values from blow to blow (half of what holds the middle 68 %). Deviation: "
+                                      "standard, of the measurement of one value, median."),
+            [time_picture(q, series[q.key], most) for q in drawn],
+            Note("Nothing is drawn where there was no work; runs follow each other, a dotted line between them."),
+            [picture for picture, _ in histograms], *as_tables(counts for _, counts in histograms),
+            Details("The pictures over time as a table", [by_time_table(series)])]

@@ -1,8 +1,9 @@
 """Runs, totals and parameters of a machine, and its warnings."""
 import os
 
+from report.blocks import Figures, Table, as_tables, folded
 from report.conditions import limit_lines
-from report.formats import NOTHING, Table, duration, measured, moment, number
+from report.formats import NOTHING, duration, measured, moment, number
 from report.quantities import QUANTITIES
 
 MOST_RUNS_SHOWN = 50
@@ -119,6 +120,12 @@ def parameters_table(subject):
                  "words")
 
 
-def overview(subject, series):
-    return {"figures": key_figures(subject, series), "table": runs_table(subject),
-            "more": max(0, len(subject.runs) - MOST_RUNS_SHOWN), "parameters": parameters_table(subject)}
+def overview(subject, series, compared, samples):
+    """compared: table of the runs, or nothing; samples: tables of the revolutions that are drawn."""
+    if not subject.runs:
+        return ["The file holds no run."]
+    more = len(subject.runs) - MOST_RUNS_SHOWN
+    return [Figures(key_figures(subject, series)), folded(runs_table(subject), 12, "runs"),
+            f"{more} more runs are in the tables." if more > 0 else None,
+            folded(parameters_table(subject), 12, "parameters differ from the shipped ones") or "Every parameter is as shipped.",
+            folded(compared, 12, "runs below each other"), *as_tables(samples)]

@@ -3,16 +3,17 @@ import pathlib
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from report.blocks import Table
 from report.boom_health import boom_health
 from report.budget import budget
-from report.checks import check_section, sensor_health
+from report.checks import check_rows, sensor_health, verdict
 from report.comparison import comparison, runs_compared
 from report.conditions import limits, misuse, reference
 from report.costs import costs
 from report.cycle_figures import cycle_figures
 from report.database import FLEET, LEDGER, RECORDING
 from report.formats import shown, utc
-from report.ledger import epoch_content, epochs_of
+from report.ledger import ledger_blocks
 from report.loads import boom_loads, turn_pictures
 from report.over_time import MOST_POINTS, over_time
 from report.overview import overview, warnings_list
@@ -33,15 +34,28 @@ def rendered(template, **content):
 
 
 def machine(subject, series, most_points):
-    """Content of one machine's section, by the names that machine.html has for it."""
-    channels = subject.counted_channels()
-    return {"label": subject.label, "runs": subject.runs, "first": utc(subject.first_ns), "last": utc(subject.last_ns),
-            "check": check_section(subject) if subject.database.kind == RECORDING and subject.runs else None,
-            "turns": turn_pictures(subject), "overview": overview(subject, series), "compared": runs_compared(subject, series),
-            "work": over_time(series, most_points), "loads": boom_loads(subject), "health": boom_health(subject),
-            "misuse": misuse(subject), "limits": limits(subject), "reference": reference(subject),
-            "cycles": cycle_figures(channels) if channels else None, "costs": costs(subject, channels),
-            "budget": budget(subject), "sensor": sensor_health(subject)}
+    """Content of one machine's section."""
+    turns, channels, measured = turn_pictures(subject), subject.counted_channels(), reference(subject)
+    rows = check_rows(subject) if subject.database.kind == RECORDING and subject.runs else None
+    version = subject.runs[0]["version"] if subject.runs else None
+    samples = [table for _, table in turns]
+    return {
+        "label": subject.label, "verdict": rows and verdict(rows),
+        "recorded": f"Recorded {utc(subject.first_ns)} to {utc(subject.last_ns)} (UTC); hammer_loads {version}.",
+        "top": [[picture for picture, _ in turns] or "The file holds no samples of a revolution.",
+                rows and Table("Check of the recording", ["Check", "Status", "Finding", "What to do"], rows, "words")],
+        "sections": [
+            ("overview", "Who, when, which parameters", overview(subject, series, runs_compared(subject, series), samples)),
+            ("work", "Work over time", over_time(series, most_points)),
+            ("loads", "Hull, boom joints and sections", boom_loads(subject)),
+            ("health", "Is the boom sound?", boom_health(subject)),
+            ("misuse", "Misuse", misuse(subject)),
+            ("limits", "Limits", limits(subject)),
+            *([("reference", "Measured reference", measured)] if measured else []),
+            ("cycles", "Load cycles", cycle_figures(channels)),
+            ("costs", "Which blows cost what", costs(subject, channels)),
+            ("budget", "Where the uncertainty comes from", budget(subject)),
+            ("sensor", "Is the sensor sound?", sensor_health(subject))]}
 
 
 def distinct_labels(subjects):
@@ -65,4 +79,4 @@ def page(databases, version, only_machine=None):
         warnings=warnings_list(subjects, mixed_machines(subjects)), whole=len(in_full) == len(subjects),
         compared=comparison(subjects, series) if len(subjects) > 1 else None,
         machines=[machine(s, series[s.label], MOST_POINTS // len(subjects)) for s in in_full],
-        ledgers=[(stem(d.path), list(map(epoch_content, epochs_of(d)))) for d in databases if d.kind == LEDGER])
+        ledgers=[(stem(d.path), ledger_blocks(d)) for d in databases if d.kind == LEDGER])

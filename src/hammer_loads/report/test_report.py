@@ -2,11 +2,12 @@
 import tempfile
 
 from report import inputs, output
+from report.blocks import Table
 from report.budget import figures_in
 from report.checks import LOOK, refusals_of, sensor_rows
 from report.command import Parser, package_version
 from report.database import RECORDING, Problem
-from report.formats import NOTHING, Table, duration, in_unit, in_words, rounded, scaled, utc
+from report.formats import NOTHING, duration, in_unit, in_words, rounded, scaled, utc
 from report.overview import warnings_of
 from report.page import rendered
 from report.subjects import subjects_of
