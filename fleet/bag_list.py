@@ -48,28 +48,28 @@ def made(machine, bag, parameters, problem=None):
 def from_rows(rows, path):
     folder, bags = os.path.dirname(os.path.abspath(path)), []
     for at, row in enumerate(rows, 1):
-        problem = why_no_entry(row)
-        if problem:
+        if problem := why_no_entry(row):
             machine = row.get("machine") if isinstance(row, dict) else None
             bags.append(made(str(machine or "no machine named"), f"{path}, entry {at}", [], f"entry {at}: {problem}"))
-            continue
-        parameters = row.get("parameters") or []
-        if isinstance(parameters, str):
-            parameters = parameters.split(";")
-        bags.append(made(str(row["machine"]), os.path.join(folder, row["bag"]),
-                         [os.path.join(folder, p.strip()) for p in parameters]))
+        else:
+            bags.append(made(str(row["machine"]), os.path.join(folder, row["bag"]),
+                             [os.path.join(folder, name.strip()) for name in parameters_of(row)]))
     return bags
+
+
+def parameters_of(row):
+    given = row.get("parameters") or []
+    return given.split(";") if isinstance(given, str) else given
 
 
 def why_no_entry(row):
     """Fault of a list's entry, or nothing."""
     if not isinstance(row, dict) or not row.get("machine") or not row.get("bag"):
         return "machine and bag must be given"
-    parameters = row.get("parameters") or []
     if not isinstance(row["machine"], (str, int)) or not isinstance(row["bag"], str):
         return f"machine and bag: {row['machine']!r}, {row['bag']!r}, must be texts"
-    if not isinstance(parameters, str) and not (isinstance(parameters, list) and
-                                                all(isinstance(p, str) for p in parameters)):
+    parameters = parameters_of(row)
+    if not (isinstance(parameters, list) and all(isinstance(name, str) for name in parameters)):
         return f"parameters: {parameters!r}, must be a list of paths"
     return None
 
@@ -123,14 +123,12 @@ def may_be_split(bag):
 
 def joined(bags, recordings):
     """Splits of one recording as one bag. recordings: from paths to a list of lists of them, in order."""
-    groups = {}
+    groups, later_of, later = {}, {}, set()
     for bag in bags:
-        groups.setdefault((bag.machine, bag.parameters, os.path.dirname(bag.bag)), []).append(bag)
-    later_of, later = {}, set()
+        if not bag.problem and may_be_split(bag.bag):
+            groups.setdefault((bag.machine, bag.parameters, os.path.dirname(bag.bag)), {})[bag.bag] = bag
     for members in groups.values():
-        asked = [bag.bag for bag in members if not bag.problem and may_be_split(bag.bag)]
-        for first, *rest in recordings(asked) if len(asked) > 1 else ():
-            names = {bag.bag: bag.name for bag in members}
-            later_of[names[first]] = tuple(rest)
-            later.update(names[bag] for bag in rest)
-    return [bag._replace(later=later_of.get(bag.name, ())) for bag in bags if bag.name not in later]
+        for first, *rest in recordings(list(members)) if len(members) > 1 else ():
+            later_of[members[first]] = tuple(rest)
+            later.update(members[path] for path in rest)
+    return [bag._replace(later=later_of.get(bag, ())) for bag in bags if bag not in later]
