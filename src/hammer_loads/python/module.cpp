@@ -115,26 +115,6 @@ Array loads(const Hammer& hammer, const Array& angle, const Array& speed, const 
   return result;
 }
 
-/// A row for each column of turn_table.
-Array turn(const Hammer& hammer, double speed, double step, const std::pair<double, double>& gravity, const Text& level,
-           bool pins) {
-  const TurnTable table{modelOf(hammer, level), speed, {gravity.first, gravity.second}, step, pins};
-  const std::vector<TurnRow> rows = turnRows(table, 0, rowCount(table));
-  Array result({pins ? 5 + kPinColumns.size() : std::size_t{5}, rows.size()});
-  auto out = result.mutable_unchecked<2>();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const TurnRow& row = rows[i];
-    const std::array<double, 5> values{row.crank_angle, row.time, row.wrench.force_x, row.wrench.force_z,
-                                       row.wrench.torque_y};
-    const auto at = static_cast<py::ssize_t>(i);
-    for (std::size_t c = 0; c < values.size(); ++c) out(static_cast<py::ssize_t>(c), at) = values[c] + 0.0;
-    if (!pins) continue;
-    const auto of_pins = pinValues(row.pins);
-    for (std::size_t c = 0; c < of_pins.size(); ++c) out(static_cast<py::ssize_t>(5 + c), at) = of_pins[c] + 0.0;
-  }
-  return result;
-}
-
 py::dict pulse(const Hammer& hammer, double speed, const std::pair<double, double>& gravity, const Text& level) {
   const ConstantSpeedPulse result =
       pulseOfTurn({modelOf(hammer, level), speed, {gravity.first, gravity.second}, 1.0, false});
@@ -261,7 +241,6 @@ PYBIND11_MODULE(_native, module) {
           "Level of the model in the parameters; each call may name another.")
       .def_property_readonly("gravity", &Hammer::gravity, "Gravity in the parameters [m/s2].")
       .def("_loads", &loads)
-      .def("_turn", &turn)
       .def("_pulse", &pulse)
       .def("_blow", &blow);
   py::class_<BoomModel>(module, "Boom", kBoomText)

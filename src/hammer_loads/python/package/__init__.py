@@ -23,7 +23,6 @@ __all__ = ["Boom", "Hammer", "count_cycles", "read_database", "support_impulse"]
 
 _WRENCH = ["force_x", "force_z", "torque_y"]
 _PINS = ["drive_torque"] + [f"R{pair}_{axis}" for pair in ("01", "12", "23", "03") for axis in "xz"]
-_TURN = ["crank_angle", "time", *_WRENCH]
 _DATABASES = (0x484C5242, 0x484C4C31, 0x484C5246)  # application_id of process_bag --db, a ledger, the fleet
 _LARGEST_ANGLE = 4e8  # [rad]
 _PATIENCE = 5.0  # [s] until another user of a database gives it back
@@ -103,10 +102,11 @@ def _turn(self, speed=31.416, *, step_deg=1.0, pitch=None, gravity=None, level=N
     The result has arrays crank_angle [rad], time [s], force_x, force_z [N], torque_y [N m]. The first row is just after a
     blow, the last one just before the next.
     """
-    rows = self._turn(_number("speed", speed, "rad/s", 0.0), _number("step_deg", step_deg, "deg", 1e-6, 360.0),
-                      _weight(self, pitch, gravity), level, pins)
-    rows[0] = np.radians(rows[0])
-    return dict(zip(_TURN + _PINS, rows))
+    speed, step = _number("speed", speed, "rad/s", 0.0), _number("step_deg", step_deg, "deg", 1e-6, 360.0)
+    angle = np.radians(np.append(np.arange(0.0, 360.0 * (1.0 - 1e-12), step), 360.0))
+    states = np.append(angle[:-1], -1e-300)
+    loads = _wrenches(self, states, speed, pitch=pitch, gravity=gravity, level=level, pins=pins)
+    return {"crank_angle": angle, "time": angle / speed, **loads}
 
 
 def _pulse(self, speed=31.416, *, pitch=None, gravity=None, level=None):
