@@ -37,7 +37,7 @@ def commit(source):
 
 
 def revision(root, source):
-    """As at every build."""
+    """The one that a build writes into its header."""
     said(f"cmake -DSOURCE={source} -DHEADER={root}/source_revision.h -P {source}/cmake/revision.cmake", cwd=root)
     return re.fullmatch(r'#define HAMMER_LOADS_REVISION "(.*)"\n', (root / "source_revision.h").read_text())[1]
 
