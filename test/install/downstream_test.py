@@ -1,4 +1,5 @@
 """Packages of others, built from the install space."""
+import os
 import pathlib
 import re
 import shutil
@@ -12,28 +13,32 @@ LAUNCH = "roslaunch --dump-params hammer_loads "
 
 
 @pytest.fixture(scope="module", autouse=True)
-def installed():
+def installed(tmp_path_factory):
     """Below the package roslaunch would find each launch file twice: it is removed again."""
+    os.environ["ROS_LOG_DIR"] = str(tmp_path_factory.mktemp("log"))
     shutil.rmtree(PREFIX, ignore_errors=True)
     said(f"cmake --install {BUILD}")
     yield
     shutil.rmtree(PREFIX)
 
 
-@pytest.fixture
-def in_install_space(tmp_path):
+def in_install_space(command):
     """Output of a command in an environment that knows the install space alone."""
     ros = "[ ! -e /opt/ros/noetic/setup.bash ] || . /opt/ros/noetic/setup.bash; "
-    return lambda command: said(f"{ros}. {PREFIX}/setup.bash; export ROS_LOG_DIR={tmp_path}; {command}")
+    return said(f"{ros}. {PREFIX}/setup.bash; {command}")
 
 
-@pytest.fixture
-def built(in_install_space, tmp_path):
-    """Folder of the programs of a package of this folder."""
-    def build(package):
-        in_install_space(configure(HERE / package, tmp_path, "-DCMAKE_UNITY_BUILD=ON") + f" && cmake --build {tmp_path}")
-        return tmp_path / "devel" / "lib" / package
+@pytest.fixture(scope="module")
+def package(installed, tmp_path_factory):
+    """Build folder of use_package."""
+    build = tmp_path_factory.mktemp("use_package")
+    in_install_space(configure(HERE / "use_package", build, "-DCMAKE_UNITY_BUILD=ON") + f" && cmake --build {build}")
     return build
+
+
+@pytest.fixture(scope="module")
+def programs(package):
+    return package / "devel" / "lib" / "use_package"
 
 
 def public_headers():
@@ -41,45 +46,42 @@ def public_headers():
     return re.findall(r"^\| `hammer_loads_\w+` \| `(hammer_loads/[\w/]+\.h)` \|", (SOURCE / "doc" / "api.md").read_text(), re.M)
 
 
-def test_links_the_libraries_without_ros_by_their_own_names(built):
+def test_links_the_libraries_without_ros_by_their_own_names(programs):
     """No setup.bash: they are found."""
-    programs = built("use_library")
-    assert said(f"{programs}/use_pipeline") == said(f"{PREFIX}/lib/hammer_loads/turn_table --summary --level rocker")
-    said(f"{programs}/use_core")
-    libraries = said(f"ldd {programs}/use_core")
+    assert said(f"{programs}/turn") == said(f"{PREFIX}/lib/hammer_loads/turn_table --summary --level rocker")
+    libraries = said(f"ldd {programs}/use_hull_model")
     assert f"{PREFIX}/lib/libhammer_loads_core.so" in libraries
     for other in ("libros", "libboost", "librosbag", "hammer_loads_ros", "libkdl"):
         assert other not in libraries
 
 
-def test_links_and_includes_the_public_interface(built):
-    headers, programs = public_headers(), built("use_api")
+def test_links_and_includes_the_public_interface(programs):
+    headers = public_headers()
     assert len(headers) > 10
     for header in headers:
         said(f"{programs}/use_{pathlib.Path(header).stem}")
 
 
-def test_runs_commands_in_python(in_install_space, tmp_path):
+def test_runs_commands_in_python(tmp_path):
     assert in_install_space("rosrun hammer_loads report --version").startswith("hammer_loads ")
     assert "0 bags" in in_install_space(f"$(rospack find hammer_loads)/fleet/merge.py {tmp_path}/m.sqlite < /dev/null")
 
 
-def test_uses_messages_and_the_libraries_with_ros(built, in_install_space):
-    assert said(f"{built('use_messages')}/use_messages") == "hammer_loads/HullLoads\nhammer_loads/RunInfo\n"
+def test_uses_messages_and_the_libraries_with_ros(programs):
+    assert said(f"{programs}/use_messages") == "hammer_loads/HullLoads\nhammer_loads/RunInfo\n"
     assert in_install_space('python3 -c "import hammer_loads.msg as m; print(m.HullLoads._type)"') == "hammer_loads/HullLoads\n"
 
 
-def test_tests_with_the_installed_node(built, in_install_space, tmp_path):
-    built("use_rostest")
-    in_install_space(f"cd {tmp_path} && ctest --output-on-failure")
+def test_tests_with_the_installed_node(package):
+    in_install_space(f"cd {package} && ctest --output-on-failure")
 
 
-def test_installed_launch_files_find_their_nodelets(in_install_space):
+def test_installed_launch_files_find_their_nodelets():
     assert f"{PREFIX}/share/hammer_loads/nodelet_plugins.xml" in in_install_space("rospack plugins --attrib=plugin nodelet")
     assert (PREFIX / "lib" / "libhammer_loads_nodelets.so").exists()
 
 
-def test_launch_files_state_what_is_required(in_install_space):
+def test_launch_files_state_what_is_required():
     for name in ("hammer_loads", "hammer_loads_nodelet", "demo", "grapple"):
         arguments = in_install_space(f"roslaunch hammer_loads {name}.launch --ros-args")
         assert "Optional Arguments" in arguments and "Required Arguments" not in arguments
@@ -95,7 +97,7 @@ def assert_parameters(dumped, *lines):
         assert f"/hammer_loads/{line}" in dumped, dumped
 
 
-def test_launch_arguments_become_parameters(in_install_space):
+def test_launch_arguments_become_parameters():
     assert_parameters(
         in_install_space(LAUNCH + 'hammer_loads.launch crank_joint:=drive_joint boom_model:=rigid '
                          'boom_wrench_links:="[arm_link, base_link]" log_directory:=/somewhere'),
@@ -107,7 +109,7 @@ def test_launch_arguments_become_parameters(in_install_space):
 
 
 @pytest.mark.parametrize("launch", ["hammer_loads", "hammer_loads_nodelet", "replay", "demo"])
-def test_a_calibration_is_merged_with_the_hammer(in_install_space, tmp_path, launch):
+def test_a_calibration_is_merged_with_the_hammer(tmp_path, launch):
     calibration, hammer = tmp_path / "calibration.yaml", PREFIX / "share" / "hammer_loads" / "config" / "hammer_mo100.yaml"
     calibration.write_text("crank_zero_rad: 0.125\ndrive_inertia_kg_m2: 0.375\n")
     bag = " bag:=some.bag" if launch == "replay" else ""

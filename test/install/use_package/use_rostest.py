@@ -15,4 +15,4 @@ class Use(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rostest.rosrun('use_rostest', 'use', Use)
+    rostest.rosrun('use_package', 'use', Use)
