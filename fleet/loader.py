@@ -146,10 +146,9 @@ class Loader:
         if "columns" not in source.tables():
             return
         known = set(self.store.rows("SELECT table_name, column_name FROM columns"))
-        copied = {table: self.store.columns(table) for table in ["runs", *self.tables]}
         self.store.insert("columns", COLUMN_TEXT, [
             row for row in source.rows("SELECT table_name, column_name, unit, description FROM columns")
-            if row[:2] not in known and row[1].lower() in copied.get(row[0], [])])
+            if row[:2] not in known and row[0] in ("runs", *self.tables) and row[1].lower() in self.store.columns(row[0])])
 
 
 def figures(source, own, run_id):

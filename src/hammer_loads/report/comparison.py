@@ -170,6 +170,7 @@ def overlaid(subjects, series):
         picture, keys = Picture(f"time of work [{unit}]", titled(quantity.title.lower(), quantity.unit)), []
         for colour, (label, values) in zip(CURVES, curves):
             points = values.thinned(MOST_POINTS // len(curves))
+            points = points.dropna() if values.of_runs else points  # a line from run to run
             picture.curve(points.assign(x=points.x / seconds), colour, len(curves))
             keys.append((f"line {colour}", label))
         picture.axes.margins(x=0.02)
