@@ -119,3 +119,9 @@ def test_a_page_of_the_merged_file_has_the_same_figures(merged):
     merged.merge(a)
     own, other = (subjects_of(Database(file))[0].counted_channels() for file in (a.with_suffix(".sqlite"), merged.path))
     assert [(c.name, c.equivalents()) for c in own] == [(c.name, c.equivalents()) for c in other]
+
+
+def test_bags_of_one_file_name_are_shown_with_their_folder(merged):
+    merged.merge(merged.add("a"), merged.add("b", first=900, seed=2), merged.add("c", first=1800, seed=3))
+    execute(merged.path, "UPDATE bags SET bag = '/disk' || bag_id || '/same.bag' WHERE bag <> '/in/c.bag'")
+    assert [row["Recording"] for row in merged.page().table("Runs").values()] == ["/disk1/same", "/disk2/same", "c"]
