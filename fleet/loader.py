@@ -72,8 +72,10 @@ class Loader:
     def _is_known(self, outcome, keys):
         found = self.store.row("SELECT bag_id, status, reason, input_sha256, parameters_sha256 FROM bags "
                                "WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
-        return (found is not None and tuple(found[1:]) == tuple(outcome[k] for k in OUTCOME[2:]) and
-                keys == [key for key, in self.store.rows("SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])])
+        if found is None or tuple(found[1:]) != tuple(outcome[k] for k in OUTCOME[2:]):
+            return False
+        runs = self.store.rows("SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])
+        return keys == [key for key, in runs]
 
     def _remove(self, outcome):
         """Removes the rows of the bag from before it or its parameters changed."""

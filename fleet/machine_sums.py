@@ -7,13 +7,14 @@ IDENTITY = ["identity", "name", "least", "greatest", "classes"]
 # Means are weighted by the samples of the runs that have them.
 WEIGHTED = ("CAST(sum(c.{0} * c.samples) AS DOUBLE PRECISION) / "
             "nullif(sum(CASE WHEN c.{0} IS NULL THEN 0 ELSE c.samples END), 0) AS {0}")
+SUMMED = ", ".join([f"CAST(sum(c.{name}) AS BIGINT)" for name in SUMS] + list(map(WEIGHTED.format, MEANS)))
 CHANNELS = (
     "SELECT r.machine, c.name, c.least, c.greatest, c.classes, sum(r.duration) / 3600, max(r.equivalent_cycles_per_hour), "
-    "min(c.minimum), max(c.maximum), " + ", ".join([f"CAST(sum(c.{name}) AS BIGINT)" for name in SUMS] + list(map(WEIGHTED.format, MEANS))) +
-    f" {OF_CHANNEL} WHERE b.machine = ? AND c.counted = 1 GROUP BY r.machine, c.name, c.least, c.greatest, c.classes "
+    f"min(c.minimum), max(c.maximum), {SUMMED} {OF_CHANNEL} WHERE b.machine = ? AND c.counted = 1 GROUP BY r.machine, c.name, c.least, c.greatest, c.classes "
     "ORDER BY r.machine, min(c.channel)")
 COLUMNS = [*IDENTITY, "hours", "equivalent_cycles_per_hour", "minimum", "maximum", *SUMS, *MEANS]
-LATEST = f"SELECT c.unit, {', '.join('c.' + name for name in CURVE)} {OF_CHANNEL} WHERE {SAME} ORDER BY r.first_stamp_ns DESC LIMIT 1"
+LATEST = (f"SELECT c.unit, {', '.join('c.' + name for name in CURVE)} {OF_CHANNEL} WHERE {SAME} "
+          "ORDER BY r.first_stamp_ns DESC LIMIT 1")
 CYCLES = (f"SELECT y.steps, y.low, CAST(sum(y.count) AS BIGINT) {OF_CHANNEL} "
           f"JOIN cycles y ON y.run_id = c.run_id AND y.channel = c.channel WHERE {SAME} GROUP BY y.steps, y.low")
 RESIDUES = (f"SELECT s.class {OF_CHANNEL} JOIN residues s ON s.run_id = c.run_id AND s.channel = c.channel WHERE {SAME} "

@@ -113,8 +113,9 @@ class PostgresStore(Store):
 
     def insert(self, table, columns, rows):
         rows, cursor = iter(rows), self._connection.cursor()
+        statement = f"INSERT INTO {table}({','.join(columns)}) VALUES %s"
         for some in iter(lambda: list(itertools.islice(rows, ROWS_AT_ONCE)), []):
-            self._extras.execute_values(cursor, f"INSERT INTO {table}({','.join(columns)}) VALUES %s", some, page_size=ROWS_AT_ONCE)
+            self._extras.execute_values(cursor, statement, some, page_size=ROWS_AT_ONCE)
 
     def columns(self, table):
         """Names in lower case; nothing for a table that is not there."""

@@ -96,7 +96,8 @@ def test_every_file_that_readme_and_pages_name_exists():
 def rooms():
     """{room: rooms that it knows, with what these know in turn, and itself}, from the lowest up; arrows go up the table only."""
     knows = {}
-    for room, stated in re.findall(r"^\| `(\w+)` \| [^|]+ \| [^|]+ \| ([^|;]*)(?:;[^|]*)?\|$", text_of("doc/architecture.md"), re.M):
+    row = re.compile(r"^\| `(\w+)` \| [^|]+ \| [^|]+ \| ([^|;]*)(?:;[^|]*)?\|$", re.M)
+    for room, stated in row.findall(text_of("doc/architecture.md")):
         words = re.findall("[a-z]+", stated)
         knows[room] = {room}.union(*(knows[lower] for lower in knows if lower in words or "all" in words))
     return knows

@@ -26,8 +26,10 @@ def test_sums_are_one_count_in_order_of_time(merged):
         closed[b - a, a] = closed.get((b - a, a), 0) + n
     assert across
     at = merged.ask("SELECT machine_channel FROM machine_channels WHERE name = 'hull_wrench/force_z'")[0][0]
-    assert {(s, l): n for s, l, n in merged.ask(f"SELECT steps, low, count FROM machine_cycles WHERE machine_channel = {at}")} == closed
-    assert [c for c, in merged.ask(f"SELECT class FROM machine_residues WHERE machine_channel = {at} ORDER BY place")] == residue
+    cycles = merged.ask(f"SELECT steps, low, count FROM machine_cycles WHERE machine_channel = {at}")
+    assert {(steps, low): n for steps, low, n in cycles} == closed
+    left = merged.ask(f"SELECT class FROM machine_residues WHERE machine_channel = {at} ORDER BY place")
+    assert [level for level, in left] == residue
     for outcome in reversed(outcomes):
         merged.merge(outcome, target="pieces.sqlite")
     for sql in ("SELECT hours, damage, remaining_hours FROM machine_channels ORDER BY name",

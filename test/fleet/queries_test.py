@@ -41,7 +41,8 @@ def test_every_question_has_its_answer(merged, answer):
     assert [(row["machine"], row["refused"]) for row in answer("refused_samples")] == [("blue", "8")]
     assert float(machine_row(answer("hours_and_blows"), "blue")["hours"]) == pytest.approx(80 / 3600, abs=1e-4)
     assert [row["bag"] for row in answer("failed_bags")] == ["/in/g.bag"]
-    assert ("rocker_mass_kg", "36.0", "red") in [(row["key"], row["value"], row["machine"]) for row in answer("changed_parameters")]
+    changed = [(row["key"], row["value"], row["machine"]) for row in answer("changed_parameters")]
+    assert ("rocker_mass_kg", "36.0", "red") in changed
     assert [row["week"] for row in answer("energy_by_week")] == ["2023-W46", "2023-W46"]
     assert sum(float(row["energy_MJ"]) for row in answer("energy_by_week")) == pytest.approx(
         merged.ask("SELECT sum(total) / 1e6 FROM run_figures WHERE quantity = 'energy'")[0][0])

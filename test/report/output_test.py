@@ -28,7 +28,8 @@ def test_csv_has_every_row_of_every_table(made, tables):
     for file in files:
         for table, in execute(file, "SELECT name FROM sqlite_master WHERE type = 'table'"):
             names = [row[1] for row in execute(file, f"PRAGMA table_info({table})")]
-            expected = sorted([file.stem] + ["" if v is None else str(v) for v in row] for row in execute(file, f"SELECT * FROM {table}"))
+            stored = execute(file, f"SELECT * FROM {table}")
+            expected = sorted([file.stem] + ["" if v is None else str(v) for v in row] for row in stored)
             with open(tables / (table + ".csv"), newline="", encoding="utf-8") as text:
                 assert text.readline().startswith("# hammer_loads, units: file [-], ")
                 header, *rows = csv.reader(text)
@@ -62,10 +63,13 @@ def test_replaces_its_own_tables_alone(made, tables):
     assert_refused(report_here(second, "--csv", tables), tables, "exists already")
     assert report_here(second, "--csv", tables, "--force").returncode == 0
     assert "b," in (tables / "runs.csv").read_text()
-    (tables / "notes.txt").write_text("mine")
-    before = contents(tables)
-    assert_refused(report_here(second, "--csv", tables, "--force"), tables, "notes.txt")
-    assert contents(tables) == before
+    for name in ("notes.txt", "notes.csv", "link.csv"):
+        foreign = tables / name
+        foreign.symlink_to(tables / "runs.csv") if name == "link.csv" else foreign.write_text("mine")
+        before = contents(tables)
+        assert_refused(report_here(second, "--csv", tables, "--force"), tables, f"{name} is none of its tables")
+        assert contents(tables) == before
+        foreign.unlink()
 
 
 def test_replaces_its_own_pages_alone(made, tmp_path):

@@ -20,8 +20,8 @@ def figures(page):
 
 def test_nothing_is_drawn_where_there_was_no_work(made):
     """Two runs, one with a pause, have no line from a blow before the pause to the one after it."""
-    file = made("site", *(f"DELETE FROM {t} WHERE run_id = 1 AND turn BETWEEN 200 AND 260" for t in ("turns", "blows", "turn_loads")),
-                seconds=100.0, runs=2, boom=True)
+    pause = (f"DELETE FROM {table} WHERE run_id = 1 AND turn BETWEEN 200 AND 260" for table in ("turns", "blows", "turn_loads"))
+    file = made("site", *pause, seconds=100.0, runs=2, boom=True)
     page = page_of(file)
     pictures = [p for p in page.pictures if p.title.startswith(("Blow rate:", "Blow energy:", "Restitution:", "joint_loads/"))]
     assert len(pictures) > 5
@@ -67,7 +67,8 @@ def test_exceeded_limits_are_shown(made):
 
 def test_a_measured_load_is_compared_with_the_computed_one(made, site):
     assert "Measured reference" not in page_of(site).text
-    page = page_of(made("measured", "INSERT INTO reference VALUES(1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, 0.985, 0.99871, 0.968)"))
+    row = "(1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, 0.985, 0.99871, 0.968)"
+    page = page_of(made("measured", f"INSERT INTO reference VALUES {row}"))
     assert page.table("Computed and measured load")["force_z"] == {
         "Run": "1", "Samples": "20\u202f000", "Measured, rms": "4.2 kN", "Error, rms": "0.084 kN", "Error, relative": "2 %",
         "Bias": "\u22120.03 kN", "Scale": "0.985", "Correlation": "0.99871", "Within two": "96.8 %"}

@@ -77,6 +77,6 @@ def boom_health(subject):
     found = cylinders_of(subject)
     if not found:
         return ["Not known: it needs boom_stiffness: identified, a boom file and hull_imu or cylinder_pressures."]
-    return [Note("Every blow is an impulse that is known: how the boom swings after it shows its oil. The ratio does not depend on "
-                 "the pose; an error of the boom file's masses is the same in every run."),
+    return [Note("Every blow is an impulse that is known: how the boom swings after it shows its oil. The ratio does not "
+                 "depend on the pose; an error of the boom file's masses is the same in every run."),
             cylinder_table(found), mode_table(subject), stiffness_picture(found)]

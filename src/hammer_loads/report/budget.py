@@ -46,7 +46,8 @@ def combined(quantity, rows):
     variances = rows.dropna(subset=["variance"]).groupby("source").variance.sum() / turns
     total = variances.sum()
     shares = (variances / total).to_dict() if total > 0.0 else {REST: 1.0}
-    return Figure(quantity, runs.unit.iloc[0], float((runs.turns * runs.value.fillna(0.0)).sum() / turns), math.sqrt(total), shares)
+    value = float((runs.turns * runs.value.fillna(0.0)).sum() / turns)
+    return Figure(quantity, runs.unit.iloc[0], value, math.sqrt(total), shares)
 
 
 def bars(figures):
@@ -77,8 +78,8 @@ def budget(subject):
     if not figures:
         return ["This file keeps no budget: process_bag --db of this version writes one."]
     header = ["Figure", "Unit", "Value", "Deviation [%]", "Largest source", "With it halved [%]"]
-    return ["Standard deviations of one revolution's figures; measure next what makes most of one. Errors of constants are equal in all "
-            "revolutions: more hours do not lower them.",
+    return ["Standard deviations of one revolution's figures; measure next what makes most of one. Errors of constants are "
+            "equal in all revolutions: more hours do not lower them.",
             Table("Uncertainty budget", header, list(map(budget_row, figures))), Bars("Shares of the variance", *bars(figures))]
 
 

@@ -65,7 +65,8 @@ def of_blows(subject):
         return WRONG, "no blow was found"
     expected = 3600.0 * subject.hours / period
     text = f"{number(blows)} blows, {number(round(expected))} revolutions fit into the time of work"
-    return (OK if blows > 0.8 * expected and blank < 0.1 * blows else LOOK), text + (f", {blank} blank firings" if blank else "")
+    status = OK if blows > 0.8 * expected and blank < 0.1 * blows else LOOK
+    return status, text + (f", {blank} blank firings" if blank else "")
 
 
 def figures(subject):
@@ -83,7 +84,8 @@ def figures(subject):
         "direction": (OK if backward <= BACKWARD else WRONG, f"{backward} backward passes"),
         "zero": (OK, f"crank_zero_rad {zero}" if zero is not None else "as shipped"),
         "rate": (UNKNOWN if rate is None else OK if rate >= 190.0 else LOOK, f"{number(rate, 3)} Hz, {number(samples)} samples"),
-        "readings": (judged(None if share is None else 1.0 - share, 0.1), f"{number(100 * (share or 0.0), 3)} % of the samples published"),
+        "readings": (judged(None if share is None else 1.0 - share, 0.1),
+                     f"{number(100 * (share or 0.0), 3)} % of the samples published"),
         "stamps": (judged(jitter, JITTER_S), f"jitter {number(scaled(jitter, 1e3), 2)} ms"),
         "hull pitch": (judged(pitch, PITCH_RAD), f"{number(pitch, 3)} rad at the end"),
         "joints": (OK, "received") if not is_nothing(pitch) else (UNKNOWN, "not received"),
@@ -101,7 +103,8 @@ def check_rows(subject):
     for name, (status, finding) in figures(subject).items():
         stated, words = warned.get(name, (OK, []))
         status = worst_status(status, stated)
-        rows.append([name, status, words[0] if words else finding, REMEDY.get(name, "") if status in (LOOK, WRONG) and not words else ""])
+        remedy = REMEDY.get(name, "") if status in (LOOK, WRONG) and not words else ""
+        rows.append([name, status, words[0] if words else finding, remedy])
     return rows
 
 
@@ -133,7 +136,8 @@ def sensor_rows(subject):
          "more than a few: crank_direction has the wrong sign"],
         ["Hull pitch", f"{number(pitch, 3)} rad", judged(pitch, PITCH_RAD),
          "largest at the end of a run; at work beyond 1.2 rad a sign or an offset of a boom joint is wrong"],
-        ["Resolution of the angle", f"{number(scaled(subject.worst('angle_resolution'), 1e3), 3)} mrad", "", "step between two readings"],
+        ["Resolution of the angle", f"{number(scaled(subject.worst('angle_resolution'), 1e3), 3)} mrad", "",
+         "step between two readings"],
         ["Noise of the speed", f"{number(subject.worst('speed_noise'), 3)} rad/s", "", "where the speed is measured"],
         ["Drive inertia", f"{number(subject.worst('drive_inertia'), 3)} kg m\u00b2",
          "", f"relative deviation {number(subject.worst('drive_inertia_relative_std'), 2)}"],

@@ -181,7 +181,8 @@ def comparison(subjects, series):
     doubts, first = list(map(doubts_of, subjects)), len(CURVES)
     return [comparison_table([subject.label for subject in subjects],
                              [by_name(figures_of(subject, series[subject.label])) for subject in subjects], doubts),
-            Note("Median of the revolutions, \u00b1 the standard deviation of its measurement, or the spread where that is not known." +
+            Note("Median of the revolutions, \u00b1 the standard deviation of its measurement, or the spread where that is not "
+                 "known." +
                  (" ?: a warning above affects the figure." if any(doubts) else "")),
             Note("Line: mean, band: least and greatest. Runs follow each other without the time between them." +
                  (f" Curves are those of the first {first} machines with a revolution." if len(subjects) > first else "")),

@@ -76,8 +76,9 @@ def reference(subject):
     if "reference" not in subject.database.tables() or not subject.runs:
         return []
     cells = []
-    for row in subject.frame("component, unit, samples, rms, rms_error, bias, scale, correlation, within_two_std FROM reference "
-                             "WHERE {runs} ORDER BY component", text=["component", "unit"]).itertuples():
+    rows = subject.frame("component, unit, samples, rms, rms_error, bias, scale, correlation, within_two_std FROM reference "
+                         "WHERE {runs} ORDER BY component", text=["component", "unit"])
+    for row in rows.itertuples():
         factor, unit = in_unit(row.unit)
         cells.append([row.component, str(row.run + 1), number(int(row.samples)), f"{number(factor * row.rms)} {unit}",
                       f"{number(factor * row.rms_error, 3)} {unit}", f"{number(100.0 * row.rms_error / row.rms, 2)} %",

@@ -93,7 +93,8 @@ def by_turns(subject, channel):
                       for part in PARTS if part * len(turns) >= LEAST_TURNS)
     share = number(100.0 * held / counted, 3) if counted > 0.0 else None
     return [f"Of the damage {words}." if words else None,
-            share and Note(f"A revolution counts here with its range alone: that is {share} % of the damage of all counted cycles."),
+            share and Note(f"A revolution counts here with its range alone: that is {share} % of the damage of all counted "
+                           "cycles."),
             grouped_table("Damage by day", "Day (UTC)", turns, 24 * HOUR_NS, lambda stamp: utc(stamp)[:10]),
             grouped_table("Damage by hour", "Hour (UTC)", turns, HOUR_NS, lambda stamp: moment(stamp, "minutes"))
             ], [Details("The most damaging revolutions", [dearest_turns(subject, turns)])]
@@ -105,9 +106,11 @@ def by_recording(subject, channel):
         return []
     names = subject.recordings()
     groups = [(run, run["blows"] or 0, damage_of(piece)) for run, piece in subject.pieces(channel.name)]
-    tables = [shares_table("Damage by recording", "Recording", "Blows", [(names[run["run_id"]], *rest) for run, *rest in groups])]
+    named = [(names[run["run_id"]], *rest) for run, *rest in groups]
+    tables = [shares_table("Damage by recording", "Recording", "Blows", named)]
     if subject.database.kind == FLEET:
-        tables.append(shares_table("Damage by day", "Day (UTC)", "Blows", [(run["day"] or "?", *rest) for run, *rest in groups]))
+        days = [(run["day"] or "?", *rest) for run, *rest in groups]
+        tables.append(shares_table("Damage by day", "Day (UTC)", "Blows", days))
     return tables
 
 
@@ -131,8 +134,8 @@ def back_calculation(channels):
              if c.curve is not None and c.damage()[0] > 0.0]
     words = "; ".join(f"{name}: {number(double, 3)} of the load" for name, _, double in ways if double)
     rows = [[number(factor), *(number(lives[at], 3) for _, lives, _ in ways)] for at, factor in enumerate(FACTORS)]
-    return Block("Another load, another life", [
-        f"Twice the life: {words}.", Table("Life over that of now", ["Load over that of now", *(name for name, _, _ in ways)], rows)])
+    table = Table("Life over that of now", ["Load over that of now", *(name for name, _, _ in ways)], rows)
+    return Block("Another load, another life", [f"Twice the life: {words}.", table])
 
 
 def costs(subject, channels):

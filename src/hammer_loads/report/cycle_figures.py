@@ -83,9 +83,10 @@ def cycle_figures(channels):
     if not channels:
         return ["No channel was counted."]
     per_hour = next((c.cycles_per_hour for c in channels if c.cycles_per_hour), None)
-    first, *more = list(filter(None, map(channel_pictures, sorted(channels, key=lambda c: not c.name.endswith("force_z"))))) or [[]]
-    return [Note(f"A damage-equivalent range, repeated {number(per_hour)} times an hour, does the damage of all cycles on a material "
-                 "of this slope (3: welded steel, 5: below its knee, 10: composites). Cycles are those of ASTM E1049, the residue as "
-                 "half cycles. Deviations are those of the loads, all ranges erring alike."),
+    ordered = sorted(channels, key=lambda channel: not channel.name.endswith("force_z"))
+    first, *more = list(filter(None, map(channel_pictures, ordered))) or [[]]
+    return [Note(f"A damage-equivalent range, repeated {number(per_hour)} times an hour, does the damage of all cycles on a "
+                 "material of this slope (3: welded steel, 5: below its knee, 10: composites). Cycles are those of ASTM E1049, "
+                 "the residue as half cycles. Deviations are those of the loads, all ranges erring alike."),
             equivalents_table(channels), *first,
             Details(f"Pictures of {len(more)} more channels", sum(more, [])) if more else None]

@@ -28,7 +28,8 @@ def summary_table(series, of_runs):
         if len(values):
             rows.append([titled(quantity.title, quantity.unit), *values.statistics(), number(values.spread(), 2),
                          number(values.deviation, 2), len(values)])
-    return Table("Over all runs: least and greatest of all revolutions, between them means of runs" if of_runs else "Over all revolutions",
+    caption = "Over all runs: least and greatest of all revolutions, between them means of runs"
+    return Table(caption if of_runs else "Over all revolutions",
                  ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Spread", "Deviation",
                   "Runs" if of_runs else "Values"], rows)
 

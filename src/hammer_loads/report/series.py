@@ -72,8 +72,8 @@ def series_of(subject, quantity):
     """Values of turns in the unit shown, or of runs where the file has no rows of turns."""
     of_runs = not subject.has_rows(quantity.table)
     if of_runs:
-        rows = subject.frame("(first_stamp_ns + last_stamp_ns) / 2 AS stamp_ns, least, mean AS middle, greatest, NULL AS deviation "
-                             "FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?", quantity.key)
+        rows = subject.frame("(first_stamp_ns + last_stamp_ns) / 2 AS stamp_ns, least, mean AS middle, greatest, "
+                             "NULL AS deviation FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?", quantity.key)
     else:
         deviation = quantity.deviation if quantity.deviation in subject.database.columns(quantity.table) else "NULL"
         rows = subject.frame(f"stamp_ns, {value_of(quantity)} AS middle, {deviation} AS deviation "
