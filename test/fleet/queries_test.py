@@ -68,6 +68,7 @@ def test_machines_that_worked_minutes_in_different_years_fill_their_pictures(mer
     assert len(pictures) == 5
     for picture in pictures:
         assert len(picture.x) > 2  # labels of the time
+        assert [len(piece) for piece in picture.curves("line third")] == [4, 4, 4]  # mean and edges join the points of the runs
         places = [x for kind in picture.classes("line") for piece in picture.curves(kind) for x, _ in piece]
         assert max(places) < 200.0  # seconds of work, not years
         assert max(places) - min(places) > 0.9 * (picture.x[-1][0] - picture.x[0][0])
