@@ -36,10 +36,10 @@ class Epoch:
 
     def _channel(self, row, days, is_whole):
         channel, ids = Channel(row, self.per_hour), [int(day) for day in days.day]
-        marks = ", ".join("?" * len(ids))
+        listed = ", ".join(map(str, ids))
         unit = channel.count.width / DEVIATION_UNITS
-        channel.add(self.database.records(TALLY.format(marks), unit, row["channel"], *ids)[0], days.hours.sum())
-        channel.count.add_closed(self.database.rows(CYCLES.format(marks), row["channel"], *ids))
+        channel.add(self.database.records(TALLY.format(listed), unit, row["channel"])[0], days.hours.sum())
+        channel.count.add_closed(self.database.rows(CYCLES.format(listed), row["channel"]))
         total, last_day = Count(*channel.count.grid), self.days.groupby("run").day.last()
         for run, residue in self._residues(row["channel"]).items():
             across = total.join(residue)  # belongs to the last day of the run
