@@ -68,6 +68,11 @@ def test_loads_of_joints_and_sections_are_shown(site):
     shown = page.table("Loads over all revolutions")["section boom_foot, torque y"]
     assert [value(shown[name]) for name in ("Least", "Mean of revolutions", "Greatest")] == pytest.approx(
         [extreme / 1000 for extreme in extremes], abs=1e-6 * abs(extremes[2]))
+    drawn = [y for picture in page.pictures if picture.title == "joint_loads/boom_joint" for kind in picture.classes("line")
+             for piece in picture.curves(kind) for _, y in piece]
+    greatest, = execute(site, "SELECT max(t.maximum) / 1000 FROM turn_loads t JOIN channels USING(run_id, channel) "
+                              "WHERE name LIKE 'joint_loads/boom_joint/%'")[0]
+    assert max(drawn) == pytest.approx(greatest, rel=1e-2)
     for kind, count in execute(site, "SELECT rtrim(name, replace(name, '/', '')), count(*) FROM channels GROUP BY 1"):
         assert sum(len(p.classes("line")) for p in page.pictures if p.title == kind.rstrip("/")) == count, kind
 
