@@ -59,14 +59,14 @@ void Database::Statement::reset() {
   if (statement_) sqlite3_reset(statement_.get());
 }
 
-void Database::Statement::bind(int place, std::int64_t value) {
+void Database::Statement::bindInteger(int place, std::int64_t value) {
   if (database_.good()) database_.check(sqlite3_bind_int64(statement_.get(), place, value));
 }
 
 void Database::Statement::bind(int place, double value) {
   if (!database_.good()) return;
-  database_.check(std::isnan(value) ? sqlite3_bind_null(statement_.get(), place)
-                                    : sqlite3_bind_double(statement_.get(), place, value));
+  database_.check(std::isfinite(value) ? sqlite3_bind_double(statement_.get(), place, value)
+                                       : sqlite3_bind_null(statement_.get(), place));
 }
 
 void Database::Statement::bind(int place, const std::string& value) {

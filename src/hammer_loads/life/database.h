@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -41,10 +42,11 @@ class Database {
     }
     /// One value after another, where their number is not known beforehand: reset(), bind() each place from 1, step().
     void reset();
-    void bind(int place, std::int64_t value);
-    void bind(int place, std::uint64_t value) { bind(place, static_cast<std::int64_t>(value)); }
-    void bind(int place, std::uint32_t value) { bind(place, std::int64_t{value}); }
-    void bind(int place, double value);  ///< NULL for NaN
+    template <typename T, std::enable_if_t<std::is_integral_v<T>, int> = 0>
+    void bind(int place, T value) {
+      bindInteger(place, static_cast<std::int64_t>(value));
+    }
+    void bind(int place, double value);  ///< NULL for what is not finite
     void bind(int place, const std::string& value);
     template <typename T>
     void bind(int place, const std::optional<T>& value) {  ///< NULL for nothing
@@ -58,6 +60,7 @@ class Database {
     std::string text(int column) const;
 
    private:
+    void bindInteger(int place, std::int64_t value);
     struct Finalize {
       void operator()(sqlite3_stmt* statement) const;
     };

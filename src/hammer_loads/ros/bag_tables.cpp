@@ -1,6 +1,6 @@
 #include "hammer_loads/ros/bag_tables.h"
 
-#include <algorithm>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -28,58 +28,6 @@ std::string withoutPaths(const std::string& yaml) {
   return kept;
 }
 
-/// Adds the deviations that no file gives, since a test report states the uncertainty of every input.
-void addUsualDeviations(const HammerParameters& hammer, RunRecord& record) {
-  for (const auto& [key, deviation] : deviationsInForce(hammer)) {
-    const auto has_key = [&key = key](const RunRecord::Parameter& p) { return p.key == key; };
-    if (!(deviation > 0.0) || std::any_of(record.parameters.begin(), record.parameters.end(), has_key)) continue;
-    const std::string value = format("%.3g", deviation);
-    record.parameters.push_back({key, value, value});
-  }
-}
-
-/// The run's record at its beginning.
-RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
-  RunRecord record;
-  const std::string yaml = withoutPaths(settings.yaml);
-  const std::vector<ParameterText> parameters = parameterTexts(configDirectory(), yaml);
-  record.input_sha256 = input_sha256;
-  record.parameters_sha256 = sha256Of({yaml, settings.robot_description});
-  record.machine = digestOf(settings.machine);
-  record.version = packageVersion();
-  record.revision = packageRevision();
-  record.parameters_yaml = yaml;
-  record.equivalent_cycles_per_hour = settings.life.equivalent_cycles_per_hour;
-  record.level = nameOf(settings.pipeline.level);
-  for (const ParameterText& parameter : parameters)
-    record.parameters.push_back({parameter.key, parameter.value, parameter.shipped});
-  addUsualDeviations(settings.mechanism.parameters(), record);
-  return record;
-}
-
-void addCounts(const SampleCounts& counts, RunRecord& record) {
-  record.restarts = counts.restarts;
-  record.backward_passes = counts.backward_passes;
-  record.blank_firings = counts.misuse.blank_firings;
-  record.judged_blows = counts.misuse.judged_blows;
-  record.blows_without_hold_down = counts.misuse.withoutHoldDown();
-  record.still_time = counts.misuse.still().value_or(RunRecord::kUnknown);
-  for (std::size_t i = 0; i < counts.refused.size(); ++i)
-    record.refusals.push_back({kRefusalNames[i], counts.refused[i]});
-  record.refusals.push_back({"beside the blow", counts.beside_blow});
-  record.refusals.push_back({"uncertain", counts.uncertain});
-}
-
-/// Numbers that the filter has learned by the end of the run.
-void addLearned(const CrankFilter& filter, RunRecord& record) {
-  record.consistency = filter.consistency();
-  record.angle_resolution = filter.angleResolution();
-  record.timing_noise = filter.timingNoise();
-  record.speed_noise = filter.speedNoise();
-  record.drive_inertia = filter.driveInertia();
-  record.drive_inertia_relative_std = filter.blowFactor().inertia_std;
-}
-
 }  // namespace
 
 BagTables::BagTables(const std::string& file, const std::vector<std::string>& inputs)
@@ -89,26 +37,26 @@ BagTables::BagTables(const std::string& file, const std::vector<std::string>& in
       writer_(file, pulse_.columns(), blow_.columns()) {}
 
 void BagTables::begin(HammerBridge& bridge) {
-  records_.push_back(recordOf(bridge.settings(), input_sha256_));
+  ++run_;
+  published_ = {};
   traces_ = {};
   longest_step_ = bridge.settings().pipeline.stale_after;
-  life_.begin(bridge, run());
+  life_.begin(bridge, run_);
   HammerOutputs& outputs = bridge.outputs();
   outputs.hull_loads.attach([this](const HullLoads& message, const ros::Time&) { takeSample(message); });
   outputs.pulse.attach(
       [this, &bridge](const Pulse& message, const ros::Time&) { takePulse(message, bridge.pipeline()); });
   outputs.blow.attach([this](const Blow& message, const ros::Time&) {
-    writer_.blow(run(), {message.turn, stampOf(message.header.stamp), blow_.valuesOf(message)});
+    writer_.addTurn("blows", run_, stampOf(message.header.stamp), blow_.valuesOf(message));
   });
 }
 
 void BagTables::takeSample(const HullLoads& message) {
   const StampNs stamp = stampOf(message.header.stamp);
-  RunRecord& record = records_.back();
-  if (!record.first_stamp) record.first_stamp = stamp;
-  const double step = record.last_stamp ? seconds(stamp - *record.last_stamp) : 0.0;
-  if (step > 0.0 && step <= longest_step_) record.duration += step;
-  record.last_stamp = stamp;
+  if (!published_.first) published_.first = stamp;
+  const double step = published_.last ? seconds(stamp - *published_.last) : 0.0;
+  if (step > 0.0 && step <= longest_step_) published_.duration += step;
+  published_.last = stamp;
   traces_.add({stamp, message.force_x, message.force_z, message.torque_y, message.force_z_std, message.crank_angle});
 }
 
@@ -118,41 +66,78 @@ void BagTables::takeHealth(std::uint64_t turn, const BoomFollower& boom) {
   for (int i = 0; i < health->count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const BoomHealth::OfCylinder& c = health->cylinder[at];
-    writer_.boomCylinder(run(), {turn, boom.boom().cylinders()[at].parameters().name, c.joint_angle, c.stiffness,
-                                 c.deviation, !health->oil_explains});
     const BoomHealth::OfMode& m = health->mode[at];
-    writer_.boomMode(run(), {turn, i + 1, m.frequency, m.deviation, m.damping, m.damping_std});
+    writer_.add("boom_cylinders", run_, turn, boom.boom().cylinders()[at].parameters().name, c.joint_angle, c.stiffness,
+                c.deviation, !health->oil_explains);
+    writer_.add("boom_modes", run_, turn, i + 1, m.frequency, m.deviation, m.damping, m.damping_std);
   }
 }
 
 void BagTables::takePulse(const Pulse& message, const Pipeline& pipeline) {
   const StampNs stamp = stampOf(message.header.stamp);
-  writer_.turn(run(), {message.turn, stamp, pulse_.valuesOf(message)});
+  writer_.addTurn("turns", run_, stamp, pulse_.valuesOf(message));
   traces_.turnEnded(message.turn, stamp, message.period, message.amplitude);
   if (pipeline.boom()) takeHealth(message.turn, *pipeline.boom());
 }
 
+void BagTables::addParameters(const Settings& settings, const std::string& yaml) {
+  std::set<std::string> given;
+  for (const ParameterText& parameter : parameterTexts(configDirectory(), yaml)) {
+    given.insert(parameter.key);
+    writer_.add("parameters", run_, parameter.key, parameter.value, parameter.shipped);
+  }
+  // A test report states the uncertainty of every input, also the deviations that no file gives.
+  for (const auto& [key, deviation] : deviationsInForce(settings.mechanism.parameters())) {
+    const std::string value = format("%.3g", deviation);
+    if (deviation > 0.0 && given.count(key) == 0) writer_.add("parameters", run_, key, value, value);
+  }
+}
+
+void BagTables::addRefusals(const SampleCounts& counts) {
+  const auto add = [this](const std::string& reason, std::uint64_t count) {
+    if (count > 0) writer_.add("refusals", run_, reason, count);
+  };
+  for (std::size_t i = 0; i < counts.refused.size(); ++i) add(kRefusalNames[i], counts.refused[i]);
+  add("beside the blow", counts.beside_blow);
+  add("uncertain", counts.uncertain);
+}
+
+void BagTables::addTrace(const char* kind, const TurnTrace& trace) {
+  std::int64_t place = 0;
+  for (const TraceSample& s : trace.samples)
+    writer_.add("traces", run_, kind, trace.turn, place++, seconds(s.stamp - trace.start), s.force_x, s.force_z,
+                s.torque_y, s.force_z_std, s.crank_angle);
+}
+
 void BagTables::end(const HammerBridge& bridge, std::uint64_t samples) {
-  RunRecord& record = records_.back();
-  record.samples = samples;
-  record.published = bridge.outputs().hull_loads.sent();
-  record.turns = bridge.outputs().pulse.sent();
-  record.blows = bridge.outputs().blow.sent();
-  addCounts(bridge.pipeline().counts(), record);
-  addLearned(bridge.pipeline().crank().tracker(), record);
-  record.hull_pitch = bridge.pipeline().hull().pitch().pitch();
-  writer_.traces(run(), traces_);
+  const Settings& settings = bridge.settings();
+  const Pipeline& pipeline = bridge.pipeline();
+  const SampleCounts& counts = pipeline.counts();
+  const CrankFilter& filter = pipeline.crank().tracker();
+  const HammerOutputs& outputs = bridge.outputs();
+  const std::string yaml = withoutPaths(settings.yaml);
+  const std::string parameters = sha256Of({yaml, settings.robot_description});
+  const std::string key = sha256Of({input_sha256_, parameters, packageVersion(), std::to_string(run_)});
+  writer_.add("runs", run_, key, input_sha256_, parameters, digestOf(settings.machine), packageVersion(),
+              packageRevision(), yaml, published_.first, published_.last, published_.duration,
+              nameOf(settings.pipeline.level), samples, outputs.hull_loads.sent(), counts.restarts,
+              outputs.pulse.sent(), outputs.blow.sent(), counts.backward_passes, filter.consistency(),
+              filter.timingNoise(), filter.speedNoise(), filter.angleResolution(), filter.driveInertia(),
+              filter.blowFactor().inertia_std, settings.life.equivalent_cycles_per_hour, counts.misuse.blank_firings,
+              counts.misuse.judged_blows, counts.misuse.withoutHoldDown(), counts.misuse.still(),
+              pipeline.hull().pitch().pitch());
+  addParameters(settings, yaml);
+  addRefusals(counts);
+  if (const TurnTrace* typical = traces_.typical()) addTrace("typical", *typical);
+  if (traces_.worst()) addTrace("worst", *traces_.worst());
   life_.end(bridge);
 }
 
 void BagTables::finish(const std::vector<BagWarning>& warnings) {
-  std::int64_t run = 0;
-  for (RunRecord& record : records_) {
-    ++run;
-    for (const BagWarning& warning : warnings) {
-      if (warning.run == 0 || warning.run == run) record.warnings.push_back({warning.key, warning.text});
-    }
-    writer_.run(run, record);
+  for (std::int64_t run = 1; run <= run_; ++run) {
+    std::int64_t place = 0;
+    for (const BagWarning& warning : warnings)
+      if (warning.run == 0 || warning.run == run) writer_.add("warnings", run, place++, warning.key, warning.text);
   }
   writer_.finish();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "hammer_loads/ros/life_tables.h"
 #include "hammer_loads/ros/number_fields.h"
 #include "hammer_loads/tables/table_writer.h"
+#include "hammer_loads/tables/turn_traces.h"
 
 namespace hammer_loads {
 
@@ -29,16 +31,24 @@ class BagTables {
   const std::string& problem() const { return writer_.problem(); }
 
  private:
+  /// Stamps of published samples [ns], and the time between them, gaps left out [s].
+  struct Published {
+    std::optional<StampNs> first, last;
+    double duration{};
+  };
   void takeSample(const HullLoads& message);
   void takePulse(const Pulse& message, const Pipeline& pipeline);
   void takeHealth(std::uint64_t turn, const BoomFollower& boom);
-  std::int64_t run() const { return static_cast<std::int64_t>(records_.size()); }
+  void addParameters(const Settings& settings, const std::string& yaml);
+  void addRefusals(const SampleCounts& counts);
+  void addTrace(const char* kind, const TurnTrace& trace);
 
   std::string input_sha256_;
   NumberFields pulse_, blow_;
   TableWriter writer_;
   LifeTables life_{writer_};
-  std::vector<RunRecord> records_;  ///< the last one is of the run at work
+  std::int64_t run_{};  ///< number of the run at work, from 1
+  Published published_;
   TurnTraces traces_;
   double longest_step_{};  ///< between samples of one piece [s]
 };

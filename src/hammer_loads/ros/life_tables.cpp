@@ -8,43 +8,6 @@
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {
-namespace {
-
-void addCurve(const life::LifeSettings& settings, const std::string& name, ChannelCount& count) {
-  for (const life::HotSpot& spot : settings.hot_spots) {
-    if (life::countedName(life::hotSpotChannel(spot), settings.bandwidth) != name || !spot.curve) continue;
-    count.sn_knee_range = spot.curve->kneeRange();
-    count.sn_knee_cycles = spot.curve->kneeCycles();
-    count.sn_slope = spot.curve->slope();
-    count.sn_slope_below = spot.curve->slopeBelow();
-    if (spot.mean_stress) count.mean_stress_sensitivity = spot.mean_stress->sensitivity;
-  }
-}
-
-ChannelCount countOf(const ChannelCycles& message, const life::LifeSettings& settings) {
-  ChannelCount count;
-  count.least = message.least;
-  count.greatest = message.greatest;
-  count.classes = message.classes;
-  count.samples = message.samples;
-  count.skipped = message.skipped;
-  count.below = message.below;
-  count.above = message.above;
-  count.gaps = message.gaps;
-  count.minimum = message.minimum;
-  count.maximum = message.maximum;
-  count.mean_std = message.mean_std;
-  count.range_own_std = message.range_own_std;
-  count.range_systematic_std = message.range_systematic_std;
-  count.steps = message.steps;
-  count.low = message.low;
-  count.count = message.count;
-  count.residue = message.residue;
-  addCurve(settings, message.name, count);
-  return count;
-}
-
-}  // namespace
 
 void LifeTables::begin(HammerBridge& bridge, std::int64_t run) {
   run_ = run;
@@ -61,22 +24,24 @@ void LifeTables::begin(HammerBridge& bridge, std::int64_t run) {
 void LifeTables::takeTurn(const TurnLoads& message) {
   if (!message.whole) return;
   for (std::size_t i = 0; i < message.channel.size(); ++i)
-    writer_->turnLoad(run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i],
-                             message.mean[i], message.minimum_std[i], message.maximum_std[i],
-                             message.minimum_systematic_std[i], message.maximum_systematic_std[i]});
+    writer_->add("turn_loads", run_, message.turn, i, message.minimum[i], message.maximum[i], message.mean[i],
+                 message.minimum_std[i], message.maximum_std[i], message.minimum_systematic_std[i],
+                 message.maximum_systematic_std[i]);
 }
 
+/// An alarm lasts from the turn that raised it to the last one of the same level; its value is the one farthest beyond
+/// the limit.
 void LifeTables::takeAlarms(const Alarms& message) {
   for (const Alarm& alarm : message.alarm) {
-    const std::int64_t since = stampOf(alarm.since);
-    auto row = std::find_if(alarms_.rbegin(), alarms_.rend(), [&](const AlarmRow& r) { return r.name == alarm.name; });
-    if (row == alarms_.rend() || row->since != since) {
-      alarms_.push_back({alarm.name, alarm.unit, alarm.level, alarm.value, alarm.value_std, alarm.limit, since, 0, 0});
+    auto row = std::find_if(alarms_.rbegin(), alarms_.rend(),
+                            [&](const RaisedAlarm& raised) { return raised.alarm.name == alarm.name; });
+    if (row == alarms_.rend() || row->alarm.since != alarm.since) {
+      alarms_.push_back({alarm, {}, 0});
       row = alarms_.rbegin();
     }
-    if (std::abs(alarm.value - alarm.limit) > std::abs(row->value - row->limit))
-      row->value = alarm.value, row->std = alarm.value_std;
-    row->until = stampOf(message.header.stamp);
+    if (std::abs(alarm.value - alarm.limit) > std::abs(row->alarm.value - row->alarm.limit))
+      row->alarm.value = alarm.value, row->alarm.value_std = alarm.value_std;
+    row->until = message.header.stamp;
     ++row->turns;
   }
 }
@@ -85,7 +50,8 @@ void LifeTables::write(const BudgetFigure& figure) {
   double all = 0.0;
   for (const BudgetFigure::Source& source : figure.sources) all += source.variance;
   for (const BudgetFigure::Source& source : figure.sources)
-    writer_->budget(run_, {figure.quantity, figure.value, figure.deviation, source.name, source.variance / all});
+    writer_->add("budget", run_, figure.quantity, life::unitOf(figure.quantity), figure.value, figure.deviation,
+                 source.name, source.variance / all);
 }
 
 /// A channel's range has the parts of its own turns; of the boom's, whose constants are not separated, those of all
@@ -111,23 +77,49 @@ void LifeTables::writeBudget() {
   }
 }
 
+void LifeTables::writeReference(const ReferenceComparison& comparison) {
+  for (std::size_t i = 0; i < ReferenceComparison::kComponents; ++i) {
+    const ReferenceFigures f = comparison.figures(i);
+    const std::string name = ReferenceComparison::kNames[i];
+    if (f.samples > 0)
+      writer_->add("reference", run_, name, life::unitOf(name), f.samples, f.rms, f.rms_error, f.bias, f.scale,
+                   f.correlation, f.within_two_std);
+  }
+}
+
+void LifeTables::writeCount(std::size_t number, const ChannelCycles& m, const life::LedgerChannel& channel) {
+  const auto ofCurve = [&](double (life::SnCurve::*figure)() const) {
+    return channel.curve ? ((*channel.curve).*figure)() : kNaN;
+  };
+  writer_->add("channels", run_, number, m.name, m.unit, true, m.least, m.greatest, m.classes, m.samples, m.skipped,
+               m.below, m.above, m.gaps, m.minimum, m.maximum, m.mean_std, m.range_own_std, m.range_systematic_std,
+               ofCurve(&life::SnCurve::kneeRange), ofCurve(&life::SnCurve::kneeCycles), ofCurve(&life::SnCurve::slope),
+               ofCurve(&life::SnCurve::slopeBelow), channel.mean_stress ? channel.mean_stress->sensitivity : kNaN);
+  for (std::size_t i = 0; i < m.count.size(); ++i)
+    writer_->add("cycles", run_, number, m.steps[i], m.low[i], m.count[i]);
+  for (std::size_t i = 0; i < m.residue.size(); ++i) writer_->add("residues", run_, number, i, m.residue[i]);
+}
+
 void LifeTables::end(const HammerBridge& bridge) {
   writeBudget();
-  for (const AlarmRow& row : alarms_) writer_->alarm(run_, row);
-  for (std::size_t i = 0; i < ReferenceComparison::kComponents; ++i) {
-    const ReferenceFigures f = bridge.comparison().figures(i);
-    if (f.samples > 0)
-      writer_->reference(run_, {ReferenceComparison::kNames[i], life::unitOf(ReferenceComparison::kNames[i]), f.samples,
-                                f.rms, f.rms_error, f.bias, f.scale, f.correlation, f.within_two_std});
+  for (const RaisedAlarm& raised : alarms_) {
+    const Alarm& a = raised.alarm;
+    writer_->add("alarms", run_, a.name, a.level, a.unit, a.value, a.value_std, a.limit, stampOf(a.since),
+                 stampOf(raised.until), raised.turns);
   }
-  std::vector<ChannelRecord> records;
-  for (const std::string& name : bridge.outputs().turn_loads.message.channel) records.push_back({name, {}});
-  for (const ChannelCycles& counted : cycles_.channel) {
-    auto record = std::find_if(records.begin(), records.end(), [&](const auto& r) { return r.name == counted.name; });
-    if (record == records.end()) record = records.insert(records.end(), {counted.name, {}});
-    record->count = countOf(counted, bridge.settings().life);
+  writeReference(bridge.comparison());
+  std::vector<std::string> names = bridge.outputs().turn_loads.message.channel;
+  for (const ChannelCycles& counted : cycles_.channel)
+    if (std::count(names.begin(), names.end(), counted.name) == 0) names.push_back(counted.name);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto counted = std::find_if(cycles_.channel.begin(), cycles_.channel.end(),
+                                      [&](const ChannelCycles& cycles) { return cycles.name == names[i]; });
+    const auto at = static_cast<std::size_t>(counted - cycles_.channel.begin());
+    if (counted != cycles_.channel.end())
+      writeCount(i, *counted, bridge.life().machine().channels[at]);
+    else
+      writer_->add("channels(run_id, channel, name, unit, counted)", run_, i, names[i], life::unitOf(names[i]), false);
   }
-  for (std::size_t i = 0; i < records.size(); ++i) writer_->channel(run_, static_cast<std::int64_t>(i), records[i]);
 }
 
 }  // namespace hammer_loads

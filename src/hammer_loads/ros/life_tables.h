@@ -28,11 +28,19 @@ class LifeTables {
   void takeAlarms(const Alarms& message);
   void writeBudget();
   void write(const BudgetFigure& figure);
+  void writeReference(const ReferenceComparison& comparison);
+  void writeCount(std::size_t number, const ChannelCycles& message, const life::LedgerChannel& channel);
+
+  struct RaisedAlarm {
+    Alarm alarm;
+    ros::Time until;        ///< stamp of the last turn of this level
+    std::uint64_t turns{};  ///< judged turns of this level
+  };
 
   TableWriter* writer_;
   std::int64_t run_{};
   std::optional<BudgetRecorder> budget_;
-  std::vector<AlarmRow> alarms_;
+  std::vector<RaisedAlarm> alarms_;
   LoadCycles cycles_;  ///< the last message: all of the run so far
 };
 

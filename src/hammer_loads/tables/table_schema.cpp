@@ -185,8 +185,8 @@ std::string turnTable(const std::string& name, const std::vector<TableColumn>& c
                     "(\n  run_id INTEGER,  -- [-] number of the run\n"
                     "  turn INTEGER,  -- [-] number of the blow that ends the turn, 1 for the first of the run\n"
                     "  stamp_ns INTEGER,  -- [ns] stamp of that blow\n";
-  for (const TableColumn& column : columns) {
-    if (column.name == "turn") continue;
+  for (std::size_t i = 1; i < columns.size(); ++i) {
+    const TableColumn& column = columns[i];
     sql += "  " + column.name + (column.is_integer ? " INTEGER" : " REAL") + ",  -- [" + column.unit + "] " +
            column.description + '\n';
   }

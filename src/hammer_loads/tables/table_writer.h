@@ -1,76 +1,30 @@
-/// Results of runs into a SQLite file, in one transaction.
+/// Writer of tables into a SQLite file, in one transaction.
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "hammer_loads/life/database.h"
-#include "hammer_loads/tables/channel_record.h"
-#include "hammer_loads/tables/run_record.h"
 #include "hammer_loads/tables/table_schema.h"
-#include "hammer_loads/tables/turn_traces.h"
 
 namespace hammer_loads {
-
-/// Values of a turn's or a blow's columns, in their order.
-struct TurnRow {
-  std::uint64_t turn{};
-  std::int64_t stamp{};  ///< [ns]
-  const std::vector<double>& values;
-};
-
-/// Oil of a boom's cylinder or vibration mode at the end of a revolution; cylinder: its name; mode: from 1.
-struct BoomCylinderRow {
-  std::uint64_t turn{};
-  std::string cylinder;
-  double joint_angle{};             ///< [rad]
-  double stiffness{}, deviation{};  ///< over that of the boom file, standard [-]
-  bool doubtful{};                  ///< something else than oil damps the boom
-};
-struct BoomModeRow {
-  std::uint64_t turn{};
-  std::int64_t mode{};
-  double frequency{}, frequency_std{};  ///< [Hz]
-  double damping{}, damping_std{};      ///< [-]
-};
-
-/// An alarm from the turn that raised it to the last one of the same level.
-struct AlarmRow {
-  std::string name, unit;
-  std::int64_t level{};
-  double value{}, std{}, limit{};  ///< value: farthest beyond the limit
-  std::int64_t since{}, until{};   ///< stamps of those turns [ns]
-  std::uint64_t turns{};
-};
-
-/// One component of the computed load beside a measured one (ReferenceFigures).
-struct ReferenceRow {
-  std::string component, unit;
-  std::uint64_t samples{};
-  double rms{}, rms_error{}, bias{}, scale{}, correlation{}, within_two_std{};
-};
 
 /// No function throws: problem() returns the first error, after which all calls have no effect.
 class TableWriter {
  public:
-  /// The file must be empty.
-  TableWriter(const std::string& file, std::vector<TableColumn> turn, std::vector<TableColumn> blow);
+  /// The file must be empty. turn, blow: columns of the tables `turns` and `blows`, of which the first is `turn`.
+  TableWriter(const std::string& file, const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow);
 
-  /// Run numbers begin with 1. The columns `turn` are the rows' own.
-  void turn(std::int64_t run, const TurnRow& row);
-  void blow(std::int64_t run, const TurnRow& row);
-  void turnLoad(std::int64_t run, const TurnLoad& load);
-  /// number: as in the turns' loads.
-  void channel(std::int64_t run, std::int64_t number, const ChannelRecord& record);
-  void boomCylinder(std::int64_t run, const BoomCylinderRow& row);
-  void boomMode(std::int64_t run, const BoomModeRow& row);
-  void alarm(std::int64_t run, const AlarmRow& row);
-  void reference(std::int64_t run, const ReferenceRow& row);
-  void budget(std::int64_t run, const BudgetRow& row);
-  void traces(std::int64_t run, const TurnTraces& traces);
-  void run(std::int64_t run, const RunRecord& record);
+  /// Adds a row with the values of all columns, in their order, or of those that `table` lists behind its name. NULL
+  /// is written for nothing and for a number that is not finite.
+  template <typename... Values>
+  void add(const std::string& table, const Values&... values) {
+    insertInto(table, sizeof...(values)).run(values...);
+  }
+  /// Adds a row to `turns` or `blows`. stamp [ns]; values: of the message's columns, in their order.
+  void addTurn(const std::string& table, std::int64_t run, std::int64_t stamp, const std::vector<double>& values);
   /// Ends the transaction: all of the file is written.
   void finish();
 
@@ -79,19 +33,10 @@ class TableWriter {
 
  private:
   using Statement = life::Database::Statement;
-  struct TurnTable {
-    TurnTable(life::Database& database, const std::string& name, std::vector<TableColumn> columns);
-    void add(std::int64_t run, const TurnRow& row);
-    std::vector<TableColumn> columns;
-    Statement insert;
-  };
-
-  void count(std::int64_t run, std::int64_t channel, const ChannelRecord& record);
-  void trace(std::int64_t run, const std::string& kind, const TurnTrace& trace);
+  Statement& insertInto(const std::string& table, std::size_t values);
 
   life::Database database_;
-  std::optional<TurnTable> turns_, blows_;
-  std::optional<Statement> turn_load_, boom_cylinder_, boom_mode_;
+  std::map<std::string, Statement> inserts_;  ///< by table
 };
 
 }  // namespace hammer_loads
