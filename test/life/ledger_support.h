@@ -114,8 +114,8 @@ inline Contents contentsOf(const std::string& path) {
   contents.epochs = reader.value->epochs();
   for (const LedgerEpoch& epoch : contents.epochs) {
     contents.totals.emplace_back();
-    for (std::size_t i = 0; i < epoch.machine.channels.size(); ++i)
-      contents.totals.back().push_back(reader.value->total(epoch, i));
+    for (const LedgerChannel& channel : epoch.machine.channels)
+      contents.totals.back().push_back(reader.value->counts(epoch, channel).total);
   }
   contents.problem = reader.value->problem();
   return contents;

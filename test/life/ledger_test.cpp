@@ -149,11 +149,12 @@ std::vector<std::string> daysWithPeriod(std::int64_t period) {
   LedgerReader reader = LedgerReader::open(file.path()).value.value();
   const LedgerEpoch epoch = reader.epochs().at(0);
   std::vector<std::string> days;
-  for (const LedgerDay& day : epoch.days) {
-    days.push_back(day.date + " " + std::to_string(day.duration));
-    for (std::size_t i = 0; i < 2; ++i) days.push_back(textOf(reader.ofDay(epoch, i, day)));
+  for (const LedgerDay& day : epoch.days) days.push_back(day.date + " " + std::to_string(day.duration));
+  for (const LedgerChannel& channel : epoch.machine.channels) {
+    const LedgerCounts counts = reader.counts(epoch, channel);
+    for (const CycleCount& count : counts.days) days.push_back(textOf(count));
+    days.push_back(textOf(counts.total));
   }
-  for (std::size_t i = 0; i < 2; ++i) days.push_back(textOf(reader.total(epoch, i)));
   return days;
 }
 

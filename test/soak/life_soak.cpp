@@ -95,7 +95,7 @@ int run(const std::string& directory, std::uint64_t samples) {
   verdict.demand(std::abs(memory.growth()) <= 0.02, "memory of the last quarter within 2 % of the first");
   Checked<life::LedgerReader> reader = life::LedgerReader::open(path);
   const std::vector<life::LedgerEpoch> epochs = reader.value.value().epochs();
-  const life::CycleCount total = reader.value->total(epochs.at(0), 0);
+  const life::CycleCount total = reader.value->counts(epochs.at(0), epochs[0].machine.channels[0]).total;
   std::uint64_t blows = 0;
   for (const life::LedgerDay& day : epochs[0].days) blows += day.turns;
   verdict.tell("cells", static_cast<double>(total.closed.size()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "hammer_loads/life/count_csv.h"
 #include "hammer_loads/util/format.h"
@@ -10,25 +11,39 @@
 namespace hammer_loads {
 namespace {
 
-using life::ChannelFigures;
 using life::ChannelReport;
-using life::DayFigures;
 using life::EpochReport;
 using life::Figure;
+using life::PeriodFigures;
+using Row = std::vector<std::string>;
+
+constexpr std::size_t kTallies = 4;
+constexpr std::pair<const char*, std::uint64_t life::SampleTally::*> kTallyNames[kTallies] = {
+    {"below", &life::SampleTally::below},
+    {"above", &life::SampleTally::above},
+    {"skipped", &life::SampleTally::skipped},
+    {"gaps", &life::SampleTally::gaps}};
 
 std::string slopeName(std::size_t i) { return life::shortNumber(life::kSlopes[i]); }
 
-// --- Text ---------------------------------------------------------------------------------------------------------
+/// Names and figures that have standard deviations, in the order of the columns.
+std::vector<std::pair<std::string, std::optional<Figure>>> named(const life::ChannelFigures& figures) {
+  std::vector<std::pair<std::string, std::optional<Figure>>> all;
+  for (std::size_t i = 0; i < life::kSlopeCount; ++i)
+    all.emplace_back("equivalent_range_" + slopeName(i), figures.equivalent_range[i]);
+  all.emplace_back("damage", figures.damage);
+  all.emplace_back("remaining_hours", figures.remaining_hours);
+  return all;
+}
 
-using Row = std::vector<std::string>;
+// --- Text ---------------------------------------------------------------------------------------------------------
 
 std::string number(double value) { return std::isnan(value) ? "-" : format("%.5g", value); }
 
-std::string withDeviation(const Figure& figure) {
-  return number(figure.value) + (std::isnan(figure.deviation) ? "" : format(" +- %.2g", figure.deviation));
+std::string withDeviation(const std::optional<Figure>& figure) {
+  if (!figure) return "-";
+  return number(figure->value) + (std::isnan(figure->deviation) ? "" : format(" +- %.2g", figure->deviation));
 }
-
-std::string withDeviation(const std::optional<Figure>& figure) { return figure ? withDeviation(*figure) : "-"; }
 
 /// Columns aligned, the first to the left.
 std::string aligned(const std::vector<Row>& rows) {
@@ -48,45 +63,38 @@ std::string aligned(const std::vector<Row>& rows) {
   return text;
 }
 
-Row figureTitles() {
-  Row titles{"hours", "blows"};
+Row figureTitles(Row titles) {
+  titles.insert(titles.end(), {"hours", "blows"});
   for (std::size_t i = 0; i < life::kSlopeCount; ++i) titles.push_back("range m=" + slopeName(i));
   titles.insert(titles.end(), {"largest", "damage"});
   return titles;
 }
 
-Row figureCells(double hours, std::uint64_t blows, const ChannelFigures& figures) {
-  Row cells{number(hours), std::to_string(blows)};
-  for (const Figure& range : figures.equivalent_range) cells.push_back(withDeviation(range));
-  cells.push_back(number(figures.largest_range));
-  cells.push_back(withDeviation(figures.damage));
+Row figureCells(Row cells, const PeriodFigures& period) {
+  cells.insert(cells.end(), {number(period.hours), std::to_string(period.blows)});
+  for (const Figure& range : period.figures.equivalent_range) cells.push_back(withDeviation(range));
+  cells.insert(cells.end(), {number(period.figures.largest_range), withDeviation(period.figures.damage)});
   return cells;
 }
 
-Row joined(Row first, const Row& rest) {
-  first.insert(first.end(), rest.begin(), rest.end());
-  return first;
-}
-
 std::string channelTable(const std::vector<ChannelReport>& channels) {
-  Row titles = joined({"channel", "unit"}, figureTitles());
+  Row titles = figureTitles({"channel", "unit"});
   titles.insert(titles.end(), {"hours left", "saturated", "skipped", "gaps"});
   std::vector<Row> rows{titles};
   for (const ChannelReport& c : channels) {
-    Row row = joined({c.name, c.unit}, figureCells(c.hours, c.blows, c.figures));
-    row.push_back(withDeviation(c.figures.remaining_hours));
-    row.push_back(std::to_string(c.tally.below + c.tally.above));
-    row.push_back(std::to_string(c.tally.skipped));
-    row.push_back(std::to_string(c.tally.gaps));
+    const PeriodFigures& all = c.periods.front();
+    Row row = figureCells({c.name, c.unit}, all);
+    row.insert(row.end(), {withDeviation(all.figures.remaining_hours), std::to_string(c.tally.below + c.tally.above),
+                           std::to_string(c.tally.skipped), std::to_string(c.tally.gaps)});
     rows.push_back(row);
   }
   return aligned(rows);
 }
 
 std::string dayTable(const ChannelReport& channel) {
-  std::vector<Row> rows{joined({"day"}, figureTitles())};
-  for (const DayFigures& day : channel.days)
-    rows.push_back(joined({day.date}, figureCells(day.hours, day.blows, day.figures)));
+  std::vector<Row> rows{figureTitles({"day"})};
+  for (std::size_t i = 1; i < channel.periods.size(); ++i)
+    rows.push_back(figureCells({channel.periods[i].day}, channel.periods[i]));
   return channel.name + " [" + channel.unit + "], by the day on which a cycle closed (UTC)\n" + aligned(rows);
 }
 
@@ -105,10 +113,6 @@ std::string epochText(const EpochReport& report) {
 
 std::string cell(double value) { return std::isnan(value) ? "" : life::shortNumber(value); }
 
-std::string cells(const std::optional<Figure>& figure) {
-  return figure ? ',' + cell(figure->value) + ',' + cell(figure->deviation) + ',' + cell(figure->common) : ",,,";
-}
-
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string result = "\"";
@@ -116,31 +120,24 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-std::string csvFigures(double hours, std::uint64_t blows, const ChannelFigures& f) {
-  std::string line = cell(hours) + ',' + std::to_string(blows) + ',' + cell(f.cycles) + ',' + cell(f.largest_range);
-  for (const Figure& range : f.equivalent_range) line += cells(range);
-  return line + cells(f.damage) + cells(f.remaining_hours);
-}
-
 std::string csvHeader() {
   std::string header = "epoch,channel,unit,day,hours,blows,cycles,largest_range";
-  const auto figure = [&](const std::string& name) {
-    header += ',' + name + ',' + name + "_std," + name + "_systematic_std";
-  };
-  for (std::size_t i = 0; i < life::kSlopeCount; ++i) figure("equivalent_range_" + slopeName(i));
-  figure("damage");
-  figure("remaining_hours");
-  return header + ",below,above,skipped,gaps\n";
+  for (const auto& [name, figure] : named({})) header += ',' + name + ',' + name + "_std," + name + "_systematic_std";
+  for (const auto& [name, count] : kTallyNames) header += ',' + std::string(name);
+  return header + '\n';
 }
 
 std::string csvLines(std::int64_t epoch, const ChannelReport& c) {
-  const std::string begin = std::to_string(epoch) + ',' + quoted(c.name) + ',' + quoted(c.unit) + ',';
-  std::string lines = begin + "all," + csvFigures(c.hours, c.blows, c.figures);
-  for (const std::uint64_t count : {c.tally.below, c.tally.above, c.tally.skipped, c.tally.gaps})
-    lines += ',' + std::to_string(count);
-  lines += '\n';
-  for (const DayFigures& day : c.days)
-    lines += begin + day.date + ',' + csvFigures(day.hours, day.blows, day.figures) + ",,,,\n";
+  std::string lines;
+  for (const PeriodFigures& p : c.periods) {
+    lines += std::to_string(epoch) + ',' + quoted(c.name) + ',' + quoted(c.unit) + ',' + p.day + ',' + cell(p.hours) +
+             ',' + std::to_string(p.blows) + ',' + cell(p.figures.cycles) + ',' + cell(p.figures.largest_range);
+    for (const auto& [name, figure] : named(p.figures))
+      lines += figure ? ',' + cell(figure->value) + ',' + cell(figure->deviation) + ',' + cell(figure->common) : ",,,";
+    for (const auto& [name, count] : kTallyNames)  // known of all days together
+      lines += ',' + (&p == c.periods.data() ? std::to_string(c.tally.*count) : "");
+    lines += '\n';
+  }
   return lines;
 }
 
@@ -149,35 +146,29 @@ std::string csvLines(std::int64_t epoch, const ChannelReport& c) {
 using Json = nlohmann::json;
 
 /// Keys are sorted by name; null is written for what is no finite number.
-Json json(const Figure& figure) {
-  return {{"value", figure.value}, {"std", figure.deviation}, {"systematic_std", figure.common}};
-}
-Json json(const std::optional<Figure>& figure) { return figure ? json(*figure) : Json(nullptr); }
-
-Json json(double hours, std::uint64_t blows, const ChannelFigures& f) {
-  Json object{{"hours", hours}, {"blows", blows}, {"cycles", f.cycles}, {"largest_range", f.largest_range}};
-  for (std::size_t i = 0; i < life::kSlopeCount; ++i)
-    object["equivalent_range_" + slopeName(i)] = json(f.equivalent_range[i]);
-  object["damage"] = json(f.damage);
-  object["remaining_hours"] = json(f.remaining_hours);
+Json json(const PeriodFigures& p) {
+  Json object{
+      {"hours", p.hours}, {"blows", p.blows}, {"cycles", p.figures.cycles}, {"largest_range", p.figures.largest_range}};
+  for (const auto& [name, figure] : named(p.figures)) {
+    object[name] = nullptr;
+    if (figure)
+      object[name] = {{"value", figure->value}, {"std", figure->deviation}, {"systematic_std", figure->common}};
+  }
   return object;
 }
 
 Json json(const ChannelReport& c) {
-  Json object{{"channel", c.name}, {"unit", c.unit}};
-  object.update(json(c.hours, c.blows, c.figures));
-  object["least"] = c.extremes.least;
-  object["greatest"] = c.extremes.greatest;
-  object["samples"] = c.tally.counted;
-  object["below"] = c.tally.below;
-  object["above"] = c.tally.above;
-  object["skipped"] = c.tally.skipped;
-  object["gaps"] = c.tally.gaps;
-  object["days"] = Json::array();
-  for (const DayFigures& day : c.days) {
-    Json entry{{"day", day.date}};
-    entry.update(json(day.hours, day.blows, day.figures));
-    object["days"].push_back(entry);
+  Json object = json(c.periods.front());
+  object.update({{"channel", c.name},
+                 {"unit", c.unit},
+                 {"least", c.extremes.least},
+                 {"greatest", c.extremes.greatest},
+                 {"samples", c.tally.counted},
+                 {"days", Json::array()}});
+  for (const auto& [name, count] : kTallyNames) object[name] = c.tally.*count;
+  for (std::size_t i = 1; i < c.periods.size(); ++i) {
+    object["days"].push_back(json(c.periods[i]));
+    object["days"].back()["day"] = c.periods[i].day;
   }
   return object;
 }

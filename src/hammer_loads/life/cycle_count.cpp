@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "hammer_loads/life/four_point.h"
@@ -14,6 +15,15 @@ ClosedCycles between(std::uint32_t b, std::uint32_t c, std::uint64_t count) {
 }
 
 }  // namespace
+
+void SampleTally::add(const SampleTally& o) {
+  for (const TallyColumn& column : kTallyColumns) this->*column.number += o.*column.number;
+}
+
+bool SampleTally::operator==(const SampleTally& o) const {
+  return std::all_of(std::begin(kTallyColumns), std::end(kTallyColumns),
+                     [&](const TallyColumn& column) { return this->*column.number == o.*column.number; });
+}
 
 void sortClosed(std::vector<ClosedCycles>& closed) {
   std::sort(closed.begin(), closed.end());

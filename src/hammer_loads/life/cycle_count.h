@@ -34,24 +34,25 @@ struct SampleTally {
   /// 1/kRangeUnits of a class width squared, whole numbers as above.
   std::uint64_t range_square{}, range_own{}, range_common{};
 
-  void add(const SampleTally& o) {
-    counted += o.counted;
-    skipped += o.skipped;
-    below += o.below;
-    above += o.above;
-    gaps += o.gaps;
-    deviations += o.deviations;
-    deviation_sum += o.deviation_sum;
-    range_square += o.range_square;
-    range_own += o.range_own;
-    range_common += o.range_common;
-  }
-  bool operator==(const SampleTally& o) const {
-    return counted == o.counted && skipped == o.skipped && below == o.below && above == o.above && gaps == o.gaps &&
-           deviations == o.deviations && deviation_sum == o.deviation_sum && range_square == o.range_square &&
-           range_own == o.range_own && range_common == o.range_common;
-  }
+  void add(const SampleTally& o);
+  bool operator==(const SampleTally& o) const;
 };
+
+/// Numbers of a tally with the names of their columns in a ledger.
+struct TallyColumn {
+  const char* name;
+  std::uint64_t SampleTally::*number;
+};
+inline constexpr TallyColumn kTallyColumns[] = {{"counted", &SampleTally::counted},
+                                                {"skipped", &SampleTally::skipped},
+                                                {"below", &SampleTally::below},
+                                                {"above", &SampleTally::above},
+                                                {"gaps", &SampleTally::gaps},
+                                                {"deviations", &SampleTally::deviations},
+                                                {"deviation_sum", &SampleTally::deviation_sum},
+                                                {"range_square", &SampleTally::range_square},
+                                                {"range_own", &SampleTally::range_own},
+                                                {"range_common", &SampleTally::range_common}};
 
 constexpr double kDeviationUnits = 1024.0;  ///< per class width, in SampleTally::deviation_sum
 constexpr double kRangeUnits = 64.0;        ///< per class width squared, in its sums of ranges: for 1e10 turns

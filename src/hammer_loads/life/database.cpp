@@ -1,10 +1,13 @@
 #include "hammer_loads/life/database.h"
 
 #include <sqlite3.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 
 namespace hammer_loads::life {
@@ -12,7 +15,21 @@ namespace hammer_loads::life {
 void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
 void Database::Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
+std::string Database::pathProblem(const std::string& path, Use use) {
+  struct stat found {};
+  const bool exists = stat(path.c_str(), &found) == 0, to_write = use == Use::kWrite;
+  if (exists && !S_ISREG(found.st_mode)) return "is no regular file";
+  if (!to_write) return exists ? "" : std::string("cannot be read: ") + std::strerror(errno);
+  // SQLite finds what a broken commit left by the file's name.
+  if (exists && found.st_nlink > 1) return "has several names (hard links), must have one";
+  const std::string place = exists ? path : std::filesystem::absolute(path).parent_path().string();
+  if (access(place.c_str(), exists ? W_OK : W_OK | X_OK) == 0) return {};
+  return (exists ? "cannot be written: " : "cannot be made: ") + std::string(std::strerror(errno));
+}
+
 Database::Database(const std::string& path, Use use, int patience_ms) {
+  fail(pathProblem(path, use));
+  if (!good()) return;
   const int flags = use == Use::kWrite ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READWRITE;
   sqlite3* handle = nullptr;
   const int result = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);

@@ -7,10 +7,10 @@ namespace hammer_loads::life {
 LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& identity) {
   LedgerMachine machine{identity, {}, settings.equivalent_cycles_per_hour};
   for (const CountedChannel& c : settings.channels)
-    machine.channels.push_back({countedName(c.name, settings.bandwidth), c.grid, {}, {}});
+    machine.channels.push_back({countedName(c.name, settings.bandwidth), c.grid, {}, {}, 0});
   for (const HotSpot& spot : settings.hot_spots)
     machine.channels.push_back(
-        {countedName(hotSpotChannel(spot), settings.bandwidth), spot.grid, spot.curve, spot.mean_stress});
+        {countedName(hotSpotChannel(spot), settings.bandwidth), spot.grid, spot.curve, spot.mean_stress, 0});
   return machine;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -19,6 +20,9 @@ struct LedgerChannel {
   LoadGrid grid;
   std::optional<SnCurve> curve;
   std::optional<FkmMeanStress> mean_stress;
+  std::int64_t id{};  ///< number in the ledger; 0: it is not from one
+
+  bool hasCountsOf(const LedgerChannel& o) const { return name == o.name && grid == o.grid; }
 };
 
 /// The machine of the counts. Another identity or other channels or grids begin a new epoch: counts of different

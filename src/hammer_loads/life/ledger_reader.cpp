@@ -1,9 +1,7 @@
 #include "hammer_loads/life/ledger_reader.h"
 
-#include <sys/stat.h>
-
-#include <cerrno>
-#include <cstring>
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include "hammer_loads/life/cycle_count.h"
@@ -15,22 +13,46 @@ namespace {
 
 constexpr int kReaderPatience = 5000;  // [ms]; a writer needs some ms
 
-std::uint64_t unsignedOf(const Database::Statement& row, int column) {
-  return static_cast<std::uint64_t>(row.integer(column));
+template <typename Unsigned = std::uint64_t>
+Unsigned unsignedOf(const Database::Statement& row, int column) {
+  return static_cast<Unsigned>(row.integer(column));
 }
 
-/// Adds a row of `tallies`, from its column `counted` on.
+/// Extremes and tally of a row, from its second column on.
 void addTally(const Database::Statement& row, CycleCount& count) {
-  SampleTally t;
-  int column = 0;
-  for (std::uint64_t* value : {&t.counted, &t.skipped, &t.below, &t.above, &t.gaps, &t.deviations, &t.deviation_sum,
-                               &t.range_square, &t.range_own, &t.range_common})
-    *value = unsignedOf(row, column++);
-  count.tally.add(t);
   Extremes extremes;
-  extremes.least = row.number(column++);
-  extremes.greatest = row.number(column);
+  extremes.least = row.number(1);
+  extremes.greatest = row.number(2);
   count.extremes.add(extremes);
+  SampleTally tally;
+  int place = 3;
+  for (const TallyColumn& column : kTallyColumns) tally.*column.number = unsignedOf(row, place++);
+  count.tally.add(tally);
+}
+
+/// Closes the cycles across the seams between a channel's runs, whose residues follow each other in `total`.
+/// closed(day, cycles): by the last day of the run that closes them.
+template <typename Closed>
+void joinRuns(Database& database, std::int64_t channel, std::vector<std::uint32_t>& total, const Closed& closed) {
+  Database::Statement rows(database,
+                           "SELECT run, class, (SELECT max(day) FROM days WHERE days.run = residues.run) FROM residues "
+                           "WHERE channel = ?1 ORDER BY run, place");
+  struct Residue {
+    std::int64_t last_day{};
+    std::vector<std::uint32_t> classes;
+  };
+  std::map<std::int64_t, Residue> residues;  // by run
+  rows.with(channel);
+  while (rows.step()) {
+    Residue& residue = residues[rows.integer(0)];
+    residue.classes.push_back(unsignedOf<std::uint32_t>(rows, 1));
+    residue.last_day = rows.integer(2);
+  }
+  for (const auto& [run, residue] : residues) {
+    std::vector<ClosedCycles> cycles;
+    joinResidues(total, residue.classes, cycles);
+    closed(residue.last_day, cycles);
+  }
 }
 
 }  // namespace
@@ -46,19 +68,11 @@ std::string LedgerReader::problem() const {
 
 Checked<LedgerReader> LedgerReader::open(const std::string& path) {
   Checked<LedgerReader> result;
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    result.problems.push_back(path + ": cannot be read: " + std::strerror(errno));
-  } else if (!S_ISREG(status.st_mode)) {
-    result.problems.push_back(path + ": is no regular file");
-  } else {
-    LedgerReader reader(path);
-    if (reader.problem().empty()) {
-      result.value.emplace(std::move(reader));
-    } else {
-      result.problems.push_back(reader.problem());
-    }
-  }
+  LedgerReader reader(path);
+  if (reader.problem().empty())
+    result.value.emplace(std::move(reader));
+  else
+    result.problems.push_back(reader.problem());
   return result;
 }
 
@@ -68,11 +82,8 @@ std::vector<LedgerEpoch> LedgerReader::epochs() {
                            "SELECT epoch, machine, equivalent_cycles_per_hour, "
                            "(SELECT count(*) FROM runs WHERE runs.epoch = epochs.epoch) FROM epochs ORDER BY epoch");
   while (rows.step()) {
-    LedgerEpoch epoch{rows.integer(0), {rows.text(1), {}, rows.number(2)}, {}, {}, unsignedOf(rows, 3)};
-    for (ChannelRow& row : channelsOf(*database_, epoch.id)) {
-      epoch.machine.channels.push_back(std::move(row.channel));
-      epoch.channels.push_back(row.id);
-    }
+    const std::int64_t id = rows.integer(0);
+    LedgerEpoch epoch{id, {rows.text(1), channelsOf(*database_, id), rows.number(2)}, {}, unsignedOf(rows, 3)};
     Database::Statement days(*database_,
                              "SELECT day, date, duration_ns, turns FROM days WHERE epoch = ?1 ORDER BY run, day");
     days.with(epoch.id);
@@ -97,62 +108,38 @@ std::vector<LedgerRunInfo> LedgerReader::runs() {
   return runs;
 }
 
-void LedgerReader::read(CycleCount& count, std::int64_t channel, const char* condition, std::int64_t value) {
-  const std::string place = std::string(" WHERE channel = ?1 AND ") + condition;
-  const std::string tally =
-      "SELECT counted, skipped, below, above, gaps, deviations, deviation_sum, range_square, range_own, range_common, "
-      "least, greatest FROM tallies" +
-      place;
-  const std::string cycle = "SELECT steps, low, sum(count) FROM cycles" + place + " GROUP BY steps, low";
-  Database::Statement tallies(*database_, tally.c_str()), cycles(*database_, cycle.c_str());
-  tallies.with(channel, value);
-  while (tallies.step()) addTally(tallies, count);
-  cycles.with(channel, value);
-  while (cycles.step())
-    count.closed.push_back({static_cast<std::uint32_t>(cycles.integer(0)),
-                            static_cast<std::uint32_t>(cycles.integer(1)), unsignedOf(cycles, 2)});
-}
-
-const LedgerReader::Seams& LedgerReader::seamsOf(std::int64_t channel) {
-  if (seams_.channel == channel) return seams_;
-  seams_ = {channel, {}, {}};
-  std::map<std::int64_t, std::pair<std::int64_t, std::vector<std::uint32_t>>> residues;  // by run, with its last day
-  Database::Statement rows(*database_,
-                           "SELECT run, class, (SELECT max(day) FROM days WHERE days.run = residues.run) FROM residues "
-                           "WHERE channel = ?1 ORDER BY run, place");
-  rows.with(channel);
-  while (rows.step()) {
-    auto& [last_day, residue] = residues[rows.integer(0)];
-    last_day = rows.integer(2);
-    residue.push_back(static_cast<std::uint32_t>(rows.integer(1)));
+LedgerCounts LedgerReader::counts(const LedgerEpoch& epoch, const LedgerChannel& channel) {
+  const CycleCount none(channel.grid);
+  LedgerCounts counts{none, std::vector<CycleCount>(epoch.days.size(), none)};
+  std::map<std::int64_t, CycleCount*> of_day;
+  for (std::size_t i = 0; i < epoch.days.size(); ++i)
+    for (const std::int64_t id : epoch.days[i].ids) of_day[id] = &counts.days[i];
+  const auto both = [&](std::int64_t day, const auto& add) {
+    add(counts.total);
+    if (const auto found = of_day.find(day); found != of_day.end()) add(*found->second);
+  };
+  std::string columns = "day, least, greatest";
+  for (const TallyColumn& column : kTallyColumns) columns += std::string(", ") + column.name;
+  const std::string sql = "SELECT " + columns + " FROM tallies WHERE channel = ?1";
+  Database::Statement tallies(*database_, sql.c_str());
+  tallies.with(channel.id);
+  while (tallies.step()) both(tallies.integer(0), [&](CycleCount& count) { addTally(tallies, count); });
+  Database::Statement cycles(*database_, "SELECT day, steps, low, count FROM cycles WHERE channel = ?1");
+  cycles.with(channel.id);
+  while (cycles.step()) {
+    const ClosedCycles closed{unsignedOf<std::uint32_t>(cycles, 1), unsignedOf<std::uint32_t>(cycles, 2),
+                              unsignedOf(cycles, 3)};
+    both(cycles.integer(0), [&](CycleCount& count) { count.closed.push_back(closed); });
   }
-  for (const auto& [run, ends] : residues) joinResidues(seams_.residue, ends.second, seams_.closed[ends.first]);
-  return seams_;
-}
-
-CycleCount LedgerReader::total(const LedgerEpoch& epoch, std::size_t channel) {
-  CycleCount count(epoch.machine.channels[channel].grid);
-  read(count, epoch.channels[channel], "day >= ?2", 0);
-  const Seams& seams = seamsOf(epoch.channels[channel]);
-  count.residue = seams.residue;
-  for (const auto& [day, closed] : seams.closed) count.closed.insert(count.closed.end(), closed.begin(), closed.end());
-  sortClosed(count.closed);
-  if (database_->good() && !isPossible(count))
-    database_->fail("damaged: no loads give the count of " + epoch.machine.channels[channel].name);
-  return count;
-}
-
-CycleCount LedgerReader::ofDay(const LedgerEpoch& epoch, std::size_t channel, const LedgerDay& day) {
-  CycleCount count(epoch.machine.channels[channel].grid);
-  const Seams& seams = seamsOf(epoch.channels[channel]);
-  for (const std::int64_t part : day.ids) {
-    read(count, epoch.channels[channel], "day = ?2", part);
-    const auto closed = seams.closed.find(part);
-    if (closed != seams.closed.end())
-      count.closed.insert(count.closed.end(), closed->second.begin(), closed->second.end());
-  }
-  sortClosed(count.closed);
-  return count;
+  joinRuns(
+      *database_, channel.id, counts.total.residue, [&](std::int64_t day, const std::vector<ClosedCycles>& closed) {
+        both(day, [&](CycleCount& count) { count.closed.insert(count.closed.end(), closed.begin(), closed.end()); });
+      });
+  sortClosed(counts.total.closed);
+  for (CycleCount& count : counts.days) sortClosed(count.closed);
+  if (database_->good() && !isPossible(counts.total))
+    database_->fail("damaged: no loads give the count of " + channel.name);
+  return counts;
 }
 
 }  // namespace hammer_loads::life

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,7 +23,6 @@ struct LedgerDay {
 struct LedgerEpoch {
   std::int64_t id{};
   LedgerMachine machine;
-  std::vector<std::int64_t> channels;  ///< ids, in the order of machine.channels
   std::vector<LedgerDay> days;
   std::uint64_t runs{};
 };
@@ -34,6 +32,14 @@ struct LedgerRunInfo {
   std::int64_t epoch{};
   std::uint64_t messages{};  ///< messages of the crank
   std::uint64_t turns{};
+};
+
+/// Counts of a channel in an epoch.
+struct LedgerCounts {
+  CycleCount total;  ///< with the residue of all runs, the one at work included
+  /// Cycles that closed on each day, those that a run closes with the residues before it on the run's last one; no
+  /// residue: it belongs to no day.
+  std::vector<CycleCount> days;
 };
 
 /// One state of the file, that at the first query, however long the reading takes.
@@ -46,31 +52,16 @@ class LedgerReader {
   std::vector<LedgerEpoch> epochs();
   /// In the order in which they count.
   std::vector<LedgerRunInfo> runs();
-  /// All cycles of a channel of an epoch with the residue of all runs, the one at work included.
-  CycleCount total(const LedgerEpoch& epoch, std::size_t channel);
-  /// Cycles that closed on a day, those that a run closes with the residues before it on the run's last one; no
-  /// residue: it belongs to no day.
-  CycleCount ofDay(const LedgerEpoch& epoch, std::size_t channel, const LedgerDay& day);
+  LedgerCounts counts(const LedgerEpoch& epoch, const LedgerChannel& channel);
 
   /// One line after a failed query, whose result is then not to be used; else empty.
   std::string problem() const;
 
  private:
-  /// Cycles that the residues of a channel's runs close, one after another.
-  struct Seams {
-    std::int64_t channel{-1};
-    std::map<std::int64_t, std::vector<ClosedCycles>> closed;  ///< by the last day of the run that closed them
-    std::vector<std::uint32_t> residue;
-  };
-
   explicit LedgerReader(const std::string& path);
-  /// Adds what is kept of a channel where `condition` holds for `value`.
-  void read(CycleCount& count, std::int64_t channel, const char* condition, std::int64_t value);
-  const Seams& seamsOf(std::int64_t channel);
 
   std::string path_;
   std::unique_ptr<Database> database_;  ///< stays where it is: statements refer to it
-  Seams seams_;                         ///< seams of the channel read last
 };
 
 }  // namespace hammer_loads::life

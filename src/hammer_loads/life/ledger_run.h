@@ -14,6 +14,9 @@ namespace hammer_loads::life {
 class Database;
 struct RunRow;
 
+/// Merges pieces of one day that follow each other, from this index on, so that memory is bounded.
+void mergeDays(std::vector<LifePiece>& pieces, std::size_t from = 0);
+
 /// Adds a run's pieces to the ledger, each in one transaction, so that kill -9 or a power cut leaves a complete piece
 /// as the last one. No function throws; a piece that cannot be written is kept for the next call, and memory is
 /// bounded. Call it from a thread of its own, since a disk is slow and another user of the file may lock it for up to
@@ -36,10 +39,8 @@ class LedgerRun {
   void keep(LifePiece piece);
   /// Marks the run as not to be counted: the next add() or end() removes it from the ledger.
   void refuse(const std::string& reason) { id_.refusal = reason; }
-  /// Adds a piece and the waiting ones. Empty if all are written, otherwise one line.
-  std::optional<std::string> add(LifePiece piece);
-  /// Adds what waits.
-  std::optional<std::string> add() { return write(false); }
+  /// Adds a piece, if there is one, and the waiting ones. Empty if all are written, otherwise one line.
+  std::optional<std::string> add(std::optional<LifePiece> piece = {});
   /// Adds the last piece and what waits, and ends the run. After a problem it may be called again, with no piece.
   std::optional<std::string> end(std::optional<LifePiece> last);
 
@@ -57,29 +58,31 @@ class LedgerRun {
   std::size_t waiting() const { return waiting_.size(); }
 
  private:
-  /// Contents of a commit, the first of the waiting pieces.
-  struct Commit {
-    std::size_t pieces{}, marks{};
+  /// Part of the run that is in the ledger after a commit.
+  struct Written {
+    std::int64_t commits{};
+    std::size_t pieces{};  ///< number of the waiting pieces that this commit wrote
+    std::size_t marks{};
     std::uint64_t messages{};
+    bool isThat(const RunRow& row) const;
   };
 
   std::optional<std::string> write(bool end);
   bool put(Database& database, bool end, bool replace);
-  std::optional<std::string> judge(Database& database, std::vector<RunRow>& like, bool end, bool replace);
-  std::optional<std::string> newlyShared(Database& database, const RunRow& own) const;
-  bool isOurs(const std::optional<RunRow>& row);
-  void noteWritten(const Commit& commit);
-  void compact(std::size_t from);
+  std::string judge(Database& database, std::vector<RunRow>& like, bool end, bool replace);
+  std::string newlyShared(Database& database, const RunRow& own) const;
+  bool isOurs(const std::vector<RunRow>& rows);
+  void note(const Written& commit);
+  std::vector<std::int64_t> newMarks() const;
 
   std::string path_;
   LedgerMachine machine_;
   RunId id_;
   std::vector<LifePiece> waiting_;
-  std::uint64_t messages_{}, messages_written_{};  ///< messages of all pieces given; of those in the ledger
-  std::vector<std::int64_t> marks_;                ///< marks of all pieces given
-  std::size_t marks_written_{};
-  std::int64_t commits_{};        ///< known to be in the ledger
-  std::optional<Commit> failed_;  ///< reported an error, and may be in the file all the same
+  std::uint64_t messages_{};         ///< messages of all pieces given
+  std::vector<std::int64_t> marks_;  ///< marks of all pieces given
+  Written written_;                  ///< known to be in the ledger
+  std::optional<Written> failed_;    ///< reported an error, and may be in the file all the same
   bool ended_{}, known_{};
   std::string refusal_;
 };

@@ -1,14 +1,7 @@
 #include "hammer_loads/life/ledger_schema.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <initializer_list>
+#include <optional>
 #include <string>
-#include <utility>
 
 #include "hammer_loads/life/column_texts.h"
 
@@ -105,31 +98,64 @@ std::optional<SnCurve> curveOf(const Database::Statement& row) {
       .value;
 }
 
-/// The first value of a column that is not as `rule`, SQL for a value that is right, says.
-void check(Database& database, const std::string& from, const std::string& column, const std::string& rule,
-           const std::string& words) {
-  if (!database.good()) return;
-  const std::string sql = "SELECT quote(" + column + ") FROM " + from + " WHERE (" + rule + ") IS NOT TRUE LIMIT 1";
-  Database::Statement wrong(database, sql.c_str());
+/// Values that a run writes into some columns of a table: SQL, in which $ is a column, and words.
+struct Rule {
+  const char* from;
+  std::vector<const char*> columns;
+  const char *sql, *words;
+};
+
+constexpr char kIsText[] = "typeof($) = 'text'";
+// Two of them may be added without going beyond 64 bits, where SQLite goes on in floating point.
+constexpr char kIsCount[] = "typeof($) = 'integer' AND $ BETWEEN 0 AND 4611686018427387904";
+constexpr char kCount[] = "an integer in [0, 4611686018427387904]";
+
+const Rule kRules[] = {{"epochs", {"machine"}, kIsText, "a text"},
+                       {"epochs",
+                        {"equivalent_cycles_per_hour"},
+                        "typeof($) IN ('integer', 'real') AND $ > 0 AND $ < 1e300",
+                        "a finite number > 0"},
+                       {"channels", {"name", "unit"}, kIsText, "a text"},
+                       {"runs", {"name"}, kIsText, "a text"},
+                       {"runs", {"pieces", "messages"}, kIsCount, kCount},
+                       {"days", {"date"}, "typeof($) = 'text' AND date($) IS $", "a date YYYY-MM-DD"},
+                       {"days", {"duration_ns", "turns"}, kIsCount, kCount},
+                       {"tallies",
+                        {"counted", "skipped", "below", "above", "gaps", "deviations", "deviation_sum", "range_square",
+                         "range_own", "range_common"},
+                        kIsCount,
+                        kCount},
+                       {"tallies",
+                        {"least", "greatest"},
+                        "$ IS NULL OR (typeof($) IN ('integer', 'real') AND abs($) < 1e300)",
+                        "a finite number or none"},
+                       {"cycles JOIN channels USING(channel)",
+                        {"low"},
+                        "typeof($) = 'integer' AND $ BETWEEN 0 AND classes - 2",
+                        "an integer in [0, classes - 2]"},
+                       {"cycles JOIN channels USING(channel)",
+                        {"steps"},
+                        "typeof($) = 'integer' AND $ BETWEEN 1 AND classes - 1 - low",
+                        "an integer in [1, classes - 1 - low]"},
+                       {"cycles", {"count"}, kIsCount, kCount},
+                       {"residues JOIN channels USING(channel)",
+                        {"class"},
+                        "typeof($) = 'integer' AND $ BETWEEN 0 AND classes - 1",
+                        "an integer in [0, classes - 1]"}};
+
+/// A problem for the first value of the column that does not obey the rule.
+void check(Database& database, const Rule& rule, const std::string& column) {
+  std::string sql = rule.sql;
+  for (std::size_t at = sql.find('$'); at != std::string::npos; at = sql.find('$')) sql.replace(at, 1, column);
+  const std::string from = rule.from;
+  const std::string query = "SELECT quote(" + column + ") FROM " + from + " WHERE (" + sql + ") IS NOT TRUE LIMIT 1";
+  Database::Statement wrong(database, query.c_str());
   if (wrong.step())
     database.fail("damaged: " + from.substr(0, from.find(' ')) + ": " + column + " " + wrong.text(0).substr(0, 60) +
-                  ", must be " + words);
+                  ", must be " + rule.words);
 }
 
 }  // namespace
-
-std::string pathProblem(const std::string& path) {
-  struct stat found {};
-  if (stat(path.c_str(), &found) == 0) {
-    if (!S_ISREG(found.st_mode)) return "is no regular file";
-    // SQLite finds what a broken commit left by the file's name.
-    if (found.st_nlink > 1) return "has several names (hard links), must have one";
-    return access(path.c_str(), W_OK) == 0 ? "" : std::string("cannot be written: ") + std::strerror(errno);
-  }
-  const std::filesystem::path directory = std::filesystem::absolute(path).parent_path();
-  if (access(directory.c_str(), W_OK | X_OK) == 0) return {};
-  return std::string("cannot be made: ") + std::strerror(errno);
-}
 
 bool isLedger(Database& database) {
   const std::int64_t application = valueOf(database, "PRAGMA application_id");
@@ -149,47 +175,10 @@ bool isLedger(Database& database) {
 }
 
 void checkLedger(Database& database) {
-  const auto text = [&](const char* table, const char* column) {
-    check(database, table, column, std::string("typeof(") + column + ") = 'text'", "a text");
-  };
-  // Two of them may be added without going beyond 64 bits, where SQLite goes on in floating point.
-  const std::string most = std::to_string(std::int64_t{1} << 62);
-  const auto count = [&](const char* table, std::initializer_list<const char*> columns) {
-    for (const char* column : columns)
-      check(database, table, column,
-            std::string("typeof(") + column + ") = 'integer' AND " + column + " BETWEEN 0 AND " + most,
-            "an integer in [0, " + most + "]");
-  };
-  const auto classes = [&](const char* table, const char* column, const char* least, const char* greatest) {
-    const std::string bounds = std::string(least) + " AND " + greatest;
-    check(database, std::string(table) + " JOIN channels USING(channel)", column,
-          std::string("typeof(") + column + ") = 'integer' AND " + column + " BETWEEN " + bounds,
-          std::string("an integer in [") + least + ", " + greatest + "]");
-  };
-  const std::string finite = " IN ('integer', 'real') AND abs(";
-  text("epochs", "machine");
-  check(database, "epochs", "equivalent_cycles_per_hour",
-        "typeof(equivalent_cycles_per_hour)" + finite +
-            "equivalent_cycles_per_hour) < 1e300 AND "
-            "equivalent_cycles_per_hour > 0",
-        "a finite number > 0");
-  text("channels", "name");
-  text("channels", "unit");
+  for (const Rule& rule : kRules)
+    for (const char* column : rule.columns) check(database, rule, column);
   Database::Statement epochs(database, "SELECT epoch FROM epochs");
   while (epochs.step()) channelsOf(database, epochs.integer(0));
-  text("runs", "name");
-  count("runs", {"pieces", "messages"});
-  check(database, "days", "date", "typeof(date) = 'text' AND date(date) IS date", "a date YYYY-MM-DD");
-  count("days", {"duration_ns", "turns"});
-  count("tallies", {"counted", "skipped", "below", "above", "gaps", "deviations", "deviation_sum", "range_square",
-                    "range_own", "range_common"});
-  for (const std::string column : {"least", "greatest"})
-    check(database, "tallies", column, column + " IS NULL OR (typeof(" + column + ")" + finite + column + ") < 1e300)",
-          "a finite number or none");
-  classes("cycles", "low", "0", "classes - 2");
-  classes("cycles", "steps", "1", "classes - 1 - low");
-  count("cycles", {"count"});
-  classes("residues", "class", "0", "classes - 1");
 }
 
 void beginAsLedger(Database& database) {
@@ -208,11 +197,11 @@ void beginReading(Database& database) {
   checkLedger(database);
 }
 
-std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch) {
+std::vector<LedgerChannel> channelsOf(Database& database, std::int64_t epoch) {
   Database::Statement rows(database,
                            "SELECT channel, name, least, greatest, classes, sn_knee_range, sn_knee_cycles, sn_slope, "
                            "sn_slope_below, mean_stress_sensitivity FROM channels WHERE epoch = ?1 ORDER BY channel");
-  std::vector<ChannelRow> channels;
+  std::vector<LedgerChannel> channels;
   rows.with(epoch);
   while (rows.step()) {
     const Checked<LoadGrid> grid = LoadGrid::make(rows.number(kLeast), rows.number(kGreatest), rows.integer(kClasses));
@@ -223,7 +212,7 @@ std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch) {
     }
     std::optional<FkmMeanStress> mean;
     if (!rows.isNull(kSensitivity)) mean = FkmMeanStress{rows.number(kSensitivity)};
-    channels.push_back({rows.integer(kId), {rows.text(kName), *grid.value, curve, mean}});
+    channels.push_back({rows.text(kName), *grid.value, curve, mean, rows.integer(kId)});
   }
   return channels;
 }

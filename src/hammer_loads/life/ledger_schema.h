@@ -12,10 +12,6 @@ namespace hammer_loads::life {
 
 constexpr int kLedgerVersion = 1;
 
-/// Reason why the path cannot be that of a ledger, one line; empty: it can, or there is no file yet. Does not open the
-/// file.
-std::string pathProblem(const std::string& path);
-
 /// False for an empty database; a problem for anything but that and a ledger of this version.
 bool isLedger(Database& database);
 
@@ -29,12 +25,7 @@ void checkLedger(Database& database);
 /// Begins a transaction for reading; a problem for anything but a ledger of this version.
 void beginReading(Database& database);
 
-struct ChannelRow {
-  std::int64_t id{};
-  LedgerChannel channel;
-};
-
 /// Channels of an epoch, in the order of LedgerMachine::channels. A problem for a grid or curve that none has.
-std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch);
+std::vector<LedgerChannel> channelsOf(Database& database, std::int64_t epoch);
 
 }  // namespace hammer_loads::life

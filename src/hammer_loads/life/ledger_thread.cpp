@@ -25,39 +25,30 @@ std::optional<std::string> LedgerThread::close() {
   return state_.problem;
 }
 
-void LedgerThread::put(Job job, std::shared_ptr<LifePiece> piece) {
+void LedgerThread::begin(const LedgerMachine& machine, const RunId& run) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (closing_) return;
-    // Waiting pieces of one day are merged, so that a blocked disk does not increase memory.
-    const bool goes_on =
-        piece && !jobs_.empty() && jobs_.back().piece && dayOf(jobs_.back().piece->stamp) == dayOf(piece->stamp);
-    if (goes_on)
-      jobs_.back().piece->advance(*piece);
-    else
-      jobs_.push_back({std::move(job), std::move(piece)});
+    runs_.push_back({LedgerRun(path_, machine, run)});
+    given_ = true;
   }
   wake_.notify_one();
 }
 
-void LedgerThread::begin(const LedgerMachine& machine, const RunId& run) {
-  put([path = path_, machine, run](std::deque<Run>& runs) { runs.push_back({LedgerRun(path, machine, run), false}); });
-}
-
-void LedgerThread::add(const LifePiece& piece) {
-  const auto kept = std::make_shared<LifePiece>(piece);
-  put([kept](std::deque<Run>& runs) { runs.back().ledger.keep(*kept); }, kept);
-}
-
 void LedgerThread::refuse(const std::string& reason) {
-  put([reason](std::deque<Run>& runs) { runs.back().ledger.refuse(reason); });
+  const std::lock_guard<std::mutex> lock(mutex_);
+  runs_.back().refusal = reason;
 }
 
-void LedgerThread::end(const LifePiece& last) {
-  put([last](std::deque<Run>& runs) {
-    runs.back().ledger.keep(last);
-    runs.back().ends = true;
-  });
+void LedgerThread::give(const LifePiece& piece, bool ends) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Run& run = runs_.back();
+    run.given.push_back(piece);
+    mergeDays(run.given);  // a blocked disk does not increase memory
+    run.ends = ends;
+    given_ = true;
+  }
+  wake_.notify_one();
 }
 
 LedgerThread::State LedgerThread::state() const {
@@ -66,42 +57,40 @@ LedgerThread::State LedgerThread::state() const {
 }
 
 void LedgerThread::work() {
+  std::unique_lock<std::mutex> lock(mutex_);
   for (bool closing = false; !closing;) {
-    std::vector<Waiting> jobs;
-    {
-      std::unique_lock<std::mutex> lock(mutex_);
-      const auto called = [this] { return closing_ || !jobs_.empty(); };
-      if (state_.problem.empty()) {
-        wake_.wait(lock, called);
-      } else {
-        wake_.wait_for(lock, kRetry, called);
-      }
-      jobs.swap(jobs_);
-      closing = closing_;
+    const auto called = [this] { return closing_ || given_; };
+    if (state_.problem.empty()) {
+      wake_.wait(lock, called);
+    } else {
+      wake_.wait_for(lock, kRetry, called);
     }
-    for (const Waiting& waiting : jobs) waiting.job(runs_);
-    write();
+    closing = closing_;
+    given_ = false;
+    write(lock);
   }
 }
 
-void LedgerThread::write() {
+/// Writes run after run until one is at work or has a problem. Others may give pieces meanwhile.
+void LedgerThread::write(std::unique_lock<std::mutex>& lock) {
   std::optional<std::string> problem;
-  while (!runs_.empty() && !problem) {
-    Run& first = runs_.front();
-    if (std::string trouble = ledgerProblem(path_); !trouble.empty()) {
-      problem = std::move(trouble);
-      break;
-    }
-    problem = first.ends ? first.ledger.end({}) : first.ledger.add();
-    const bool refused = first.ledger.refused();
-    if (!first.ends || (problem && !refused)) break;
+  while (!runs_.empty()) {
+    Run& run = runs_.front();  // stays where it is, whatever is added behind
+    const bool ends = run.ends;
+    const std::vector<LifePiece> pieces = std::exchange(run.given, {});
+    if (!run.refusal.empty()) run.ledger.refuse(run.refusal);
+    lock.unlock();
+    for (const LifePiece& piece : pieces) run.ledger.keep(piece);
+    const std::string trouble = ledgerProblem(path_);
+    problem = !trouble.empty() ? std::make_optional(trouble) : ends ? run.ledger.end({}) : run.ledger.add();
+    lock.lock();
+    const bool refused = trouble.empty() && run.ledger.refused();
+    if (!ends || (problem && !refused)) break;
     if (refused) refusal_ = *std::exchange(problem, std::nullopt);
     runs_.pop_front();
   }
-  State state{problem.value_or(refusal_), 0};
-  for (const Run& run : runs_) state.waiting += run.ledger.waiting();
-  const std::lock_guard<std::mutex> lock(mutex_);
-  state_ = std::move(state);
+  state_ = {problem.value_or(refusal_), 0};
+  for (const Run& run : runs_) state_.waiting += run.ledger.waiting() + run.given.size();
 }
 
 }  // namespace hammer_loads::life

@@ -2,10 +2,7 @@
 #pragma once
 
 #include <condition_variable>
-#include <cstddef>
 #include <deque>
-#include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,7 +14,7 @@
 
 namespace hammer_loads::life {
 
-/// Owns a thread that alone accesses the file; begin(), add() and end() only queue jobs.
+/// Owns a thread that alone accesses the file; begin(), add(), refuse() and end() only keep what they get.
 /// A piece that cannot be written is kept and tried again each second; runs are written in their order.
 class LedgerThread final : public LiveLedger {
  public:
@@ -27,9 +24,9 @@ class LedgerThread final : public LiveLedger {
   LedgerThread& operator=(const LedgerThread&) = delete;
 
   void begin(const LedgerMachine& machine, const RunId& run) override;
-  void add(const LifePiece& piece) override;
+  void add(const LifePiece& piece) override { give(piece, false); }
   void refuse(const std::string& reason) override;
-  void end(const LifePiece& last) override;
+  void end(const LifePiece& last) override { give(last, true); }
   /// The thread is then at its end.
   std::optional<std::string> close() override;
   State state() const override;
@@ -37,27 +34,24 @@ class LedgerThread final : public LiveLedger {
 
  private:
   struct Run {
-    LedgerRun ledger;
+    LedgerRun ledger;  ///< the thread's own
+    // Under the mutex.
+    std::vector<LifePiece> given{};  ///< pieces that the thread has not taken, those of one day merged
+    std::string refusal{};
     bool ends{};
   };
-  using Job = std::function<void(std::deque<Run>&)>;
-  struct Waiting {
-    Job job;
-    std::shared_ptr<LifePiece> piece;  ///< piece that the job adds; null: it does something else
-  };
 
-  void put(Job job, std::shared_ptr<LifePiece> piece = nullptr);
+  void give(const LifePiece& piece, bool ends);
   void work();
-  void write();
+  void write(std::unique_lock<std::mutex>& lock);
 
   const std::string path_;
-  std::deque<Run> runs_;  ///< the thread's own
-  std::string refusal_;   ///< refusals of ended runs; kept, as their counts are in no ledger
+  std::string refusal_;  ///< refusals of ended runs; kept, as their counts are in no ledger
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::vector<Waiting> jobs_;  ///< jobs; this and the following members are under the mutex
+  std::deque<Run> runs_;  ///< runs that are not wholly written; this and the following members are under the mutex
   State state_;
-  bool closing_{};
+  bool given_{}, closing_{};
   std::thread thread_;
 };
 

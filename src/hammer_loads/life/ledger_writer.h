@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,13 +18,11 @@ struct RunRow {
   std::uint64_t messages{};  ///< messages as in LifePiece, of all its pieces
 };
 
-std::optional<RunRow> findRun(Database& database, const std::string& name);
-
 /// Runs that have the name, or samples that have one of these marks and the same machine; in their order.
-std::vector<RunRow> runsLike(Database& database, const LedgerMachine& machine, const std::string& name,
-                             const std::vector<std::int64_t>& marks);
-/// Returns true if all marks of the run are among these.
-bool holdsMarksOf(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks);
+std::vector<RunRow> runsLike(Database& database, const std::string& name, const LedgerMachine& machine = {},
+                             const std::vector<std::int64_t>& marks = {});
+/// Returns true if all marks of the run are among these. Reads the marks of every run.
+bool isCovered(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks);
 
 /// Removes the `replaced` runs and begins the run: at the place of the first of them if its epoch has the same machine
 /// and grids, otherwise at the end, in a new epoch if the machine differs from the latest.
@@ -37,6 +34,6 @@ void removeRun(Database& database, const RunRow& run);
 void addPiece(Database& database, const RunRow& run, const LifePiece& piece);
 /// The run's row after a commit, and what is new of its marks.
 void setRun(Database& database, const RunRow& run, std::int64_t pieces, std::uint64_t messages,
-            const std::vector<std::int64_t>& marks, std::size_t first_mark);
+            const std::vector<std::int64_t>& marks);
 
 }  // namespace hammer_loads::life

@@ -7,27 +7,19 @@
 namespace hammer_loads::life {
 namespace {
 
-constexpr double kNsPerHour = 3600e9;
-
-ChannelReport channelReport(LedgerReader& reader, const LedgerEpoch& epoch, std::size_t channel) {
-  const LedgerChannel& judged = epoch.machine.channels[channel];
-  const double per_hour = epoch.machine.equivalent_cycles_per_hour;
-  ChannelReport report;
-  report.name = judged.name;
-  report.unit = unitOf(judged.name);
-  std::uint64_t duration = 0;
-  for (const LedgerDay& day : epoch.days) {
-    duration += day.duration;
-    report.blows += day.turns;
+ChannelReport channelReport(LedgerReader& reader, const LedgerEpoch& epoch, const LedgerChannel& channel) {
+  constexpr double kNsPerHour = 3600e9;
+  const LedgerCounts counts = reader.counts(epoch, channel);
+  ChannelReport report{channel.name, unitOf(channel.name), {}, counts.total.tally, counts.total.extremes};
+  const auto add = [&](const LedgerDay& day, const CycleCount& count) {
     const double hours = static_cast<double>(day.duration) / kNsPerHour;
-    report.days.push_back(
-        {day.date, hours, day.turns, figuresOf(reader.ofDay(epoch, channel, day), judged, hours, per_hour)});
-  }
-  report.hours = static_cast<double>(duration) / kNsPerHour;
-  const CycleCount total = reader.total(epoch, channel);
-  report.figures = figuresOf(total, judged, report.hours, per_hour);
-  report.tally = total.tally;
-  report.extremes = total.extremes;
+    report.periods.push_back(
+        {day.date, hours, day.turns, figuresOf(count, channel, hours, epoch.machine.equivalent_cycles_per_hour)});
+  };
+  LedgerDay all{{}, "all", 0, 0};
+  for (const LedgerDay& day : epoch.days) all.duration += day.duration, all.turns += day.turns;
+  add(all, counts.total);
+  for (std::size_t i = 0; i < epoch.days.size(); ++i) add(epoch.days[i], counts.days[i]);
   return report;
 }
 
@@ -38,15 +30,16 @@ Checked<std::vector<EpochReport>> lifeReport(LedgerReader& reader) {
   std::vector<EpochReport> reports;
   for (LedgerEpoch& epoch : reader.epochs()) {
     EpochReport report{std::move(epoch), {}};
-    for (std::size_t i = 0; i < report.epoch.machine.channels.size() && reader.problem().empty(); ++i)
-      report.channels.push_back(channelReport(reader, report.epoch, i));
+    for (const LedgerChannel& channel : report.epoch.machine.channels) {
+      if (!reader.problem().empty()) break;
+      report.channels.push_back(channelReport(reader, report.epoch, channel));
+    }
     reports.push_back(std::move(report));
   }
-  if (reader.problem().empty()) {
+  if (reader.problem().empty())
     result.value = std::move(reports);
-  } else {
+  else
     result.problems.push_back(reader.problem());
-  }
   return result;
 }
 

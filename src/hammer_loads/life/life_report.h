@@ -9,21 +9,18 @@
 
 namespace hammer_loads::life {
 
-struct DayFigures {
-  std::string date;
+struct PeriodFigures {
+  std::string day;  ///< date; `all` for the whole epoch
   double hours{};
   std::uint64_t blows{};
-  ChannelFigures figures;  ///< figures of the cycles that closed on the day
+  ChannelFigures figures;  ///< those of a day are of the cycles that closed on it
 };
 
 struct ChannelReport {
   std::string name, unit;
-  double hours{};
-  std::uint64_t blows{};
-  ChannelFigures figures;
+  std::vector<PeriodFigures> periods;  ///< the whole epoch, then its days
   SampleTally tally;
   Extremes extremes;
-  std::vector<DayFigures> days;
 };
 
 struct EpochReport {
