@@ -21,9 +21,9 @@ int run(int argc, const char* const* argv) {
   accuracy::MachineChoice choice;
   auto seed = static_cast<std::int64_t>(choice.seed);
   addParamsOption(line, files);
-  line.option("--part", part, "table").oneOf({"machines", "elastic", "clean", "drawings", "boom"});
-  line.option("--rows", choice.rows, "regular expression that the machine's name and rate must contain");
-  line.option("--seed", seed, "of the machines' random numbers");
+  line.add_option("--part", part, "table")->check(CLI::IsMember({"machines", "elastic", "clean", "drawings", "boom"}));
+  line.add_option("--rows", choice.rows, "regular expression that the machine's name and rate must contain");
+  line.add_option("--seed", seed, "of the machines' random numbers");
   if (const auto code = line.parse(argc, argv)) return *code;
   choice.seed = static_cast<std::uint64_t>(seed);
   std::optional<Settings> settings = loadOrReport(files);

@@ -1,5 +1,4 @@
 /// accuracy: errors of the loads over simulated working sessions.
-#include <fstream>
 #include <iostream>
 
 #include "hammer_loads/bench/blow_trace.h"
@@ -22,38 +21,6 @@ constexpr char kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ", k
                kScene[] = "\"scene\": ";
 
 constexpr int kDrawings = 50;
-
-/// Reason why an existing file must stay; empty: this command wrote it.
-std::string whyFileMustStay(const std::string& name) {
-  std::string line;
-  std::getline(std::ifstream(name), line);
-  const auto begins = [&](const char* part) { return line.rfind(std::string("{") + part, 0) == 0; };
-  return begins(kSessions) || begins(kElastic) ? "" : "it holds no figures of this command";
-}
-
-/// The file for the figures, taken before the computing, which takes a minute.
-class JsonFile {
- public:
-  JsonFile(const std::string& name, bool force) : name_(name) {
-    if (name.empty()) return;
-    Checked<OutputFile> file = OutputFile::make({name, {}, force, whyFileMustStay});
-    for (const std::string& problem : file.problems) problem_ = problem;
-    if (file.value) file_.emplace(*std::move(file.value));
-  }
-  const std::string& problem() const { return problem_; }
-  /// False, with the reason in problem(), where that could not be.
-  bool write(const std::string& json) {
-    if (!file_) return true;
-    std::ofstream stream(file_->path());
-    const bool written = (stream << '{' << json << "}\n") && stream.flush();
-    problem_ = written ? file_->publish() : name_ + ": cannot be written";
-    return problem_.empty();
-  }
-
- private:
-  std::string name_, problem_;
-  std::optional<OutputFile> file_;
-};
 
 /// The settings for machines whose zero is known as well as `calibrate` finds it.
 Settings withKnownZero(Settings settings) {
@@ -110,10 +77,10 @@ int run(int argc, const char* const* argv) {
   std::string json_file, only;
   bool force = false;
   addParamsOption(line, files);
-  line.option("--json", json_file, "also write the figures to this file, which must not exist");
-  line.flag("--force", force, "replace that file if this command wrote it");
-  line.option("--only", only, "drawings, elastic machines, KDL's observer or damage-equivalent ranges (life) alone")
-      .oneOf({"drawings", "elastic", "observer", "life"});
+  line.add_option("--json", json_file, "also write the figures to this file, which must not exist");
+  line.add_flag("--force", force, "replace that file if this command wrote it");
+  line.add_option("--only", only, "drawings, elastic machines, KDL's observer or damage-equivalent ranges (life) alone")
+      ->check(CLI::IsMember({"drawings", "elastic", "observer", "life"}));
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   std::optional<Settings> settings = loadOrReport(files);
@@ -121,15 +88,20 @@ int run(int argc, const char* const* argv) {
   // The hulls of the tables without a boom are held.
   if (settings->pipeline.hull_motion == HullMotionSource::kUnmeasured)
     settings->pipeline.hull_motion = HullMotionSource::kFixed;
-  JsonFile file(json_file, force);
-  const auto complain = [&] {
-    std::cerr << file.problem() << '\n';
-    return kExitFailure;
-  };
-  if (!file.problem().empty()) return complain();
+  std::optional<OutputFile> file;  // taken before the computing, which takes a minute
+  if (!json_file.empty()) {
+    const auto keep = keepUnlessItBegins({std::string("{") + kSessions, std::string("{") + kElastic},
+                                         "it holds no figures of this command");
+    Checked<OutputFile> made = OutputFile::make({json_file, {}, force, keep});
+    if (!made.value) return fail(made.problems);
+    file.emplace(*std::move(made.value));
+  }
   const std::string json = printTables(*settings, only);
   if (const int code = finishOutput()) return code;
-  return file.write(json) ? 0 : complain();
+  if (!file) return 0;
+  std::string problem = file->fill('{' + json + "}\n");
+  if (problem.empty()) problem = file->publish();
+  return problem.empty() ? 0 : fail({problem});
 }
 
 }  // namespace

@@ -10,12 +10,12 @@
 
 namespace hammer_loads {
 
-inline Option addTopicOption(CommandLine& line, InputTopics& topics, std::string InputTopics::*topic) {
+inline CLI::Option* addTopicOption(CommandLine& line, InputTopics& topics, std::string InputTopics::*topic) {
   const auto* input =
       std::find_if(kInputs.begin(), kInputs.end(), [topic](const InputName& one) { return one.topic == topic; });
-  return line.option(input->option, topics.*topic)
-      .type("TOPIC")
-      .showDefault(std::string("as in run_info, else ") + input->recorded);
+  return line.add_option(input->option, topics.*topic)
+      ->type_name("TOPIC")
+      ->default_str(std::string("as in run_info, else ") + input->recorded);
 }
 
 /// Parameters and robot description of the job, or the problems of their files, one line each.

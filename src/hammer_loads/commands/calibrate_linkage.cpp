@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -37,21 +36,25 @@ struct Frames {
 };
 
 void addLinkageOptions(CommandLine& line, LinkageArguments& given) {
-  line.option("--linkage", given.table, "columns stroke_m,angle_rad over the whole stroke")
-      .required()
-      .type("TABLE.csv");
-  line.option("--write", given.output, "keys of the linkage, for --params beside the boom file")
-      .required()
-      .type("FILE.yaml");
-  line.option("--cylinder", given.cylinder, "name of the cylinder, in front of its keys").type("NAME").showDefault();
+  line.add_option("--linkage", given.table, "columns stroke_m,angle_rad over the whole stroke")
+      ->required()
+      ->type_name("TABLE.csv");
+  line.add_option("--write", given.output, "keys of the linkage, for --params beside the boom file")
+      ->required()
+      ->type_name("FILE.yaml");
+  line.add_option("--cylinder", given.cylinder, "name of the cylinder, in front of its keys")
+      ->type_name("NAME")
+      ->capture_default_str();
   addParamsOption(line, given.params);
-  line["--params"].description("boom file: its keys of the cylinder's pins and links count as measured with a tape");
+  line.get_option("--params")
+      ->description("boom file: its keys of the cylinder's pins and links count as measured with a tape");
   addUrdfOption(line, given.urdf);
-  line["--urdf"].description("robot description, for the place and the axis of the joint NAME_joint of --params");
-  line.option("--tape-std", given.tape_std, "standard deviation of what was measured [m]")
-      .within(1e-5, 1.0, "m")
-      .showDefault();
-  line.flag("--force", given.force, "replaces a file that exists");
+  line.get_option("--urdf")->description(
+      "robot description, for the place and the axis of the joint NAME_joint of --params");
+  line.add_option("--tape-std", given.tape_std, "standard deviation of what was measured [m]")
+      ->check(within(1e-5, 1.0, "m"))
+      ->capture_default_str();
+  line.add_flag("--force", given.force, "replaces a file that exists");
 }
 
 /// Frame of the joint in the description; the joint's origin and +y without one.
@@ -130,17 +133,6 @@ std::string yamlOf(const calibration::LinkageFit& fit, const LinkageArguments& g
   return text;
 }
 
-std::string whyLinkageMustStay(const std::string& name) {
-  std::string line;
-  std::getline(std::ifstream(name), line);
-  return line.rfind(kLinkageYamlBegins, 0) == 0 ? "" : "it holds no linkage that was fitted";
-}
-
-int failWith(const std::vector<std::string>& problems) {
-  for (const std::string& problem : problems) std::cerr << problem << '\n';
-  return kExitFailure;
-}
-
 }  // namespace
 
 bool asksForLinkage(int argc, const char* const* argv) {
@@ -155,11 +147,12 @@ int calibrateLinkage(int argc, const char* const* argv) {
   endCleanlyOnSignals();
   std::vector<std::string> inputs = given.params;
   inputs.push_back(given.table);
-  Checked<OutputFile> file = OutputFile::make({given.output, inputs, given.force, whyLinkageMustStay});
-  if (!file.value) return failWith(file.problems);
+  const auto keep = keepUnlessItBegins({kLinkageYamlBegins}, "it holds no linkage that was fitted");
+  Checked<OutputFile> file = OutputFile::make({given.output, inputs, given.force, keep});
+  if (!file.value) return fail(file.problems);
   ParameterMap parameters;
   std::vector<std::string> problems;
-  if (!addFiles(given.params, parameters, problems) || !problems.empty()) return failWith(problems);
+  if (!addFiles(given.params, parameters, problems) || !problems.empty()) return fail(problems);
   ParameterReader reader(std::move(parameters));
   Frames frames;
   problems = findFrames(reader, given, frames);
@@ -167,21 +160,18 @@ int calibrateLinkage(int argc, const char* const* argv) {
   problems.insert(problems.end(), reader.problems().begin(), reader.problems().end());
   const Checked<std::string> text = fileText(given.table);
   problems.insert(problems.end(), text.problems.begin(), text.problems.end());
-  if (!problems.empty()) return failWith(problems);
+  if (!problems.empty()) return fail(problems);
   std::string problem;
   const std::optional<calibration::StrokeTable> table = calibration::readStrokeTable(*text.value, problem);
-  if (!table) return failWith({given.table + ": " + problem});
+  if (!table) return fail({given.table + ": " + problem});
   ProgressBar bar;
   const calibration::LinkageFit fit = calibration::fitLinkage(*table, basis, given.cylinder, std::ref(bar));
-  if (!fit.problem.empty()) return failWith({given.table + ": " + fit.problem});
+  if (!fit.problem.empty()) return fail({given.table + ": " + fit.problem});
   (fit.determined() ? std::cout : std::cerr) << wordsOf(fit);
   if (!fit.determined()) return kExitFailure;
-  std::ofstream stream(file.value->path(), std::ios::binary);
-  if (!((stream << yamlOf(fit, given, frames)) && stream.flush()))
-    return failWith({given.output + ": cannot be written"});
-  stream.close();
-  const std::string why = file.value->publish();
-  if (!why.empty()) return failWith({why});
+  std::string why = file.value->fill(yamlOf(fit, given, frames));
+  if (why.empty()) why = file.value->publish();
+  if (!why.empty()) return fail({why});
   return finishOutput();
 }
 

@@ -3,7 +3,6 @@
 #include <console_bridge/console.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
 #include "hammer_loads/calibration/boom_report.h"
@@ -27,27 +26,12 @@ namespace fs = std::filesystem;
 /// With another ending in place of the last one.
 std::string pictureBeside(const std::string& file) { return fs::path(file).replace_extension(".svg").string(); }
 
-/// Reason why an existing file must stay; empty: this command wrote it.
-std::string whyFileMustStay(const std::string& name) {
-  std::string line;
-  std::getline(std::ifstream(name), line);
-  const auto begins = [&](const char* text) { return line.rfind(text, 0) == 0; };
-  const bool ours = begins(calibration::kYamlBegins) || begins(calibration::kSvgBegins) ||
-                    begins(calibration::kBoomYamlBegins) || begins(calibration::kBoomSvgBegins);
-  return ours ? "" : "it holds no calibration";
-}
-
-/// Files and what goes into them: first all are filled, then all get their names. False: the error was reported.
-bool write(std::vector<OutputFile>& files, const std::vector<std::string>& names,
-           const std::vector<std::string>& texts) {
+/// Fills all files, then gives all their names. Empty, or the first problem.
+std::string write(std::vector<OutputFile>& files, const std::vector<std::string>& texts) {
   std::string problem;
-  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) {
-    std::ofstream stream(files[i].path(), std::ios::binary);
-    if (!((stream << texts[i]) && stream.flush())) problem = names[i] + ": cannot be written";
-  }
+  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) problem = files[i].fill(texts[i]);
   for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) problem = files[i].publish();
-  if (!problem.empty()) std::cerr << problem << '\n';
-  return problem.empty();
+  return problem;
 }
 
 calibration::Globals inForce(const CrankSensor& sensor) {
@@ -70,45 +54,42 @@ struct Arguments {
 };
 
 void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
-  line.option("input", given.bags, "bags to read, splits of one recording in their order").required().type("IN.bag");
-  line.option("--write", given.output, "parameters found, for --params; the picture goes beside it as .svg")
-      .required()
-      .type("FILE.yaml");
+  line.add_option("input", given.bags, "bags to read, splits of one recording in their order")
+      ->required()
+      ->type_name("IN.bag");
+  line.add_option("--write", given.output, "parameters found, for --params; the picture goes beside it as .svg")
+      ->required()
+      ->type_name("FILE.yaml");
   addParamsOption(line, given.params);
-  line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
+  line.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(line, given.urdf);
-  line["--urdf"].description("robot description, for the hull's pitch");
+  line.get_option("--urdf")->description("robot description, for the hull's pitch");
   addTopicOption(line, job.topics, &InputTopics::crank);
   addTopicOption(line, job.topics, &InputTopics::joint_states);
-  line.option("--rocker-inertia-std", given.rocker_std, "of the given rocker inertia, relative")
-      .within(1e-6, 1.0, "")
-      .showDefault();
-  line.flag("--force", given.force, "replaces files that exist");
-  line.flag("--verbose", given.verbose, "prints every estimate with its limit, strong correlations and notes");
-  line.flag(
+  line.add_option("--rocker-inertia-std", given.rocker_std, "of the given rocker inertia, relative")
+      ->check(within(1e-6, 1.0, ""))
+      ->capture_default_str();
+  line.add_flag("--force", given.force, "replaces files that exist");
+  line.add_flag("--verbose", given.verbose, "prints every estimate with its limit, strong correlations and notes");
+  line.add_flag(
           "--boom", given.boom,
           "weighs the boom instead: from a recording of its free movement without hammering, with cylinder pressures; "
           "writes a boom file")
-      .excludes({"--verbose"});
-  addTopicOption(line, job.topics, &InputTopics::cylinder_pressures).needs("--boom");
-  line.option("--weight", given.boom_job.weight, "a known weight on the tool [kg]")
-      .within(0.0, 1e5, "kg")
-      .type("KG")
-      .needs("--boom");
-  line.option("--at", given.boom_job.at, "its centre of mass in the tip's frame [m]")
-      .values(2, 2)
-      .type("X Z")
-      .needs("--weight");
-  line["--weight"].needs("--at");
-  line.option("--weighed", given.boom_job.weighed, "recording with that weight; IN.bag are then without it")
-      .type("BAG")
-      .oneEachTime()
-      .needs("--weight");
-}
-
-int fail(const std::vector<std::string>& problems) {
-  for (const std::string& problem : problems) std::cerr << problem << '\n';
-  return kExitFailure;
+      ->excludes("--verbose");
+  addTopicOption(line, job.topics, &InputTopics::cylinder_pressures)->needs("--boom");
+  line.add_option("--weight", given.boom_job.weight, "a known weight on the tool [kg]")
+      ->check(within(0.0, 1e5, "kg"))
+      ->type_name("KG")
+      ->needs("--boom");
+  line.add_option("--at", given.boom_job.at, "its centre of mass in the tip's frame [m]")
+      ->expected(2, 2)
+      ->type_name("X Z")
+      ->needs("--weight");
+  line.get_option("--weight")->needs("--at");
+  line.add_option("--weighed", given.boom_job.weighed, "recording with that weight; IN.bag are then without it")
+      ->type_name("BAG")
+      ->allow_extra_args(false)
+      ->needs("--weight");
 }
 
 /// Settings of the last run in the recording, whose sensor is the one that stays in use.
@@ -198,8 +179,11 @@ int run(int argc, const char* const* argv) {
   if (picture == given.output) return fail({given.output + ": ends in .svg, must be a name for YAML"});
   endCleanlyOnSignals();
   std::vector<OutputFile> files;
+  const auto keep = keepUnlessItBegins(
+      {calibration::kYamlBegins, calibration::kSvgBegins, calibration::kBoomYamlBegins, calibration::kBoomSvgBegins},
+      "it holds no calibration");
   for (const std::string& file : {given.output, picture}) {
-    Checked<OutputFile> made = OutputFile::make({file, inputs, given.force, whyFileMustStay});
+    Checked<OutputFile> made = OutputFile::make({file, inputs, given.force, keep});
     if (!made.value) return fail(made.problems);
     files.push_back(*std::move(made.value));
   }
@@ -218,7 +202,8 @@ int run(int argc, const char* const* argv) {
                                             : calibrateCrank(*recording.value, *settings.value, given, source);
   if (!texts.problems.empty()) return fail(texts.problems);
   (texts.yaml.empty() ? std::cerr : std::cout) << texts.words;
-  if (texts.yaml.empty() || !write(files, {given.output, picture}, {texts.yaml, texts.picture})) return kExitFailure;
+  if (texts.yaml.empty()) return kExitFailure;
+  if (const std::string problem = write(files, {texts.yaml, texts.picture}); !problem.empty()) return fail({problem});
   return finishOutput();
 }
 

@@ -1,16 +1,63 @@
 #include "hammer_loads/commands/command_line.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include <string_view>
+
+#include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
+
+CommandLine::CommandLine(const std::string& description, const std::string& name, const std::string& text)
+    : CLI::App(description, name) {
+  footer(text);
+}
+
+std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
+  add_flag("--version", "print the version and end");
+  // Before parsing: it needs no other argument.
+  if (std::find(argv, argv + argc, std::string_view("--version")) != argv + argc) {
+    std::cout << "hammer_loads " HAMMER_LOADS_VERSION << '\n';
+    return finishOutput();
+  }
+  try {
+    CLI::App::parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::Success& help) {
+    return exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << get_name() << ": " << onOneLine(error.what()) << " (--help shows the options)\n";
+    return kExitWrongUsage;
+  }
+}
+
+CLI::Validator within(double least, double most, const std::string& unit) {
+  std::string words = "a finite number";
+  if (std::isfinite(least)) words += (least == 0.0 ? " > " : " >= ") + numberText(least);
+  if (std::isfinite(most)) words += (std::isfinite(least) ? " and <= " : " <= ") + numberText(most);
+  const auto rule = [=](std::string& text) {
+    const std::optional<double> value = asNumber(YAML::Node(text));
+    const bool positive = least != 0.0 || (value && *value > 0.0);
+    const bool good = value && std::isfinite(*value) && *value >= least && *value <= most && positive;
+    return good ? std::string{} : text + (unit.empty() ? "" : " " + unit) + ", must be " + words;
+  };
+  return CLI::Validator(rule, "");
+}
+
+int fail(const std::vector<std::string>& problems) {
+  for (const std::string& problem : problems) std::cerr << problem << '\n';
+  return kExitFailure;
+}
+
 void addParamsOption(CommandLine& line, std::vector<std::string>& files) {
-  line.option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
-      .oneEachTime()
-      .type("FILE.yaml");
+  line.add_option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
+      ->allow_extra_args(false)
+      ->type_name("FILE.yaml");
 }
 
 void addLevelOption(CommandLine& line, std::optional<Level>& level) {
@@ -21,13 +68,14 @@ void addLevelOption(CommandLine& line, std::optional<Level>& level) {
       if (given == word) level = meaning;
     }
   };
-  line.call("--level", take, "how much of the mechanism has mass; without it as in the parameters")
-      .oneOf(words)
-      .type("LEVEL");
+  line.add_option_function<std::string>("--level", take,
+                                        "how much of the mechanism has mass; without it as in the parameters")
+      ->check(CLI::IsMember(words))
+      ->type_name("LEVEL");
 }
 
 void addUrdfOption(CommandLine& line, std::string& file) {
-  line.option("--urdf", file, "robot description; with it the boom's loads as well").type("FILE.urdf");
+  line.add_option("--urdf", file, "robot description; with it the boom's loads as well")->type_name("FILE.urdf");
 }
 
 int finishOutput() {
@@ -52,8 +100,7 @@ Checked<std::string> fileText(const std::string& file) {
 
 std::optional<Settings> loadOrReport(const std::vector<std::string>& files) {
   Checked<Settings> settings = loadFiles(configDirectory(), files);
-  for (const std::string& problem : settings.problems) std::cerr << problem << '\n';
-  if (!settings.value) return std::nullopt;
+  if (fail(settings.problems); !settings.value) return std::nullopt;
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
   return std::move(settings.value);
 }

@@ -1,17 +1,30 @@
 /// Functions common to the commands: options, one line per error on stderr, exit codes.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "hammer_loads/commands/options.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 
 constexpr int kExitFailure = 1;     ///< bad parameters or input
 constexpr int kExitWrongUsage = 2;  ///< bad command line
+
+class CommandLine : public CLI::App {
+ public:
+  CommandLine(const std::string& description, const std::string& name, const std::string& footer = {});
+  /// Empty if the command may continue, otherwise the exit code (0 after --help and --version). An error is one line.
+  std::optional<int> parse(int argc, const char* const* argv);
+};
+
+/// Rule for a finite number; `least` is excluded when it is 0.
+CLI::Validator within(double least, double most, const std::string& unit);
+
+/// Prints the problems on stderr, one line each. Returns kExitFailure.
+int fail(const std::vector<std::string>& problems);
 
 /// Adds `--params FILE.yaml`, which may be repeated.
 void addParamsOption(CommandLine& line, std::vector<std::string>& files);

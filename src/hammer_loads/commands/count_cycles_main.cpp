@@ -89,17 +89,17 @@ int run(int argc, const char* const* argv) {
   bool exact = false;
   std::vector<double> full_scale;
   std::int64_t classes = 4096;
-  line.flag("--exact", exact, "every value as it is");
-  line.option("--full-scale", full_scale, "count on a grid from LO to HI")
-      .values(2, 2)
-      .type("LO HI")
-      .within(-kInfinity, kInfinity, "")
-      .excludes({"--exact"});
-  line.option("--classes", classes, "of the grid")
-      .type("N")
-      .withinIntegers(2, life::LoadGrid::kMostClasses)
-      .needs("--full-scale")
-      .showDefault();
+  line.add_flag("--exact", exact, "every value as it is");
+  line.add_option("--full-scale", full_scale, "count on a grid from LO to HI")
+      ->expected(2, 2)
+      ->type_name("LO HI")
+      ->check(within(-kInfinity, kInfinity, ""))
+      ->excludes("--exact");
+  line.add_option("--classes", classes, "of the grid")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{2}, std::int64_t{life::LoadGrid::kMostClasses}))
+      ->needs("--full-scale")
+      ->capture_default_str();
   if (const auto code = line.parse(argc, argv)) return *code;
   std::ios::sync_with_stdio(false);
   if (full_scale.empty()) return countExactly();

@@ -25,9 +25,9 @@ int run(int argc, const char* const* argv) {
 
   std::ios::sync_with_stdio(false);
   const HullModel model(settings->mechanism, level.value_or(settings->pipeline.level));
-  const std::vector<std::string> problems = evaluateTable(model, std::cin, std::cout);
-  for (const std::string& problem : problems) std::cerr << "stdin: " << problem << '\n';
-  if (!problems.empty()) return kExitFailure;
+  std::vector<std::string> problems = evaluateTable(model, std::cin, std::cout);
+  for (std::string& problem : problems) problem.insert(0, "stdin: ");
+  if (!problems.empty()) return fail(problems);
   return finishOutput();
 }
 

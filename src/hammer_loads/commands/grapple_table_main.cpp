@@ -14,30 +14,34 @@ int run(int argc, const char* const* argv) {
   std::vector<std::string> files;
   TableRequest request;
   addParamsOption(line, files);
-  line["--params"].required().description("the grapple; may be repeated, the last one wins");
+  line.get_option("--params")->required()->description("the grapple; may be repeated, the last one wins");
   const auto metres = [&](const char* name, std::optional<double>& value, const char* help) {
-    return line.option(name, value, help).within(-kInfinity, kInfinity, "m");
+    return line.add_option(name, value, help)->check(within(-kInfinity, kInfinity, "m"));
   };
   metres("--from", request.from, "slider position of the first row [m]; default: closed");
   metres("--to", request.to, "slider position of the last row [m]; default: open");
-  const Option steps = line.option("--steps", request.steps, "equidistant steps between them; one row more than that")
-                           .withinIntegers(1, 1000000000)
-                           .type("INT");
-  const Option summary = line.flag("--summary", request.summary, "design figures of the path instead of the table");
-  const Option opening = metres("--opening", request.opening, "one row, at this distance between the jaw edges [m]")
-                             .excludes({"--from", "--to", "--steps", "--summary"});
+  const CLI::Option* steps =
+      line.add_option("--steps", request.steps, "equidistant steps between them; one row more than that")
+          ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
+          ->type_name("INT");
+  const CLI::Option* summary =
+      line.add_flag("--summary", request.summary, "design figures of the path instead of the table");
+  const CLI::Option* opening =
+      metres("--opening", request.opening, "one row, at this distance between the jaw edges [m]")
+          ->excludes("--from")
+          ->excludes("--to")
+          ->excludes("--steps")
+          ->excludes("--summary");
   if (const auto code = line.parse(argc, argv)) return *code;
-  if (!steps.given() && !summary.given() && !opening.given()) {
+  if (steps->count() + summary->count() + opening->count() == 0) {
     std::cerr << "grapple_table: --steps, --summary or --opening is required (--help shows the options)\n";
     return kExitWrongUsage;
   }
 
   const Checked<Grapple> grapple = loadGrapple(files);
-  for (const std::string& problem : grapple.problems) std::cerr << problem << '\n';
-  if (!grapple.value) return kExitFailure;
+  if (!grapple.value) return fail(grapple.problems);
   const std::optional<std::string> problem = printTable(*grapple.value, request, std::cout);
-  if (problem) std::cerr << *problem << '\n';
-  if (problem) return kExitFailure;
+  if (problem) return fail({*problem});
   return finishOutput();
 }
 

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "hammer_loads/util/rename_to_new.h"
 
@@ -43,17 +44,16 @@ const char* kindOf(fs::file_type type) {
   if (type == fs::file_type::directory) return "a directory";
   if (type == fs::file_type::symlink) return "a symbolic link";
   if (type == fs::file_type::fifo) return "a FIFO";
-  if (type == fs::file_type::socket) return "a socket";
-  return "a device";
+  return type == fs::file_type::socket ? "a socket" : "a device";
 }
 
 /// Reason why the name cannot be that of the output; empty: it can.
-std::string problemOf(const OutputRequest& request, bool exists, fs::file_type type) {
+std::string problemOf(const OutputRequest& request, fs::file_type type) {
   std::error_code error;
   if (request.name.empty()) return "an empty name, must be that of a new file";
   for (const std::string& input : request.inputs)
     if (fs::equivalent(input, request.name, error)) return "is the input " + input + ", must be another file";
-  if (!exists) return {};
+  if (type == fs::file_type::not_found || type == fs::file_type::none) return {};
   if (type != fs::file_type::regular) return std::string("is ") + kindOf(type) + ", must be a new file";
   if (!request.force) return "exists already, must be a new file; --force replaces one that this command wrote";
   const std::string reason = request.keep(request.name);
@@ -61,6 +61,17 @@ std::string problemOf(const OutputRequest& request, bool exists, fs::file_type t
 }
 
 }  // namespace
+
+std::function<std::string(const std::string&)> keepUnlessItBegins(std::vector<std::string> beginnings,
+                                                                  std::string reason) {
+  return [=](const std::string& name) -> std::string {
+    std::string line;
+    std::getline(std::ifstream(name), line);
+    for (const std::string& beginning : beginnings)
+      if (line.rfind(beginning, 0) == 0) return {};
+    return reason;
+  };
+}
 
 OutputFile::OutputFile(std::string name, bool replaces)
     : name_(std::move(name)),
@@ -87,9 +98,8 @@ Checked<OutputFile> OutputFile::make(const OutputRequest& request) {
   };
   std::error_code error;
   const fs::file_type type = fs::symlink_status(request.name, error).type();
-  const bool exists = type != fs::file_type::not_found && type != fs::file_type::none;
-  if (const std::string problem = problemOf(request, exists, type); !problem.empty()) return refuse(problem);
-  OutputFile file(request.name, exists);
+  if (const std::string problem = problemOf(request, type); !problem.empty()) return refuse(problem);
+  OutputFile file(request.name, type == fs::file_type::regular);
   const int descriptor = open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     const int why = errno;
@@ -102,6 +112,11 @@ Checked<OutputFile> OutputFile::make(const OutputRequest& request) {
   return result;
 }
 
+std::string OutputFile::fill(const std::string& text) const {
+  std::ofstream stream(path(), std::ios::binary);
+  return (stream << text) && stream.flush() ? "" : name_ + ": cannot be written";
+}
+
 std::string OutputFile::sync() const {
   const int file = open(part_->c_str(), O_RDONLY | O_CLOEXEC);
   const bool synced = file >= 0 && fsync(file) == 0;
@@ -112,7 +127,7 @@ std::string OutputFile::sync() const {
 
 std::string OutputFile::publish() {
   if (std::string problem = sync(); !problem.empty()) return problem;
-  const int error = !replaces_                                        ? renameToNew(AT_FDCWD, *part_, name_)
+  const int error = !replaces_                                        ? renameToNew(*part_, name_)
                     : std::rename(part_->c_str(), name_.c_str()) == 0 ? 0
                                                                       : errno;
   if (error == EEXIST) return name_ + ": has appeared meanwhile, is not replaced";

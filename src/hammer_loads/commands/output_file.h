@@ -18,6 +18,10 @@ struct OutputRequest {
   std::function<std::string(const std::string& name)> keep;
 };
 
+/// Rule for OutputRequest::keep: the file must stay, for this reason, unless its first line begins with one of these.
+std::function<std::string(const std::string&)> keepUnlessItBegins(std::vector<std::string> beginnings,
+                                                                  std::string reason);
+
 /// Written as NAME.part.PID beside NAME, which is removed unless publish() succeeds.
 class OutputFile {
  public:
@@ -30,6 +34,8 @@ class OutputFile {
 
   /// To open for writing.
   const std::string& path() const { return *part_; }
+  /// Writes all of its content. Returns the reason of a failure, one line; else empty.
+  std::string fill(const std::string& text) const;
   /// Writes the file to the disk. Returns the reason of a failure, one line; else empty.
   std::string sync() const;
   /// Completes the file and gives it its name.

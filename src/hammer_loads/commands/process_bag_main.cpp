@@ -25,37 +25,33 @@ struct Arguments {
 };
 
 void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
-  line.option("bags", given.bags,
-              "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
-      .required()
-      .values(1, 1000000);
-  line.flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
-  line.flag("--recordings", given.recordings,
-            "write nothing; a line for each bag, in order: number of the recording that it is a split of, name");
-  line.option("--db", given.tables, "write the results as tables, which must not exist").type("FILE.sqlite");
-  line.option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
-      .type("FILE.sqlite");
-  line.flag("--replace-run", given.replace_run, "in the ledger these runs take the place of what it has of them")
-      .needs("--ledger");
-  line.flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
+  line.add_option("bags", given.bags,
+                  "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
+      ->required()
+      ->expected(1, 1000000);
+  line.add_flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
+  line.add_flag("--recordings", given.recordings,
+                "write nothing; a line for each bag, in order: number of the recording that it is a split of, name");
+  line.add_option("--db", given.tables, "write the results as tables, which must not exist")->type_name("FILE.sqlite");
+  line.add_option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
+      ->type_name("FILE.sqlite");
+  line.add_flag("--replace-run", given.replace_run, "in the ledger these runs take the place of what it has of them")
+      ->needs("--ledger");
+  line.add_flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
   addParamsOption(line, given.params);
-  line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
+  line.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(line, given.urdf);
   for (const InputName& input : kInputs) addTopicOption(line, job.topics, input.topic);
-  line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
-  line.option(
+  line.get_option("--pressures-topic")
+      ->description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
+  line.add_option(
           "--reference", given.reference,
           "measured load of the hull: columns stamp [s], force_x, force_z [N], torque_y [N m], any of the last three")
-      .type("FILE.csv");
-  line.flag("--keys", given.keys,
-            "on stderr first a line for each warning: its key in the table warnings, a tab, its text");
-  line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
-  line.flag("--pins", job.pins, "pin forces as well").excludes({"--no-bag"});
-}
-
-int fail(const std::vector<std::string>& problems) {
-  for (const std::string& problem : problems) std::cerr << problem << '\n';
-  return kExitFailure;
+      ->type_name("FILE.csv");
+  line.add_flag("--keys", given.keys,
+                "on stderr first a line for each warning: its key in the table warnings, a tab, its text");
+  line.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
+  line.add_flag("--pins", job.pins, "pin forces as well")->excludes("--no-bag");
 }
 
 int printRecordings(const std::vector<std::string>& bags) {

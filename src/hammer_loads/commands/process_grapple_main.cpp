@@ -70,26 +70,23 @@ std::string process(const BagInputs& inputs, const Arguments& given, const std::
   }
 }
 
-int fail(const std::vector<std::string>& problems) {
-  for (const std::string& problem : problems) std::cerr << problem << '\n';
-  return kExitFailure;
-}
-
 int run(int argc, const char* const* argv) {
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);  // rosbag formats a line for every message
   CommandLine line("Motion of the grapple from a recorded bag", "process_grapple");
   Arguments given;
-  line.option("bags", given.bags,
-              "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
-      .required()
-      .values(2, 1000000);
-  line.option("--params", given.params, "the grapple, over the shipped grapple_node.yaml; may be repeated")
-      .required()
-      .oneEachTime()
-      .type("FILE.yaml");
-  line.option("--joint-states-topic", given.topic, "with the slider's joint").type("TOPIC").showDefault();
-  line.option("--output-prefix", given.prefix, "of every topic written").showDefault();
-  line.flag("--force", given.force, "replace OUT.bag if it holds results of this package alone");
+  line.add_option("bags", given.bags,
+                  "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
+      ->required()
+      ->expected(2, 1000000);
+  line.add_option("--params", given.params, "the grapple, over the shipped grapple_node.yaml; may be repeated")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE.yaml");
+  line.add_option("--joint-states-topic", given.topic, "with the slider's joint")
+      ->type_name("TOPIC")
+      ->capture_default_str();
+  line.add_option("--output-prefix", given.prefix, "of every topic written")->capture_default_str();
+  line.add_flag("--force", given.force, "replace OUT.bag if it holds results of this package alone");
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   const std::vector<std::string> bags(given.bags.begin(), given.bags.end() - 1);

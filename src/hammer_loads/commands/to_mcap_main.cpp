@@ -66,9 +66,9 @@ int run(int argc, const char* const* argv) {
   CommandLine line("Every message of a bag as MCAP, profile ros1", "to_mcap");
   std::string input, output;
   bool force = false;
-  line.option("input", input, "any bag").required().type("IN.bag");
-  line.option("output", output, "to write, which must not exist").required().type("OUT.mcap");
-  line.flag("--force", force, "replace OUT.mcap if this command wrote it");
+  line.add_option("input", input, "any bag")->required()->type_name("IN.bag");
+  line.add_option("output", output, "to write, which must not exist")->required()->type_name("OUT.mcap");
+  line.add_flag("--force", force, "replace OUT.mcap if this command wrote it");
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   Checked<OutputFile> file = OutputFile::make({output, {input}, force, whyMcapMustStay});
@@ -84,10 +84,7 @@ int run(int argc, const char* const* argv) {
       problem = input + ": cannot be read: " + error.what();
     }
   }
-  if (!problem.empty()) {
-    std::cerr << problem << '\n';
-    return kExitFailure;
-  }
+  if (!problem.empty()) return fail({problem});
   std::cout << output << ": " << count << " messages" << std::endl;
   return 0;
 }

@@ -19,17 +19,19 @@ int run(int argc, const char* const* argv) {
   bool summary = false, pins = false;
   addParamsOption(line, files);
   addLevelOption(line, level);
-  line.option("--speed", speed, "crank speed [rad/s]").within(0.0, kInfinity, "rad/s").showDefault();
-  line.option("--step-deg", step, "between rows [deg]").within(1e-6, 360.0, "deg").showDefault();
-  const Option with_weight = line.option("--pitch", pitch, "include the weight, at this hull pitch [rad]")
-                                 .within(-kInfinity, kInfinity, "rad");
-  line.flag("--summary", summary, "print the turn's pulse instead of the table");
-  line.flag("--pins", pins, "add the pin forces and the drive torque to the table");
+  line.add_option("--speed", speed, "crank speed [rad/s]")
+      ->check(within(0.0, kInfinity, "rad/s"))
+      ->capture_default_str();
+  line.add_option("--step-deg", step, "between rows [deg]")->check(within(1e-6, 360.0, "deg"))->capture_default_str();
+  const CLI::Option* with_weight = line.add_option("--pitch", pitch, "include the weight, at this hull pitch [rad]")
+                                       ->check(within(-kInfinity, kInfinity, "rad"));
+  line.add_flag("--summary", summary, "print the turn's pulse instead of the table");
+  line.add_flag("--pins", pins, "add the pin forces and the drive torque to the table");
   if (const auto code = line.parse(argc, argv)) return *code;
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;
 
-  const double g = with_weight.given() ? settings->pipeline.gravity : 0.0;
+  const double g = with_weight->count() > 0 ? settings->pipeline.gravity : 0.0;
   const Gravity gravity{g * std::sin(pitch), -g * std::cos(pitch)};
   const HullModel model(settings->mechanism, level.value_or(settings->pipeline.level));
   const TurnTable table{model, speed, gravity, step, pins};

@@ -71,10 +71,10 @@ bool LogName::isDeleted() const noexcept {
 
 std::string LogName::publish() {
   const std::string stem = final_.substr(0, final_.size() - std::strlen(".bag"));
-  int error = renameToNew(AT_FDCWD, active_, final_);
+  int error = renameToNew(active_, final_);
   for (unsigned i = 1; error == EEXIST && i < kMostTries; ++i) {
     final_ = stem + '-' + std::to_string(i) + ".bag";
-    error = renameToNew(AT_FDCWD, active_, final_);
+    error = renameToNew(active_, final_);
   }
   if (error == 0) return {};
   return "log file " + active_ + " is complete, but cannot be renamed to " + final_ + ": " + std::strerror(error);
