@@ -5,15 +5,18 @@
 
 #include <fstream>
 
+#include "settings/temporary_file.h"
 #include "support/command.h"
 
 namespace hammer_loads {
 namespace {
 
 TEST(Sha256, GivesThePublishedExamples) {
-  EXPECT_EQ(Sha256().add("abc").hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(Sha256().add("a").add("bc").hex(), Sha256().add("abc").hex());
+  const test::TemporaryFile abc("abc"), a("a"), bc("bc"), empty("");
+  const std::string published = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+  EXPECT_EQ(sha256OfFiles({abc.path()}), published);
+  EXPECT_EQ(sha256OfFiles({a.path(), empty.path(), bc.path()}), published);
+  EXPECT_EQ(sha256OfFiles({empty.path()}), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 TEST(Sha256, DigestsTheBytesOfFilesInOrder) {

@@ -116,56 +116,43 @@ struct Work {
   const std::vector<BagRun>& runs;
 };
 
-void warnOfInputs(const Work& work, const std::set<std::string>& topics,
-                  const std::set<const BagConnection*>& connections, std::vector<BagWarning>& warnings) {
-  std::set<std::string> heard;
-  for (const BagConnection* connection : connections) heard.insert(connection->topic);
-  warnOfPublishers(work.inputs, topics, warnings);
-  warnOfDefinitions(work.inputs, warnings);
-  warnOfLostMessages(work.inputs, warnings);
-  warnOfMissing(work.inputs, work.runs, heard, warnings);
-}
-
 void process(const Work& work, const Sinks& sinks, const std::function<void(double)>& progress, BagReport& report) {
-  const Wanted wanted = wantedTopics(work.runs);
-  std::set<std::string> topics;
-  for (const auto& [name, type] : wanted) topics.insert(name);
+  std::set<std::string> topics, heard;
+  for (const auto& [name, type] : wantedTopics(work.runs)) topics.insert(name);
   HammerRuns hammer(work.runs, work.job, sinks, report);
-  std::set<const BagConnection*> heard;
   BagMessages messages = work.inputs.messagesOn(topics);
+  std::set<const BagConnection*> connections;  // saves to look up each message's topic
   const auto count = static_cast<double>(messages.size());
   double done = 0.0;
   while (const BagMessage* item = messages.next()) {
     progress(++done / count);
-    heard.insert(item->connection);
+    if (connections.insert(item->connection).second) heard.insert(item->connection->topic);
     hammer.take(*item);
     if (sinks.tables != nullptr && !sinks.tables->problem().empty()) return;
   }
   hammer.end();
-  warnOfInputs(work, topics, heard, report.warnings);
+  warnOfPublishers(work.inputs, topics, report.warnings);
+  warnOfDefinitions(work.inputs, report.warnings);
+  warnOfLostMessages(work.inputs, report.warnings);
+  warnOfMissing(work.inputs, work.runs, heard, report.warnings);
 }
 
-/// Writes the tables, and a bag if one is given. Returns a problem in one line; empty if there is none.
-std::string writeTables(const Work& work, BagWriter* bag, const std::function<void(double)>& progress,
-                        BagReport& report) {
-  std::optional<BagTables> tables;
-  if (!work.job.tables.empty()) tables.emplace(work.job.tables, work.job.inputs);
-  process(work, {bag, tables ? &*tables : nullptr}, progress, report);
-  if (!tables) return {};
-  tables->finish(report.warnings);
-  return tables->problem().empty() ? "" : work.job.tables + ": cannot be written: " + tables->problem();
-}
-
-/// Writes the output files. Returns a problem in one line; empty if there is none.
+/// Writes the bag and the tables that are wanted. Returns a problem in one line; empty if there is none.
 std::string write(const Work& work, const std::function<void(double)>& progress, BagReport& report) {
-  if (work.job.output.empty()) return writeTables(work, nullptr, progress, report);
+  const BagJob& job = work.job;
   try {
-    BagWriter bag(work.job.output);
-    const std::string problem = writeTables(work, &bag, progress, report);
-    bag.close();
-    return problem;
+    std::optional<BagWriter> bag;
+    if (!job.output.empty()) bag.emplace(job.output);
+    std::optional<BagTables> tables;
+    if (!job.tables.empty()) tables.emplace(job.tables, job.inputs);
+    process(work, {bag ? &*bag : nullptr, tables ? &*tables : nullptr}, progress, report);
+    if (tables) tables->finish(report.warnings);
+    if (bag) bag->close();
+    if (tables && !tables->problem().empty()) return job.tables + ": cannot be written: " + tables->problem();
+    return {};
   } catch (const std::system_error& error) {  // errors of inputs have another class
-    return work.job.output + ": cannot be written: " + error.code().message();
+    if (job.output.empty()) throw;
+    return job.output + ": cannot be written: " + error.code().message();
   }
 }
 

@@ -35,40 +35,34 @@ const std::map<std::string, Kind>& kinds() {
   return kinds;
 }
 
-struct Comment {
-  std::string unit{"-"}, description;
-};
-
-/// Reads a field's comment, "# [unit] description"; further lines of the description begin with spaces.
-Comment commentOf(const std::string& line) {
-  std::smatch found;
-  if (!std::regex_match(line, found, std::regex(R"([^#]*#\s*(?:\[([^\]]*)\]\s*)?(.*))"))) return {};
-  return {found[1].matched ? found[1].str() : "-", found[2]};
-}
-
 }  // namespace
 
 NumberFields::NumberFields(const std::string& definition) {
+  // A field's comment is "# [unit] description"; further lines of the description begin with spaces.
+  static const std::regex kComment(R"([^#]*#\s*(?:\[([^\]]*)\]\s*)?(.*))"), kFurther(R"(\s+#.*)");
   std::istringstream lines(definition);
   for (std::string line; std::getline(lines, line) && line.rfind("====", 0) != 0;) {
-    if (!fields_.empty() && std::regex_match(line, std::regex(R"(\s+#.*)")))
-      fields_.back().description += ' ' + line.substr(line.find('#') + 2);
-    std::istringstream words(line.substr(0, line.find('#')));
+    if (!fields_.empty() && std::regex_match(line, kFurther))
+      fields_.back().column.description += ' ' + line.substr(line.find('#') + 2);
+    const std::string code = line.substr(0, line.find('#'));
+    std::istringstream words(code);
     std::string type, name;
-    if (!(words >> type >> name) || name == "header") continue;
-    if (line.substr(0, line.find('#')).find('=') != std::string::npos) continue;  // a constant
+    if (!(words >> type >> name) || name == "header" || code.find('=') != std::string::npos) continue;  // =: a constant
     const auto kind = kinds().find(type);
     if (kind == kinds().end()) throw std::invalid_argument("field " + name + " of type " + type + " is no number");
-    const Comment comment = commentOf(line);
-    fields_.push_back(
-        {name, kind->second.read, kind->second.size, kind->second.is_integer, comment.unit, comment.description});
+    TableColumn column{name, kind->second.is_integer, "-", {}};
+    if (std::smatch found; std::regex_match(line, found, kComment)) {
+      if (found[1].matched) column.unit = found[1];
+      column.description = found[2];
+    }
+    fields_.push_back({column, kind->second.read, kind->second.size});
   }
   values_.resize(fields_.size());
 }
 
 std::vector<TableColumn> NumberFields::columns() const {
   std::vector<TableColumn> columns;
-  for (const Field& field : fields_) columns.push_back({field.name, field.is_integer, field.unit, field.description});
+  for (const Field& field : fields_) columns.push_back(field.column);
   return columns;
 }
 

@@ -31,11 +31,9 @@ class NumberFields {
 
  private:
   struct Field {
-    std::string name;
+    TableColumn column;
     double (*read)(const std::uint8_t* bytes);
     std::size_t size;
-    bool is_integer;
-    std::string unit, description;
   };
   void read(std::size_t header_size);
 
