@@ -23,7 +23,7 @@ struct LogStatus {
   std::uint64_t file_size{};      ///< size of the file, without the open chunk [byte]
   std::uint64_t bytes_written{};  ///< all bags of this process together, deleted ones too [byte]
   std::uint64_t files_closed{};   ///< complete bags under their final names
-  std::uint64_t files_deleted{};  ///< oldest bags deleted for log_total_mb, also of earlier runs
+  std::uint64_t files_deleted{};  ///< oldest bags of this process, deleted for log_total_mb
 };
 
 /// Messages of one topic; every message offered while the log is recording is counted once.

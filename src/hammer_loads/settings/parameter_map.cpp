@@ -1,7 +1,6 @@
 #include "hammer_loads/settings/parameter_map.h"
 
-#include <yaml-cpp/eventhandler.h>
-
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -43,26 +42,19 @@ std::optional<std::string> contents(const std::string& file, std::string& proble
   return text;
 }
 
-struct IgnoreEvents final : YAML::EventHandler {
-  void OnDocumentStart(const YAML::Mark&) override {}
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-};
-
-/// At most 100: of some texts that are no YAML, yaml-cpp 0.7 reads documents without end. Throws YAML::Exception.
+/// By their marks: of some texts that are no YAML, yaml-cpp 0.7 reads documents without end.
 int countDocuments(const std::string& text) {
-  constexpr int kMost = 100;
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  IgnoreEvents ignore;
   int count = 0;
-  while (count < kMost && parser.HandleNextDocument(ignore)) ++count;
+  bool open = false;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    const bool is_mark = line.size() <= 3 || std::isspace(static_cast<unsigned char>(line[3])) != 0;
+    const bool begins = is_mark && line.rfind("---", 0) == 0, ends = is_mark && line.rfind("...", 0) == 0;
+    const bool has_content = first != std::string::npos && line[first] != '#' && line[0] != '%' && !ends;
+    if (begins || (has_content && !open)) ++count;
+    open = (open || has_content) && !ends;
+  }
   return count;
 }
 

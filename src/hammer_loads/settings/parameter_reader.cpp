@@ -8,38 +8,30 @@
 namespace hammer_loads {
 namespace {
 
-std::string ruleText(NumberRule rule) {
-  switch (rule.kind) {
-    case NumberRule::Kind::kAny:
-      return "a finite number";
-    case NumberRule::Kind::kPositive:
-      return "a finite number > 0";
-    case NumberRule::Kind::kNotNegative:
-      return "a finite number >= 0";
-    case NumberRule::Kind::kZeroOrWithin:
-      return "0 or a number in [" + numberText(rule.least) + ", " + numberText(rule.most) + "]";
-    case NumberRule::Kind::kWithin:
-      break;
-  }
-  return "a number in [" + numberText(rule.least) + ", " + numberText(rule.most) + "]";
+std::string ruleText(const NumberRule& rule) {
+  const bool bounded = std::isfinite(rule.most);
+  if (!bounded && !std::isfinite(rule.least)) return "a finite number";
+  if (!bounded) return rule.above_least ? "a finite number > 0" : "a finite number >= 0";
+  return (rule.or_zero ? "0 or a number in [" : "a number in [") + numberText(rule.least) + ", " +
+         numberText(rule.most) + "]";
 }
 
-bool obeys(NumberRule rule, double value) {
+bool obeys(const NumberRule& rule, double value) {
   if (!std::isfinite(value)) return false;
-  switch (rule.kind) {
-    case NumberRule::Kind::kAny:
-      return true;
-    case NumberRule::Kind::kPositive:
-      return value > 0.0;
-    case NumberRule::Kind::kNotNegative:
-      return value >= 0.0;
-    case NumberRule::Kind::kZeroOrWithin:
-      if (value == 0.0) return true;
-      break;
-    case NumberRule::Kind::kWithin:
-      break;
-  }
-  return value >= rule.least && value <= rule.most;
+  if (rule.or_zero && value == 0.0) return true;
+  return value >= rule.least && value <= rule.most && !(rule.above_least && value == rule.least);
+}
+
+std::string withUnit(const std::string& value, const std::string& unit) {
+  return unit.empty() ? value : value + " " + unit;
+}
+
+/// Texts in brackets, as a list of YAML.
+template <typename T, typename TextOf>
+std::string listText(const std::vector<T>& items, const TextOf& textOf) {
+  std::string list;
+  for (const T& item : items) list += (list.empty() ? "" : ", ") + textOf(item);
+  return "[" + list + "]";
 }
 
 /// Letters to insert, delete or replace to turn one word into the other (Levenshtein).
@@ -58,14 +50,6 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-bool areNames(const std::vector<std::string>& texts) {
-  std::set<std::string> seen;
-  for (const std::string& text : texts) {
-    if (text.empty() || !seen.insert(text).second) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 bool ParameterReader::given(const std::string& key) {
@@ -73,123 +57,93 @@ bool ParameterReader::given(const std::string& key) {
   return parameters_.count(key) != 0;
 }
 
-double ParameterReader::number(const std::string& key, const std::string& unit, NumberRule rule) {
-  const Parameter* parameter = find(key, unit, ruleText(rule));
-  if (parameter == nullptr) return std::numeric_limits<double>::quiet_NaN();
-  const std::optional<double> value = asNumber(parameter->value);
-  if (!value || !obeys(rule, *value)) {
-    refuse(key, *parameter, unit, ruleText(rule));
-    return std::numeric_limits<double>::quiet_NaN();
+template <typename Convert, typename TextOf>
+auto ParameterReader::read(const std::string& key, const std::string& unit, const std::string& rule,
+                           const Convert& convert, const TextOf& textOf) -> decltype(convert(YAML::Node())) {
+  known_.insert(key);
+  const auto found = parameters_.find(key);
+  if (found == parameters_.end()) {
+    report(key, key + ": missing, must be " + rule + (unit.empty() ? "" : " in " + unit));
+    return std::nullopt;
   }
-  keep(key, numberText(*value));
-  return *value;
+  const YAML::Node& node = found->second.value;
+  auto value = convert(node);
+  if (value)
+    yaml_ += key + ": " + textOf(*value) + "\n";
+  else
+    report(key, key + ": " + withUnit(describe(node), unit) + ", must be " + rule);
+  return value;
+}
+
+double ParameterReader::number(const std::string& key, const std::string& unit, NumberRule rule) {
+  const auto convert = [&](const YAML::Node& node) {
+    const std::optional<double> value = asNumber(node);
+    return value && obeys(rule, *value) ? value : std::nullopt;
+  };
+  return read(key, unit, ruleText(rule), convert, numberText).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 std::int64_t ParameterReader::integer(const std::string& key, const std::string& unit, std::int64_t least,
                                       std::int64_t most) {
+  const auto convert = [&](const YAML::Node& node) {
+    const std::optional<std::int64_t> value = asInteger(node);
+    return value && *value >= least && *value <= most ? value : std::nullopt;
+  };
   const std::string rule = "an integer in [" + std::to_string(least) + ", " + std::to_string(most) + "]";
-  const Parameter* parameter = find(key, unit, rule);
-  if (parameter == nullptr) return 0;
-  const std::optional<std::int64_t> value = asInteger(parameter->value);
-  if (!value || *value < least || *value > most) {
-    refuse(key, *parameter, unit, rule);
-    return 0;
-  }
-  keep(key, std::to_string(*value));
-  return *value;
+  return read(key, unit, rule, convert, [](std::int64_t value) { return std::to_string(value); }).value_or(0);
 }
 
 bool ParameterReader::boolean(const std::string& key) {
-  const std::string rule = "true or false";
-  const Parameter* parameter = find(key, "", rule);
-  if (parameter == nullptr) return false;
-  const std::optional<bool> value = asBoolean(parameter->value);
-  if (!value) {
-    refuse(key, *parameter, "", rule);
-    return false;
-  }
-  keep(key, *value ? "true" : "false");
-  return *value;
+  const auto text = [](bool value) { return value ? "true" : "false"; };
+  return read(key, "", "true or false", asBoolean, text).value_or(false);
 }
 
 std::string ParameterReader::text(const std::string& key) {
-  const std::string rule = "a text, not empty";
-  const Parameter* parameter = find(key, "", rule);
-  if (parameter == nullptr) return {};
-  const std::optional<std::string> value = asText(parameter->value);
-  if (!value || value->empty()) {
-    refuse(key, *parameter, "", rule);
-    return {};
-  }
-  keep(key, quotedText(*value));
-  return *value;
+  const auto convert = [](const YAML::Node& node) {
+    const std::optional<std::string> value = asText(node);
+    return value && !value->empty() ? value : std::nullopt;
+  };
+  return read(key, "", "a text, not empty", convert, quotedText).value_or("");
 }
 
 std::vector<std::string> ParameterReader::names(const std::string& key) {
-  const std::string rule = "a list of different names";
-  const Parameter* parameter = find(key, "", rule);
-  if (parameter == nullptr) return {};
-  const std::optional<std::vector<std::string>> value = asTexts(parameter->value);
-  if (!value || !areNames(*value)) {
-    refuse(key, *parameter, "", rule);
-    if (!value) return {};
-    const std::set<std::string> different(value->begin(), value->end());
-    return {different.begin(), different.end()};
-  }
-  std::string list;
-  for (const std::string& name : *value) list += (list.empty() ? "" : ", ") + quotedText(name);
-  keep(key, "[" + list + "]");
-  return *value;
+  std::set<std::string> different;
+  const auto convert = [&](const YAML::Node& node) {
+    const std::optional<std::vector<std::string>> texts = asTexts(node);
+    if (texts) different.insert(texts->begin(), texts->end());
+    return texts && different.size() == texts->size() && different.count("") == 0 ? texts : std::nullopt;
+  };
+  const auto text = [](const std::vector<std::string>& texts) { return listText(texts, quotedText); };
+  const auto names = read(key, "", "a list of different names", convert, text);
+  return names ? *names : std::vector<std::string>(different.begin(), different.end());
 }
 
 std::vector<int> ParameterReader::signs(const std::string& key) {
-  const std::string rule = "a list of 1 and -1";
-  const Parameter* parameter = find(key, "", rule);
-  if (parameter == nullptr) return {};
-  std::vector<int> result;
-  std::string list;
-  bool good = parameter->value.IsSequence();
-  for (std::size_t i = 0; good && i < parameter->value.size(); ++i) {
-    const std::optional<std::int64_t> sign = asInteger(parameter->value[i]);
-    good = sign && (*sign == 1 || *sign == -1);
-    if (!good) break;
-    result.push_back(static_cast<int>(*sign));
-    list += (list.empty() ? "" : ", ") + std::to_string(*sign);
-  }
-  if (!good) {
-    refuse(key, *parameter, "", rule);
-    return {};
-  }
-  keep(key, "[" + list + "]");
-  return result;
+  const auto convert = [](const YAML::Node& node) -> std::optional<std::vector<int>> {
+    if (!node.IsSequence()) return std::nullopt;
+    std::vector<int> signs;
+    for (const YAML::Node& item : node) {
+      const std::optional<std::int64_t> sign = asInteger(item);
+      if (sign != 1 && sign != -1) return std::nullopt;
+      signs.push_back(static_cast<int>(*sign));
+    }
+    return signs;
+  };
+  const auto text = [](const std::vector<int>& signs) {
+    return listText(signs, [](int sign) { return std::to_string(sign); });
+  };
+  return read(key, "", "a list of 1 and -1", convert, text).value_or(std::vector<int>());
 }
 
 std::size_t ParameterReader::choiceIndex(const std::string& key, const std::vector<std::string>& words) {
   std::string rule;
   for (const std::string& word : words) rule += (rule.empty() ? "one of " : ", ") + word;
-  const Parameter* parameter = find(key, "", rule);
-  if (parameter == nullptr) return 0;
-  const std::optional<std::string> value = asText(parameter->value);
-  const auto found = value ? std::find(words.begin(), words.end(), *value) : words.end();
-  if (found == words.end()) {
-    refuse(key, *parameter, "", rule);
-    return 0;
-  }
-  keep(key, quotedText(*value));
-  return static_cast<std::size_t>(found - words.begin());
-}
-
-const Parameter* ParameterReader::find(const std::string& key, const std::string& unit, const std::string& rule) {
-  known_.insert(key);
-  const auto found = parameters_.find(key);
-  if (found != parameters_.end()) return &found->second;
-  report(key, key + ": missing, must be " + rule + (unit.empty() ? "" : " in " + unit));
-  return nullptr;
-}
-
-void ParameterReader::refuse(const std::string& key, const Parameter& parameter, const std::string& unit,
-                             const std::string& rule) {
-  report(key, key + ": " + describe(parameter.value) + (unit.empty() ? "" : " " + unit) + ", must be " + rule);
+  const auto convert = [&](const YAML::Node& node) -> std::optional<std::size_t> {
+    const auto found = std::find(words.begin(), words.end(), asText(node).value_or(""));
+    if (found == words.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - words.begin());
+  };
+  return read(key, "", rule, convert, [&](std::size_t index) { return quotedText(words[index]); }).value_or(0);
 }
 
 void ParameterReader::report(const std::string& key, const std::string& line) {
@@ -201,7 +155,7 @@ void ParameterReader::report(const std::string& key, const std::string& line) {
 
 void ParameterReader::demand(const std::string& key, const std::string& unit, double value, NumberRule rule) {
   if (obeys(rule, value)) return;
-  addProblem(key + ": " + numberText(value) + (unit.empty() ? "" : " " + unit) + ", must be " + ruleText(rule));
+  addProblem(key + ": " + withUnit(numberText(value), unit) + ", must be " + ruleText(rule));
 }
 
 void ParameterReader::addProblem(const std::string& line) {

@@ -15,16 +15,15 @@ namespace hammer_loads {
 
 /// Bounds of a number. NaN and infinity never are.
 struct NumberRule {
-  enum class Kind { kAny, kPositive, kNotNegative, kWithin, kZeroOrWithin };
-  Kind kind{Kind::kAny};
-  double least{}, most{};  ///< inclusive, for kWithin and kZeroOrWithin, in the parameter's unit
+  double least{-std::numeric_limits<double>::infinity()}, most{std::numeric_limits<double>::infinity()};  ///< inclusive
+  bool above_least{};  ///< `least` itself is excluded
+  bool or_zero{};      ///< 0, for none, is allowed as well
 
   static constexpr NumberRule any() { return {}; }
-  static constexpr NumberRule positive() { return {Kind::kPositive, 0.0, 0.0}; }
-  static constexpr NumberRule notNegative() { return {Kind::kNotNegative, 0.0, 0.0}; }
-  static constexpr NumberRule within(double least, double most) { return {Kind::kWithin, least, most}; }
-  /// 0 for none.
-  static constexpr NumberRule zeroOrWithin(double least, double most) { return {Kind::kZeroOrWithin, least, most}; }
+  static constexpr NumberRule positive() { return {0.0, any().most, true, false}; }
+  static constexpr NumberRule notNegative() { return {0.0, any().most, false, false}; }
+  static constexpr NumberRule within(double least, double most) { return {least, most, false, false}; }
+  static constexpr NumberRule zeroOrWithin(double least, double most) { return {least, most, false, true}; }
 };
 
 /// One word of a choice and what it stands for.
@@ -72,10 +71,12 @@ class ParameterReader {
   const std::string& yaml() const { return yaml_; }
 
  private:
-  const Parameter* find(const std::string& key, const std::string& unit, const std::string& rule);
-  void refuse(const std::string& key, const Parameter& parameter, const std::string& unit, const std::string& rule);
+  /// The key's value as convert(node) gives it, kept for yaml() as textOf(value) writes it. Nothing, with a problem, if
+  /// the key is missing or convert() gives nothing.
+  template <typename Convert, typename TextOf>
+  auto read(const std::string& key, const std::string& unit, const std::string& rule, const Convert& convert,
+            const TextOf& textOf) -> decltype(convert(YAML::Node()));
   void report(const std::string& key, const std::string& line);
-  void keep(const std::string& key, const std::string& value) { yaml_ += key + ": " + value + "\n"; }
   std::size_t choiceIndex(const std::string& key, const std::vector<std::string>& words);
   std::string nearestKnownKey(const std::string& key) const;
 
