@@ -17,13 +17,13 @@ int run(int argc, const char* const* argv) {
   std::string file;
   std::string remove;
   bool as_json = false, as_csv = false, list_runs = false;
-  line.option("ledger", file, "file that the node or process_bag --ledger wrote").required().type("LEDGER.sqlite");
-  line.flag("--json", as_json, "as JSON");
-  line.flag("--csv", as_csv, "as CSV").excludes({"--json"});
-  line.flag("--runs", list_runs, "the runs that it counts, as CSV").excludes({"--json", "--csv"});
-  line.option("--remove", remove, "take this run out of the ledger")
-      .type("RUN")
-      .excludes({"--json", "--csv", "--runs"});
+  line.add_option("ledger", file, "file that the node or process_bag --ledger wrote")
+      ->required()
+      ->type_name("LEDGER.sqlite");
+  CLI::Option* json = line.add_flag("--json", as_json, "as JSON");
+  CLI::Option* csv = line.add_flag("--csv", as_csv, "as CSV")->excludes(json);
+  CLI::Option* runs = line.add_flag("--runs", list_runs, "the runs that it counts, as CSV")->excludes(json, csv);
+  line.add_option("--remove", remove, "take this run out of the ledger")->type_name("RUN")->excludes(json, csv, runs);
   if (const auto code = line.parse(argc, argv)) return *code;
   if (!remove.empty()) {
     const std::optional<std::string> problem = life::removeFromLedger(file, remove);
@@ -45,8 +45,7 @@ int run(int argc, const char* const* argv) {
     problems = report.problems;
     if (report.value) epochs = *std::move(report.value);
   }
-  for (const std::string& problem : problems) std::cerr << problem << '\n';
-  if (!problems.empty()) return kExitFailure;
+  if (!problems.empty()) return fail(problems);
   std::cout << (as_json ? lifeJson(epochs) : as_csv ? lifeCsv(epochs) : lifeText(epochs));
   return finishOutput();
 }
