@@ -105,7 +105,7 @@ class RodFilter {
   RodMotion motion_, before_;  ///< at the last sample, at the one before
   std::optional<TwoBodies::Blow> blow_;
   Belief belief_;
-  Belief::Matrix root_{Belief::Matrix::Zero()};                 ///< of its covariance
+  Belief::Matrix root_{Belief::Matrix::Zero()};                 ///< root of its covariance
   static constexpr Eigen::Index kLearned = kSize - kStiffness;  ///< the last rows
   using Learned = Eigen::Matrix<double, kLearned, kLearned>;
   RodMotion first_, learned_;  ///< rod, restitution, rod and place alone

@@ -13,7 +13,7 @@ struct PeriodFigures {
   std::string day;  ///< date; `all` for the whole epoch
   double hours{};
   std::uint64_t blows{};
-  ChannelFigures figures;  ///< those of a day are of the cycles that closed on it
+  ChannelFigures figures;  ///< a day has the cycles that closed on it
 };
 
 struct ChannelReport {

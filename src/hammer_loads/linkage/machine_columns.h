@@ -64,7 +64,7 @@ class ColumnTable {
   }
 
  private:
-  static constexpr int kPoints = 256;  ///< of half a turn
+  static constexpr int kPoints = 256;  ///< parts of half a turn
   static constexpr double kWidth = 0.5 * kTwoPi / kPoints;
   std::vector<Point> before_, after_;  ///< from the blow on
 };

@@ -79,7 +79,7 @@ class ElasticFollower {
     CrankEstimate crank;
     HullWrench wrench;
     TwoBodyState bodies;
-    LinkMotion links;  ///< as those of a rigid rod
+    LinkMotion links;  ///< links of a rigid rod
   };
   Instant at(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
     return instantOf(motionAt(time), true, drive, hull);
