@@ -39,7 +39,7 @@ void addLinkageOptions(CommandLine& line, LinkageArguments& given) {
   line.add_option("--linkage", given.table, "columns stroke_m,angle_rad over the whole stroke")
       ->required()
       ->type_name("TABLE.csv");
-  line.add_option("--write", given.output, "keys of the linkage, for --params beside the boom file")
+  line.add_option("--write", given.output, "keys of the linkage, for --params after the boom file")
       ->required()
       ->type_name("FILE.yaml");
   line.add_option("--cylinder", given.cylinder, "name of the cylinder, in front of its keys")

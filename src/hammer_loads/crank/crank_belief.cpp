@@ -5,7 +5,6 @@
 
 #include "hammer_loads/crank/column_step.h"
 #include "hammer_loads/util/growth.h"
-#include "hammer_loads/util/parts.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {

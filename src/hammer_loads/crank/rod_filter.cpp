@@ -38,7 +38,7 @@ constexpr double kHeld = 0.02;         // T [s]
 // Prior: kNotCoulomb, kUnidentified, kHeld
 constexpr int kEnough = 8;
 
-/// Replaces those rows of an error that a step changes, or a bound; of: the displaced motion.
+/// Sets the rows of an error that a step or a bound changes; of: the displaced motion.
 void follow(const RodMotion& of, const RodMotion& from, Eigen::Ref<RodFilter::Belief::Vector> error) noexcept {
   error[RodFilter::kAngle] = of.state.angle.offset - from.state.angle.offset;
   error[RodFilter::kSpeed] = of.state.speed - from.state.speed;
@@ -118,7 +118,7 @@ RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
   return m;
 }
 
-/// first: of the step's first part.
+/// first: links of the step's first part, which machines at the same angle share.
 std::optional<TwoBodies::Blow> RodFilter::advance(double dt, bool strikes, RodMotion& m,
                                                   TwoBodies::LinksMemo& first) const noexcept {
   const TwoBodyDrive by = drive(m);

@@ -22,7 +22,7 @@ constexpr double kLongestMove = 0.1;      // [rad] of the zero in one step of th
 constexpr double kExplained = 0.05;       // part of the times' squares that the best fit may leave
 constexpr double kStated = 0.06;          // largest standard deviation of a zero that is stated [rad]
 constexpr double kStepGain = 0.02;        // of the mean step
-constexpr int kCoarseSteps = 1, kFineSteps = 5;
+constexpr int kFineSteps = 5;
 constexpr int kCandidates = 12;  // places of the blow whose fit is improved
 enum : Eigen::Index { kInertia, kEnergy, kTorque, kStiffness, kZero, kStart };
 
@@ -236,8 +236,7 @@ void ZeroSearch::evaluate() noexcept {
   best.squares = kInfinity;
   for (int c = 0; c < kCandidates; ++c) {
     const int i = places[static_cast<std::size_t>(c)].second;
-    Vector x = unknowns[static_cast<std::size_t>(i)];
-    for (int n = 0; n < kCoarseSteps; ++n) x = step(i, table, x, false).unknowns;
+    const Vector x = step(i, table, unknowns[static_cast<std::size_t>(i)], false).unknowns;
     const Fit fit = step(i, table, x, false);
     if (!(fit.squares < best.squares)) continue;
     best = fit;

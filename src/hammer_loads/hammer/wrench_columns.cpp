@@ -62,7 +62,7 @@ std::vector<std::string> WrenchColumns::names() const {
   return names;
 }
 
-/// Not for a drive whose share in the reaction is in doubt, as its effect depends on the drive's inertia.
+/// Leaves the table out where drive_reaction_ratio is uncertain, because that column depends on the drive's inertia.
 void WrenchColumns::tabulate() {
   const auto ratio = indexOfConstant("drive_reaction_ratio");
   if (isExact() || model_->level() == Level::kPulse || model_->mechanism().parameters().deviations[*ratio] > 0.0)

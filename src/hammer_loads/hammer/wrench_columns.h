@@ -26,7 +26,7 @@ class WrenchColumns {
   /// [kg m2]. No allocation.
   Matrix wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
                 const HullMotion& hull) const noexcept;
-  /// Prepares wrench() for many calls, in some 10 ms.
+  /// Prepares wrench() for many calls, in some 2 ms.
   void tabulate();
   /// Sources in the columns' order, as MachineColumn::name.
   std::vector<std::string> names() const;

@@ -18,7 +18,7 @@ class Database {
  public:
   enum class Use { kRead, kWrite };  ///< kWrite makes the file where there is none
 
-  /// Waits up to `patience_ms` for others to release the file. pathProblem() is the first error.
+  /// Waits up to `patience_ms` for others to release the file. A pathProblem() is its first error.
   Database(const std::string& path, Use use, int patience_ms);
 
   /// Reason why the path cannot be that of a database, one line; empty: it can. Does not open the file.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "hammer_loads/life/column_texts.h"
+#include "hammer_loads/life/cycle_count.h"
 
 namespace hammer_loads::life {
 namespace {
@@ -110,6 +111,12 @@ constexpr char kIsText[] = "typeof($) = 'text'";
 constexpr char kIsCount[] = "typeof($) = 'integer' AND $ BETWEEN 0 AND 4611686018427387904";
 constexpr char kCount[] = "an integer in [0, 4611686018427387904]";
 
+std::vector<const char*> tallyNames() {
+  std::vector<const char*> names;
+  for (const TallyColumn& column : kTallyColumns) names.push_back(column.name);
+  return names;
+}
+
 const Rule kRules[] = {{"epochs", {"machine"}, kIsText, "a text"},
                        {"epochs",
                         {"equivalent_cycles_per_hour"},
@@ -120,11 +127,7 @@ const Rule kRules[] = {{"epochs", {"machine"}, kIsText, "a text"},
                        {"runs", {"pieces", "messages"}, kIsCount, kCount},
                        {"days", {"date"}, "typeof($) = 'text' AND date($) IS $", "a date YYYY-MM-DD"},
                        {"days", {"duration_ns", "turns"}, kIsCount, kCount},
-                       {"tallies",
-                        {"counted", "skipped", "below", "above", "gaps", "deviations", "deviation_sum", "range_square",
-                         "range_own", "range_common"},
-                        kIsCount,
-                        kCount},
+                       {"tallies", tallyNames(), kIsCount, kCount},
                        {"tallies",
                         {"least", "greatest"},
                         "$ IS NULL OR (typeof($) IN ('integer', 'real') AND abs($) < 1e300)",

@@ -41,7 +41,7 @@ struct MachineColumn {
 };
 
 /// Columns over a turn, linear between points some 0.7 deg apart: within a hundredth of each column's largest value
-/// (test), at a fifth of the time or less.
+/// (test), at a third of the time or less.
 template <int rows>
 class ColumnTable {
  public:

@@ -121,8 +121,7 @@ class ElasticFollower {
   /// links: as those of a rigid rod.
   Loads loads(const RodMotion& motion, const LinkMotion& links, const DriveReaction& drive) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const LinkMotion& links, const DriveReaction& drive) const noexcept;
-  Loads loadsBeside(const RodMotion& motion, const DriveReaction& drive) const noexcept;
-  /// Weights the loads as beside() does.
+  /// Weighs the vibration in the loads as beside() does.
   void weigh(const RodMotion& motion, Loads& loads) const noexcept;
   LoadCovariance covariance(const DriveReaction& drive, const LinkMotion& links, const Loads& here) const noexcept;
   void followRods(const CrankFollower& crank, Gravity gravity) noexcept;

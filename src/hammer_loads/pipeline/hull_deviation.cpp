@@ -116,7 +116,7 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
   Eigen::Matrix<double, 3, 4> by;
   by.col(0) = load({{1.0, 0.0}, 0.0, 0.0}), by.col(1) = load({{0.0, 1.0}, 0.0, 0.0});
   by.col(2).setZero();
-  if (covariance(2, 2) > 0.0)  // of a square
+  if (covariance(2, 2) > 0.0)  // exact, as the load is quadratic in the rate
     by.col(2) = 0.5 * (load({{0.0, 0.0}, hull.rate + 1.0, 0.0}) - load({{0.0, 0.0}, hull.rate - 1.0, 0.0}));
   by.col(3) = load({{0.0, 0.0}, 0.0, 1.0});
   by(2, 3) -= drive.by_hull;
