@@ -30,6 +30,8 @@ std::vector<Kind> kinds() {
   };
   const auto loss = [](double part) { return [part](MachineSettings& s) { s.blow.crank_loss = part; }; };
   const auto counts = [](int number) { return [number](MachineSettings& s) { s.crank.counts = number; }; };
+  const auto zero_off = [](MachineSettings& s) { s.crank.zero = 0.5 * kDegree; };
+  const auto eccentric = [](MachineSettings& s) { s.crank.eccentricity[0] = {1.0 * kDegree, 1.0}; };
   const auto coupled = [](MachineSettings& s) {
     s.drive.coupling_frequency = 50.0, s.drive.motor_share = 0.2, s.drive.coupling_damping = 0.02;
   };
@@ -54,12 +56,10 @@ std::vector<Kind> kinds() {
       {"blank firing in 10 % of the revolutions",
        {1000.0, 100.0},
        [](MachineSettings& s) { s.blow.blank_share = 0.1; }},
-      {"zero 0.5 deg off", {1000.0, 100.0}, [](MachineSettings& s) { s.crank.zero = 0.5 * kDegree; }},
-      {"encoder eccentric by 1 deg",
-       {1000.0, 100.0},
-       [](MachineSettings& s) {
-         s.crank.eccentricity[0] = {1.0 * kDegree, 1.0};
-       }},
+      {"zero 0.5 deg off", {1000.0, 100.0}, zero_off},
+      {"the same, after calibrate", {1000.0, 100.0}, zero_off, 1.0, true},
+      {"encoder eccentric by 1 deg", {1000.0, 100.0}, eccentric},
+      {"eccentric, after calibrate", {1000.0, 100.0}, eccentric, 1.0, true},
       {"360 counts", {1000.0, 100.0}, counts(360)},
       {"1024 counts", {1000.0, 100.0}, counts(1024)},
       {"coupling of 50 Hz, taken for rigid", {1000.0, 100.0}, coupled},

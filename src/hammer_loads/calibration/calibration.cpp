@@ -186,6 +186,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
     return result;
   }
   removeBias(fit, hammer, model, free, gain * track.facts.count, piece(progress, 0.35, 0.95));
+  hammer.weighByMounting();
   Globals in_force = basis.in_force;
   in_force.tail<kShaping>() = fit.globals.tail<kShaping>();
   std::vector<SegmentFit> as_in_force;

@@ -16,6 +16,8 @@ namespace {
 constexpr int kReplicas = 4;            // replicas of the recording, in pairs whose errors have opposite signs
 constexpr double kMostUncertain = 5.0;  // variance over that before the recording
 constexpr double kBiasDoubt = 0.5;      // part of the bias that is left after its removal
+constexpr double kMounting = 0.0175;    // standard deviation of each part of an encoder's eccentricity [rad]: 1 deg
+// Prior: kMounting
 
 constexpr const char* kNames[kGlobals] = {"zero",
                                           "sine of the eccentricity once per revolution",
@@ -126,6 +128,19 @@ void HammerPart::widen(const JointFit& fit) {
     if (!(excess > 0.0 && covariance(k, k) > 0.0)) continue;
     const double by = std::sqrt(1.0 + excess / covariance(k, k));
     covariance.row(k) *= by, covariance.col(k) *= by;
+  }
+}
+
+/// The removal of bias would undo this prior within the fits.
+void HammerPart::weighByMounting() {
+  const Eigen::Index count = errors.size();
+  for (Eigen::Index k = kSine1; k <= kCosine2; ++k) {
+    if (!(covariance(k, k) > 0.0)) continue;
+    const Eigen::VectorXd gain = covariance.col(k) / (covariance(k, k) + square(kMounting));
+    const double off = -globals[k];
+    globals += gain.head<kGlobals>() * off;
+    errors += gain.tail(count) * off;
+    covariance -= gain * covariance.row(k).eval();
   }
 }
 

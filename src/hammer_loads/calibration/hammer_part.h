@@ -27,6 +27,8 @@ struct HammerPart {
   }
   /// Adds the differences between blows beyond the noise, which the covariance of a fit's shared parameters contains.
   void widen(const JointFit& fit);
+  /// Takes into account how far from its centre an encoder is usually mounted, where the constants hide it.
+  void weighByMounting();
   /// False if the blows differ so much that a shared parameter is far less certain than before the recording.
   bool isCertain() const;
 };
