@@ -216,12 +216,13 @@ void CrankFilter::takeLoad() noexcept {
 /// Inflates the speed's variance where a rod's vibration would bias the filter, which has no rod; smaller vibrations
 /// are smoothed. A reading that is then followed is the same evidence of a rod as one that contradicts the prediction.
 void CrankFilter::considerRod(double angle, double speed) noexcept {
+  rod_.followed = true;
   double& of_speed = now_.covariance(Belief::kSpeed, Belief::kSpeed);
   if (HAMMER_LOADS_ABLATE(rod_considered) || !exceeds(speed, of_speed, gate::kImpossible)) return;
   rod_evidence_.add(now_.state.position.angle, square(speed) / of_speed);
   of_speed += square(speed);
   now_.covariance(Belief::kAngle, Belief::kAngle) += square(angle);
-  rod_ = {angle, speed};
+  rod_.angle = angle, rod_.speed = speed;
 }
 
 /// Innovation for a rigid mechanism, without the variance by a rod.

@@ -96,13 +96,13 @@ class CrankFilter {
   /// Returns true while it is uncertain whether the last passage was a blow: the estimate may be on the wrong branch.
   bool isDoubtful() const noexcept { return hypothesis_.isDoubtful(); }
   /// Probability of the other branch: no blow where the estimate has one, or a blow where it has none.
-  double otherBranch() const noexcept { return hypothesis_.probability(); }
+  double otherBranch() const noexcept;
   /// Returns true if the last reading itself determines the side of the blow, by an encoder's edge and an exact stamp.
   bool readingShowsSide() const noexcept { return read_side_.has_value(); }
   /// One count of the angle sensor [rad], as far as known.
   double angleResolution() const noexcept { return encoder_.resolution(); }
-  /// Jc: estimated inertia that turns with the crank, without the links [kg m2].
-  /// Inertia for the drive's reaction; 0 for a crank that is held at constant speed, whose holding torque is not known.
+  /// Jc: identified inertia that turns with the crank, without the links [kg m2]; 0 for a crank that is held at constant
+  /// speed, whose holding torque is not known.
   double driveInertia() const noexcept {
     return now_.state.drive_inertia < kHeld * first_guess_ ? now_.state.drive_inertia : 0.0;
   }
@@ -162,8 +162,7 @@ class CrankFilter {
   const RodEvidence& rodEvidence() const noexcept { return rod_evidence_; }
   /// Standard deviation of the last reading [rad].
   double readingDeviation() const noexcept { return std::sqrt(sample_.angleVariance(now_.state.speed)); }
-  /// Returns true if it restarted so often that the model does not fit: contradictions are then followed with a low
-  /// weight instead.
+  /// Returns true after so many restarts that the model does not fit: contradictions are then followed slowly.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Returns true if the innovations remain far larger than expected for any drive inertia.
   bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
@@ -256,7 +255,9 @@ class CrankFilter {
   double instant_off_{};  ///< see instantOff()
   struct {
     double angle{}, speed{};  ///< [rad], [rad/s]
-  } rod_;                     ///< considerRod() since the last sample
+    bool followed{};
+  } rod_;                    ///< considerRod() since the last sample
+  bool rod_hides_branch_{};  ///< rod_.followed when the branch was last doubted
   TimingNoise timing_;
   SupplyRoughness roughness_;
   LearnedSupply supply_;

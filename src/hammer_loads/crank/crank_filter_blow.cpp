@@ -14,9 +14,10 @@ using Belief = CrankBelief;
 constexpr double kNearCounts = 4.0;       // counts from the blow within which the encoder decides its side
 constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
 constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
+constexpr double kHiddenBranch = 0.25;    // probability: the other branch is then two standard deviations away
 constexpr double kRingOver = 0.8;         // [rad] behind the blow: a rod's vibration is not taken for a torque any more
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
-// Prior: kToolDeviation
+// Prior: kToolDeviation, kHiddenBranch
 
 }  // namespace
 
@@ -135,6 +136,12 @@ void CrankFilter::beginHypothesis(const CrankBelief& belief) noexcept {
     hypothesis_.begin(belief);
 }
 
+/// (9) The vibration of a rod may pass for the torque that shows a missed tool: the question then stays open to the next
+/// dead centre.
+double CrankFilter::otherBranch() const noexcept {
+  return std::max(hypothesis_.probability(), mirrored_ && rod_hides_branch_ ? kHiddenBranch : 0.0);
+}
+
 /// (9) Switches to the second hypothesis if it explains a sample that the estimate does not.
 bool CrankFilter::hypothesisExplains(double dt, const WeighedSample& sample) noexcept {
   if (!hypothesis_.isOpen()) return false;
@@ -156,6 +163,7 @@ void CrankFilter::doubtContact() noexcept {
   CrankBelief other = now_;
   other.state.torque = 0.0;
   other.draw(Belief::kTorque, supply_.usual());
+  rod_hides_branch_ = rod_.followed;
   hypothesis_.ask(other);
 }
 

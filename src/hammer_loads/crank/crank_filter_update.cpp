@@ -96,7 +96,6 @@ std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
 Tracking CrankFilter::take(const SampleStep& to, double reading) noexcept {
   sample_ = to.sample;
   angle_fit_ = withoutRod(to.dt, to.innovation).logLikelihood();
-  rod_ = {};
   before_ = 1 - before_;
   before_load_ = load_;
   before_hull_ = now_hull_;
@@ -105,6 +104,7 @@ Tracking CrankFilter::take(const SampleStep& to, double reading) noexcept {
   angle_lag_.go(to.behind);
   outlier_ = 0.0;
   const bool revised = correct(to.last, to.dt, to.struck, to.innovation, to.sample, reading);
+  rod_ = {};
   if (!now_.isSound(mostSpeed())) {
     now_ = to.last;
     return begin(to.sample);
