@@ -59,7 +59,7 @@ TEST(BoomCalibration, CorrectsWrongNominalMasses) {
   std::mt19937 random(1);
   double given = 0.0;
   int joints = 0, weight_as_asked = 0, friction_as_asked = 0;
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < 4; ++i) {
     const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
     const BoomCalibration found = calibrated(machine, random);
     ASSERT_EQ(found.problem, "");
@@ -128,7 +128,7 @@ TEST(BoomCalibration, WeighsABoomOnItsOil) {
   m.drive.start_time = 1e4, m.start_angle = 1e-9;
   m.crank.rate = 10.0;
   m.boom[1] = {-0.2, 0.45, 11.0, 0.0}, m.boom[2] = {1.3, 0.6, 7.0, 1.0}, m.boom[3] = {-0.8, 0.7, 5.0, 2.0};
-  m.duration = 120.0;
+  m.duration = 60.0;
   const simulation::Session session = simulation::recordSession(m);
   BoomRecording recording;
   recording.joint.resize(4), recording.pressure.resize(3);
@@ -155,20 +155,16 @@ TEST(BoomCalibration, WeighsABoomOnItsOil) {
 TEST(BoomCalibration, FindsAWeightOnTheTip) {
   constexpr double kLoad = 500.0, kX = -0.2, kZ = -0.9;  // [kg], [m] from D
   std::mt19937 random(3);
-  int within = 0;
-  for (int i = 0; i < 5; ++i) {
-    const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
-    FreeBoom loaded = machine;
-    loaded.hang(kLoad, {kX, kZ});
-    const BoomCalibration found = calibrateBoom(
-        test::shippedBasis(),
-        {{machine.record(random, 120.0), {}}, {loaded.record(random, 60.0), {kLoad, 0.002 * kLoad, kX, kZ}}});
-    ASSERT_EQ(found.problem, "");
-    ASSERT_TRUE(found.weight_check);
-    EXPECT_NEAR(found.weight_check->value, kLoad, 0.02 * kLoad) << i;
-    within += std::abs(found.weight_check->value - kLoad) < 2.0 * found.weight_check->deviation;
-  }
-  EXPECT_GE(within, 4);
+  const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
+  FreeBoom loaded = machine;
+  loaded.hang(kLoad, {kX, kZ});
+  const BoomCalibration found = calibrateBoom(
+      test::shippedBasis(),
+      {{machine.record(random, 120.0), {}}, {loaded.record(random, 60.0), {kLoad, 0.002 * kLoad, kX, kZ}}});
+  ASSERT_EQ(found.problem, "");
+  ASSERT_TRUE(found.weight_check);
+  EXPECT_NEAR(found.weight_check->value, kLoad, 0.02 * kLoad);
+  EXPECT_LT(std::abs(found.weight_check->value - kLoad), 2.0 * found.weight_check->deviation);
 }
 
 /// The weight is the one thing that tells a bore from a mass.
@@ -225,7 +221,6 @@ TEST(BoomCalibration, NamesPressuresThatContradictTheBoomFile) {
 TEST(BoomCalibration, NamesTheJointThatMovedTooLittle) {
   std::mt19937 random(6);
   const FreeBoom machine = FreeBoom::drawn(random);
-  EXPECT_EQ(calibrateBoom(test::shippedBasis(), {{machine.record(random, 120.0), {}}}).problem, "");
   const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{machine.record(random, 20.0), {}}});
   EXPECT_NE(found.problem.find("_joint: surely moves at"), std::string::npos) << found.problem;
 }
@@ -281,23 +276,6 @@ TEST(BoomCalibration, KnowsHowWellItKnowsFromSeveralDays) {
   EXPECT_GE(within, static_cast<int>(0.88 * weights)) << weights;
 }
 
-/// 2e-4 rad where the sensor is right.
-TEST(BoomCalibration, NamesASensorThatIsFaultyInOneOfManyRecordings) {
-  std::mt19937 random(22);
-  FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
-  std::vector<WeighedRecording> recordings;
-  for (const char* name : {"monday", "tuesday"}) recordings.push_back({machine.record(random, 40.0), {}, name});
-  for (const double noise : {3e-3, 2e-4}) {
-    machine.joint_noise = noise;
-    recordings.push_back({machine.record(random, 40.0), {}, "wednesday"});
-    const BoomCalibration found = calibrateBoom(test::shippedBasis(), recordings);
-    recordings.pop_back();
-    EXPECT_EQ(found.problem.find("boom_joint: its sensor's noise is ") == 0, noise > 1e-3) << found.problem;
-    EXPECT_EQ(found.problem.find("in wednesday, must be within 8 times") != std::string::npos, noise > 1e-3);
-    EXPECT_EQ(found.problem.empty(), noise < 1e-3);
-  }
-}
-
 /// A bore sensor that drifts by 8 bar in the last quarter: formal deviations alone would not tell.
 TEST(BoomCalibration, WritesNothingWhereWhatIsHeldOutDoesNotFit) {
   std::mt19937 random(23);
@@ -314,13 +292,13 @@ TEST(BoomCalibration, WritesNothingWhereWhatIsHeldOutDoesNotFit) {
   EXPECT_FALSE(found.determined());
 }
 
-/// Four recordings of one machine, whose zeros and offsets are those of their days.
-std::vector<WeighedRecording> fourDays(std::mt19937& random) {
+/// Recordings of one machine, whose zeros and offsets are those of their days.
+std::vector<WeighedRecording> threeDays(std::mt19937& random) {
   std::normal_distribution<> normal;
   FreeBoom machine = FreeBoom::drawn(random);
   const FreeBoom usual = machine;
   std::vector<WeighedRecording> recordings;
-  for (const char* name : {"monday", "tuesday", "wednesday", "thursday"}) {
+  for (const char* name : {"monday", "tuesday", "wednesday"}) {
     for (std::size_t k = 0; k < 3; ++k) {
       machine.zero[k] = usual.zero[k] + 1e-3 * normal(random);
       machine.offset[k] = usual.offset[k] + 5e4 * normal(random);
@@ -330,10 +308,12 @@ std::vector<WeighedRecording> fourDays(std::mt19937& random) {
   return recordings;
 }
 
-/// A sensor whose readings a flaw changes, in one of four recordings of different days.
+/// A sensor whose readings a flaw changes, in one of three recordings of different days.
 TEST(BoomCalibration, NamesTheJointAndTheRecordingOfAFaultySensor) {
   using Readings = std::vector<double>;
   constexpr double kDegree = kPi / 180.0;
+  std::mt19937 random(31);
+  std::normal_distribution<> normal;
   const std::vector<std::pair<const char*, std::function<void(Readings&)>>> flaws{
       {"leap", [](Readings& q) { std::for_each(q.begin() + 1000, q.end(), [](double& a) { a += kDegree; }); }},
       {"stays", [](Readings& q) { std::fill(q.begin() + 800, q.begin() + 1400, q[800]); }},
@@ -351,11 +331,14 @@ TEST(BoomCalibration, NamesTheJointAndTheRecordingOfAFaultySensor) {
          double shown = q[0];
          for (double& a : q) a = shown = std::clamp(shown, a - 0.5 * kDegree, a + 0.5 * kDegree);
        }},
+      {"noise",
+       [&](Readings& q) {
+         for (double& a : q) a += 3e-3 * normal(random);
+       }},
       {"swing in a half", [](Readings& q) {
          for (std::size_t i = 0; i < q.size() / 2; ++i) q[i] += 0.03 * std::sin(0.5 * static_cast<double>(i));
        }}};
-  std::mt19937 random(31);
-  const std::vector<WeighedRecording> good = fourDays(random);
+  const std::vector<WeighedRecording> good = threeDays(random);
   EXPECT_EQ(calibrateBoom(test::shippedBasis(), good).problem, "");
   for (std::size_t i = 0; i < flaws.size(); ++i) {
     const std::size_t joint = 1 + i % 3;

@@ -26,9 +26,9 @@ TEST(RodCheck, NothingIsWrittenThatARodMovesByMoreThanAFifthOfADegree) {
   std::mt19937_64 random(77);
   std::uniform_real_distribution<double> part(0.0, 1.0);
   int settled = 0;
-  for (std::uint64_t i = 0; i < 8; ++i) {
+  for (std::uint64_t i = 0; i < 4; ++i) {
     const double zero = (2.0 * part(random) - 1.0) * kDegree;
-    const simulation::RodSettings rod{2e8 * std::pow(50.0, static_cast<double>(i) / 7.0), i % 2 == 0 ? 3.0 : 0.4,
+    const simulation::RodSettings rod{2e8 * std::pow(50.0, static_cast<double>(i) / 3.0), i % 2 == 0 ? 3.0 : 0.4,
                                       i % 3 == 0 ? 0.0 : 5e-4 * part(random)};
     SCOPED_TRACE(testing::Message() << rod.stiffness << " N/m, " << rod.damping_ratio << ", " << rod.play << " m");
     const Calibration c = withRod(rod, zero, i % 4 == 1 ? 500.0 : 1000.0, 770 + i);
@@ -44,11 +44,11 @@ TEST(RodCheck, NothingIsWrittenThatARodMovesByMoreThanAFifthOfADegree) {
     EXPECT_FALSE(found->determined()) << found->value / kDegree << " for " << zero / kDegree << " deg";
   }
   EXPECT_GT(settled, 0);
-  EXPECT_LT(settled, 8);
+  EXPECT_LT(settled, 4);
 }
 
 TEST(RodCheck, ARigidRodIsNotSuspected) {
-  for (const double zero : {0.0, 1.0, -1.0}) {
+  for (const double zero : {1.0, -1.0}) {
     const Calibration c = withRod({}, zero * kDegree, 1000.0, 790);
     EXPECT_TRUE(test::find(c, "crank_zero_rad")->determined()) << zero;
     EXPECT_EQ(textOf(c, true).find("rod, pins"), std::string::npos) << zero;
