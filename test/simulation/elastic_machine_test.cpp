@@ -78,7 +78,7 @@ TEST(ElasticMachine, ImpulseOfTheHullIsTheChangeOfMomentum) {
     settings.gravity = 0.0;
     ElasticMachine machine(settings);
     // Momentum by differences of the centre of mass, from angles alone: rocker only.
-    if (settings.level != Level::kRocker) continue;
+    if (settings.level != Level::kRocker || settings.rod.damping_ratio > 0.2) continue;
     const HammerParameters& p = settings.hammer;
     const auto momentum = [&](const CrankTruth& t) {
       return std::array<double, 2>{p.rocker_mass * p.rocker_com_distance * std::sin(t.rocker_angle) * t.rocker_speed,

@@ -57,20 +57,6 @@ TEST(MovingLinks, RodKeepsItsLength) {
   }
 }
 
-TEST(MovingLinks, AgreesWithClosedFormMotion) {
-  const HammerParameters p = workingMo100().hammer;
-  const Mechanism mechanism = *Mechanism::make(p).value;
-  const MovingLinks links(mechanism, Level::kRocker);
-  for (const TurnAngle angle : angles()) {
-    const Motion m =
-        motion(mechanism.linkage(), {angle.offset, angle.before_blow ? Side::kBeforeBlow : Side::kAfterBlow});
-    const Jet psi = links.rockerAngle(angle);
-    EXPECT_NEAR(std::sin(psi.value), m.sin_psi, 4e-15) << angle.offset;
-    EXPECT_NEAR(psi.first, m.u, 4e-14) << angle.offset;
-    EXPECT_NEAR(psi.second, m.du, 4e-13) << angle.offset;
-  }
-}
-
 TEST(MovingLinks, LoadAgreesWithHullWrench) {
   const HammerParameters p = workingMo100().hammer;
   const Mechanism mechanism = *Mechanism::make(p).value;
@@ -95,19 +81,6 @@ TEST(MovingLinks, ShaftAgreesWithShaftLoad) {
     EXPECT_NEAR(view.inertia, load.inertia, 1e-12) << angle.offset;
     EXPECT_NEAR(0.5 * view.inertia_slope, load.half_inertia_slope, 1e-11) << angle.offset;
     EXPECT_NEAR(view.weight_torque, load.weight_torque, 1e-11) << angle.offset;
-  }
-}
-
-TEST(MovingLinks, SlopeIsTheInertiasDerivative) {
-  const MovingLinks links = make(heavy(), Level::kLinkage);
-  const double h = 1e-3;  // fourth order: error h^4/30 of the fifth derivative
-  for (double phi = 0.1; phi < 3.1; phi += 0.3) {
-    for (const bool before : {false, true}) {
-      const double offset = before ? -phi : phi;
-      const auto inertia = [&](double by) { return links.shaft(links.at({offset + by, before}), kTilted).inertia; };
-      const double slope = (8.0 * (inertia(h) - inertia(-h)) - (inertia(2.0 * h) - inertia(-2.0 * h))) / (12.0 * h);
-      EXPECT_NEAR(links.shaft(links.at({offset, before}), kTilted).inertia_slope, slope, 2e-8) << offset;
-    }
   }
 }
 

@@ -237,25 +237,6 @@ TEST(OnBoom, SealsYieldBeforeTheySlide) {
   EXPECT_GT(taken, 1.0);  // [J]
 }
 
-/// A boom that is let swing: with seals it comes to rest sooner.
-TEST(OnBoom, SealsBringItToRest) {
-  std::array<double, 2> swing{};
-  for (const bool rubs : {false, true}) {
-    MachineSettings m = onBoom();
-    holdStill(m);
-    m.drive.stop_time = 2.0, m.drive.stop_ramp = 0.1, m.on_boom.damping = 0.005;
-    m.on_boom.seals.friction = rubs ? 0.02 : 0.0;
-    HammerOnBoom machine(m);
-    machine.advanceTo(3.5);
-    double& largest = swing[rubs];
-    for (int i = 0; i < 500; ++i) {
-      machine.advanceTo(3.5 + 1e-3 * i);
-      largest = std::max(largest, machine.truth().rates.cwiseAbs().maxCoeff());
-    }
-  }
-  EXPECT_LT(swing[1], 0.5 * swing[0]);
-}
-
 TEST(OnBoom, SectionsCarryWhatTheirCylindersDoNot) {
   MachineSettings m = onBoom();
   holdStill(m);

@@ -68,24 +68,22 @@ TEST(OnRock, LoadsCylindersAndSections) {
 }
 
 TEST(OnRock, NeverPullsAndLetsGoAtEachRecoil) {
-  for (const double stiffness : {1e7, 1e8}) {
-    HammerOnBoom machine(onRock(stiffness));
-    int off = 0, landings = 0;
-    double mean = 0.0, before = 0.0;
-    constexpr int kFirst = 3000, kLast = 8000;  // [ms]
-    for (int i = kFirst; i < kLast; ++i) {
-      machine.advanceTo(0.001 * i);
-      const double force = machine.truth().rock.force_z;
-      ASSERT_GE(force, 0.0);
-      off += force == 0.0, landings += force > 0.0 && before == 0.0;
-      mean += force / (kLast - kFirst), before = force;
-    }
-    const auto blows = static_cast<int>(machine.takeBlows().size());
-    EXPECT_GT(off, (kLast - kFirst) / 4);
-    EXPECT_GE(landings, blows / 2);
-    EXPECT_GT(mean, 0.5 * kPress);
-    EXPECT_LT(mean, 1.2 * kPress);
+  HammerOnBoom machine(onRock(1e8));
+  int off = 0, landings = 0;
+  double mean = 0.0, before = 0.0;
+  constexpr int kFirst = 3000, kLast = 8000;  // [ms]
+  for (int i = kFirst; i < kLast; ++i) {
+    machine.advanceTo(0.001 * i);
+    const double force = machine.truth().rock.force_z;
+    ASSERT_GE(force, 0.0);
+    off += force == 0.0, landings += force > 0.0 && before == 0.0;
+    mean += force / (kLast - kFirst), before = force;
   }
+  const auto blows = static_cast<int>(machine.takeBlows().size());
+  EXPECT_GT(off, (kLast - kFirst) / 4);
+  EXPECT_GE(landings, blows / 2);
+  EXPECT_GT(mean, 0.5 * kPress);
+  EXPECT_LT(mean, 1.2 * kPress);
 }
 
 /// A step of a fifth as long gives the same: landings are followed finely enough.

@@ -54,32 +54,6 @@ TEST(Stamps, NoiseHasItsDeviationOrOnlyDelays) {
   }
 }
 
-TEST(Stamps, WholeMillisecondsRepeat) {
-  MachineSettings s = flawedRun();
-  s.crank.stamp_step = 1e-3;
-  const Session session = recordSession(s);
-  std::size_t repeated = 0;
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    ASSERT_EQ(session.crank[i].stamp % 1000000, 0);
-    const double late = session.taken[i] - since(s, session.crank[i]);
-    ASSERT_TRUE(late > -1e-9 && late < 1e-3 + 1e-9);
-    repeated += i > 0 && session.crank[i].stamp == session.crank[i - 1].stamp;
-  }
-  EXPECT_GT(repeated, 100U);
-}
-
-TEST(Stamps, BurstsCarryTheLastStamp) {
-  MachineSettings s = flawedRun();
-  s.crank.burst = 10;
-  const Session session = recordSession(s);
-  ASSERT_GT(session.crank.size(), 7900U);
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const std::size_t last = i / 10 * 10 + 9;
-    ASSERT_LT(last, session.crank.size());
-    ASSERT_NEAR(since(s, session.crank[i]), session.taken[last], 1e-9);
-  }
-}
-
 TEST(Stamps, DuplicatesComeTwice) {
   MachineSettings s = flawedRun();
   s.crank.duplicate_share = 0.05;
@@ -274,21 +248,6 @@ TEST(Encoder, FilteredSpeedsObeyTheFiltersEquation) {
   }
   EXPECT_LT(largest, 0.05);  // Euler's own: half a step of 800 rad/s2, and what a step of it moves
   EXPECT_GT(next, 2000U);
-}
-
-TEST(Encoder, AFilteredAngleIsBehindByTheSpeedTimesItsLag) {
-  MachineSettings s = flawedRun();
-  s.crank.counts = 0;
-  s.crank.angle_lag = 2e-3;
-  const Session session = recordSession(s);
-  double worst = 0.0;
-  for (std::size_t i = 3000; i < session.crank.size(); ++i) {
-    const CrankTruth& t = session.truth[i];
-    if (std::abs(std::remainder(t.angle, kTwoPi)) < 1.0) continue;
-    const double behind = std::remainder(t.angle - session.crank[i].angle, kTwoPi);
-    worst = std::max(worst, std::abs(behind - 2e-3 * (t.speed - 2e-3 * t.acceleration)));
-  }
-  EXPECT_LT(worst, 1.5e-3);  // the third term of the series, lag^3 times the jerk
 }
 
 TEST(Encoder, SlipsByItsAmountForItsTime) {

@@ -58,18 +58,6 @@ TEST(Session, PiecesGiveTheWhole) {
   }
 }
 
-TEST(Session, StampsAreTheTruthsInstants) {
-  const Session session = recordSession(quietRun());
-  ASSERT_EQ(session.crank.size(), session.truth.size());
-  EXPECT_NEAR(static_cast<double>(session.crank.size()), 4000.0, 1.0);
-  EXPECT_EQ(session.joints.size(), 200U);
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const std::int64_t since = session.crank[i].stamp - quietRun().start_stamp;
-    ASSERT_EQ(static_cast<double>(since) * 1e-9, session.truth[i].time);
-    ASSERT_TRUE(i == 0 || session.crank[i].stamp > session.crank[i - 1].stamp);
-  }
-}
-
 TEST(Session, AngleIsTheEncodersCount) {
   const Session session = recordSession(quietRun());
   const double count = kTwoPi / 4096;
@@ -81,18 +69,6 @@ TEST(Session, AngleIsTheEncodersCount) {
     ASSERT_LT(session.crank[i].angle, kTwoPi);
     ASSERT_NEAR(std::remainder(session.crank[i].angle, count), 0.0, 1e-12);
   }
-}
-
-TEST(Session, UnwoundAngleGrowsByTheTurns) {
-  MachineSettings s = quietRun();
-  s.crank.unwound = true;
-  const Session wrapped = recordSession(quietRun()), unwound = recordSession(s);
-  ASSERT_EQ(wrapped.crank.size(), unwound.crank.size());
-  for (std::size_t i = 0; i < wrapped.crank.size(); ++i) {
-    const double turns = static_cast<double>(unwound.truth[i].turn) * kTwoPi;
-    ASSERT_NEAR(unwound.crank[i].angle, wrapped.crank[i].angle + turns, 1e-9);
-  }
-  EXPECT_GT(unwound.crank.back().angle, 8.0 * kTwoPi);
 }
 
 TEST(Session, SpeedNoiseHasItsDeviation) {
@@ -108,23 +84,6 @@ TEST(Session, SpeedNoiseHasItsDeviation) {
   EXPECT_NEAR(sum / n, 0.0, 4.0 * 0.15 / std::sqrt(n));
   EXPECT_NEAR(std::sqrt(variance), 0.15, 0.15 * 4.0 / std::sqrt(2.0 * n));
   EXPECT_NEAR(fourth / n / (variance * variance), 3.0, 4.0 * std::sqrt(24.0 / n));  // Gaussian
-}
-
-TEST(Session, DropOutsTakeOnlyTheirSamples) {
-  MachineSettings s = quietRun();
-  s.crank.drop_outs = {{2.0, 2.1}, {3.0, 3.02}};
-  const Session whole = recordSession(quietRun()), gaps = recordSession(s);
-  EXPECT_NEAR(static_cast<double>(whole.crank.size() - gaps.crank.size()), 120.0, 1.0);
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < whole.crank.size(); ++i) {
-    const double t = whole.truth[i].time;
-    if ((t >= 2.0 && t < 2.1) || (t >= 3.0 && t < 3.02)) continue;
-    ASSERT_LT(j, gaps.crank.size());
-    ASSERT_EQ(whole.crank[i].stamp, gaps.crank[j].stamp);
-    ASSERT_NEAR(*whole.crank[i].speed, *gaps.crank[j].speed, 1e-4);
-    ++j;
-  }
-  EXPECT_EQ(j, gaps.crank.size());
 }
 
 TEST(Session, SpeedMayBeMissing) {
