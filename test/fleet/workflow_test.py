@@ -94,10 +94,6 @@ def test_odd_names_end_nothing(fleet, bags, tmp_path):
     assert sorted(name for name, row in rows.items() if row[0] == "done") == ["'q'{z}.bag", "-x.bag", "a b.bag", "r0.bag", "{x}.bag"]
     assert "control characters" in rows["r1.bag"][1]
     assert "entry 6: machine and bag: 'red', 5, must be texts" in [row[1] for row in rows.values()]
-    fleet.calls()
-    (bags / "red" / "{x}.bag").write_text("11 20 1700091000")
-    fleet.run(listed)
-    assert fleet.calls() == ["{x}.bag"]
 
 
 def test_a_bad_list_is_one_line(fleet, tmp_path):

@@ -87,7 +87,7 @@ class Loads(unittest.TestCase):
 
     def test_others_run_meanwhile(self):
         """While a long call computes, another thread of Python goes on: it counts what the lock would have stopped."""
-        angle, ticks, done = np.resize(ANGLE, 1000000), [], threading.Event()
+        angle, ticks, done = np.resize(ANGLE, 300000), [], threading.Event()
 
         def tick():
             while not done.is_set():

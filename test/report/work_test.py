@@ -48,14 +48,23 @@ LIMIT = "INSERT INTO parameters VALUES(1, 'limit_peak_force_warn_N', '9000.0', N
 START = 1700000060 * sample.SECOND
 
 
-def test_exceeded_limits_are_shown(made):
-    kept = page_of(made("kept", LIMIT)).text
-    assert "No limit was exceeded" in kept and "limit exceeded" not in kept
+@pytest.fixture
+def measured(made):
+    """Limits exceeded, a measured load, and standard deviations of the measurement."""
     alarm = "INSERT INTO alarms VALUES(1, '%s', %d, 'N', %s, %s, %s, %d, %d, %d)"
-    page = page_of(made(
-        "exceeded", LIMIT, alarm % ("peak_force", 1, 9120.0, 87.0, 9000.0, START, START + sample.SECOND, 6),
+    return made(
+        "measured", LIMIT, alarm % ("peak_force", 1, 9120.0, 87.0, 9000.0, START, START + sample.SECOND, 6),
         alarm % ("peak_force", 1, 9456.0, 91.0, 9000.0, START + 9 * sample.SECOND, START + 9 * sample.SECOND, 1),
-        alarm % ("hold_down_force", 2, 3100.0, "NULL", 3000.0, START, START + sample.SECOND, 1234)))
+        alarm % ("hold_down_force", 2, 3100.0, "NULL", 3000.0, START, START + sample.SECOND, 1234),
+        "INSERT INTO reference VALUES (1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, 0.985, 0.99871, 0.968)",
+        "ALTER TABLE blows ADD COLUMN energy_std REAL", "ALTER TABLE blows ADD COLUMN restitution_std REAL",
+        "UPDATE blows SET energy_std = 7.0, restitution_std = 0.3", seconds=200.0)
+
+
+def test_exceeded_limits_are_shown(made, measured):
+    kept = page_of(made("kept", LIMIT)).text
+    assert "No limit was exceeded" in kept and "limit exceeded" not in kept and "Measured reference" not in kept
+    page = page_of(measured)
     assert [words for tag, words in page.pieces if tag == "li" and words.startswith("limit exceeded")] == [
         "limit exceeded (ERROR): hold_down_force 3100 N, limit 3000 N, in 1\u202f234 revolutions",
         "limit exceeded (WARN): peak_force 9\u202f456 \u00b1 91 N, limit 9000 N, in 7 revolutions"]
@@ -65,19 +74,15 @@ def test_exceeded_limits_are_shown(made):
     assert "2023-11-14 22:14:20" in row["First"]
 
 
-def test_a_measured_load_is_compared_with_the_computed_one(made, site):
-    assert "Measured reference" not in page_of(site).text
-    row = "(1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, 0.985, 0.99871, 0.968)"
-    page = page_of(made("measured", f"INSERT INTO reference VALUES {row}"))
-    assert page.table("Computed and measured load")["force_z"] == {
+def test_a_measured_load_is_compared_with_the_computed_one(measured):
+    assert page_of(measured).table("Computed and measured load")["force_z"] == {
         "Run": "1", "Samples": "20\u202f000", "Measured, rms": "4.2 kN", "Error, rms": "0.084 kN", "Error, relative": "2 %",
         "Bias": "\u22120.03 kN", "Scale": "0.985", "Correlation": "0.99871", "Within two": "96.8 %"}
 
 
-def test_std_of_the_measurement_where_it_is_known(made):
+def test_std_of_the_measurement_where_it_is_known(measured):
     """An axis of values is not finer than the standard deviation of their measurement: noise within it looks like it."""
-    page = page_of(made("site", "ALTER TABLE blows ADD COLUMN energy_std REAL", "ALTER TABLE blows ADD COLUMN restitution_std REAL",
-                        "UPDATE blows SET energy_std = 7.0, restitution_std = 0.3", seconds=200.0))
+    page = page_of(measured)
     assert figures(page)["blow energy, median \u00b1 deviation"].endswith("\u00b1 7.0 J")
     picture = page.drawn("Restitution:")
     heights = [y for piece in picture.curves("band first") for _, y in piece]
@@ -164,8 +169,15 @@ def test_damage_is_shown_by_hour(dear):
     assert value(rows[min(rows)]["Damage [%]"]) == pytest.approx(100.0 * damage, abs=0.1)
 
 
-def test_damage_by_recording_is_by_its_cycles(made):
-    file, totals = made(machine=sample.Machine(curve=False), seconds=100.0, runs=2), []
+@pytest.fixture
+def misused(made):
+    """Two runs, of which the second knows less of its misuse."""
+    return made("site", "UPDATE runs SET blows_without_hold_down = NULL, still_time = NULL WHERE run_id = 2",
+                machine=sample.Machine(curve=False, misuse=(6, 500, 20, 12.5)), seconds=100.0, runs=2)
+
+
+def test_damage_by_recording_is_by_its_cycles(misused):
+    file, totals = misused, []
     for run in (1, 2):
         where = f"JOIN channels USING(run_id, channel) WHERE run_id = {run} AND name = 'hull_wrench/force_z'"
         closed = execute(file, f"SELECT steps, count FROM cycles {where}")
@@ -195,9 +207,8 @@ def test_life_follows_a_curve_of_two_slopes(made):
         assert value(rows[str(factor)]["stress at boom_foot"]) == pytest.approx(damage[1.0] / damage[factor], rel=0.02)
 
 
-def test_misuse_is_counted_over_the_runs_that_know(made):
-    file = made("site", "UPDATE runs SET blows_without_hold_down = NULL, still_time = NULL WHERE run_id = 2",
-                machine=sample.Machine(misuse=(6, 500, 20, 12.5)), seconds=100.0, runs=2)
+def test_misuse_is_counted_over_the_runs_that_know(misused):
+    file = misused
     hours = [h for h, in execute(file, "SELECT duration / 3600 FROM runs ORDER BY run_id")]
     blank, without, still = page_of(file).table("Misuse").values()
     assert (value(blank["Count"]), value(without["Count"]), value(still["Count"])) == (12, 20, 12.5)
