@@ -88,8 +88,8 @@ TEST_F(CalibrateBoom, StatesTheWeightOfAKnownMass) {
   std::mt19937 random(2);
   FreeBoom machine, loaded;
   loaded.hang(500.0, {-0.2, -0.9});
-  writeBag(path("free.bag"), machine.record(random, 90.0));
-  writeBag(path("loaded.bag"), loaded.record(random, 60.0));
+  writeBag(path("free.bag"), machine.record(random, 60.0));
+  writeBag(path("loaded.bag"), loaded.record(random, 40.0));
   const Outcome outcome = calibrate(path("free.bag") + kBoomFiles + " --weight 500 --at -0.2 -0.9 --weighed " +
                                     path("loaded.bag") + " --write " + path("boom.yaml"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

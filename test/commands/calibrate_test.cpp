@@ -1,21 +1,15 @@
 // The command calibrate as its user meets it: files, errors and exit codes.
-#include <hammer_loads/RunInfo.h>
-#include <rosbag/bag.h>
-#include <sensor_msgs/JointState.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
-#include <map>
 #include <regex>
 
-#include "hammer_loads/commands/progress_bar.h"
+#include "commands/bag_files.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/command.h"
 
 namespace hammer_loads {
 namespace {
@@ -25,70 +19,60 @@ using test::contentOf;
 using test::Outcome;
 using test::TemporaryFile;
 
-const std::string kBag = std::string(HAMMER_LOADS_TEST_DATA) + "/mo100_100hz.bag";
+class Calibrate : public test::BagFiles {
+ protected:
+  Calibrate() : output_(path("found.yaml")) {}
+  const std::string output_;
+};
 
 Outcome runCalibrate(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_CALIBRATE, arguments); }
 
-/// A name that is free, and nothing left of it afterwards.
-class FreeName {
- public:
-  FreeName() : name_(TemporaryFile("").path() + ".yaml") {}
-  FreeName(const FreeName&) = delete;
-  FreeName& operator=(const FreeName&) = delete;
-  ~FreeName() {
-    std::error_code error;
-    fs::remove(name_, error);
-    fs::remove(picture(), error);
-  }
-  const std::string& path() const { return name_; }
-  std::string picture() const { return fs::path(name_).replace_extension(".svg").string(); }
-
- private:
-  std::string name_;
-};
-
-TEST(Calibrate, WritesParametersThatEveryOtherCommandReads) {
-  const FreeName output;
-  const Outcome outcome = runCalibrate(kBag + " --write " + output.path());
+TEST_F(Calibrate, WritesParametersThatEveryOtherCommandReads) {
+  const Outcome outcome = runCalibrate(test::kSession + " --write " + output_);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("found: crank_zero_rad"), std::string::npos);
   EXPECT_LE(test::linesOf(outcome.out).size(), 8U) << outcome.out;
-  const Checked<Settings> settings = loadFiles(configDirectory(), {output.path()});
+  const Checked<Settings> settings = loadFiles(configDirectory(), {output_});
   ASSERT_TRUE(settings.value) << settings.problems.front();
   // The recording's encoder sits where it should: 4096 counts, drive inertia 0.6.
   EXPECT_NEAR(settings.value->pipeline.crank_sensor.reading(0.0), 0.0, 0.006);
   EXPECT_NEAR(settings.value->pipeline.crank_angle_resolution, kTwoPi / 4096, 1e-9);
   EXPECT_NEAR(settings.value->mechanism.parameters().drive_inertia, 0.6, 0.05);
-  EXPECT_NE(contentOf(output.picture()).find("</svg>"), std::string::npos);
+  EXPECT_NE(contentOf(path("found.svg")).find("</svg>"), std::string::npos);
 
-  const std::string before = contentOf(output.path());
-  const Outcome again = runCalibrate(kBag + " --write " + output.path());
+  const std::string before = contentOf(output_);
+  const Outcome again = runCalibrate(test::kSession + " --write " + output_);
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_NE(again.err.find("--force"), std::string::npos);
-  EXPECT_EQ(contentOf(output.path()), before);
-  EXPECT_EQ(runCalibrate(kBag + " --force --write " + output.path()).exit_code, 0);
-  EXPECT_EQ(contentOf(output.path()), before);  // the same input gives the same bytes
+  EXPECT_EQ(contentOf(output_), before);
+  EXPECT_EQ(runCalibrate(test::kSession + " --force --write " + output_).exit_code, 0);
+  EXPECT_EQ(contentOf(output_), before);  // the same input gives the same bytes
 }
 
-TEST(Calibrate, ReplacesNothingThatItDidNotWrite) {
+TEST_F(Calibrate, ReplacesNothingThatItDidNotWrite) {
   const TemporaryFile others("crank_zero_rad: 0.1\n");
-  const Outcome outcome = runCalibrate(kBag + " --force --write " + others.path());
+  const Outcome outcome = runCalibrate(test::kSession + " --force --write " + others.path());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.err.find("no calibration"), std::string::npos) << outcome.err;
   EXPECT_EQ(contentOf(others.path()), "crank_zero_rad: 0.1\n");
 }
 
-TEST(Calibrate, RefusesWhatItCannotUse) {
-  const FreeName output;
-  const Outcome no_topic = runCalibrate(kBag + " --crank-topic /other --write " + output.path());
+TEST_F(Calibrate, RefusesWhatItCannotUse) {
+  const Outcome no_topic = runCalibrate(test::kSession + " --crank-topic /other --write " + output_);
   EXPECT_EQ(no_topic.exit_code, 1);
   EXPECT_NE(no_topic.err.find("/other"), std::string::npos);
   const TemporaryFile text("not a bag");
-  EXPECT_EQ(runCalibrate(text.path() + " --write " + output.path()).exit_code, 1);
-  EXPECT_EQ(runCalibrate(kBag + " --force --write " + kBag).exit_code, 1);
+  EXPECT_EQ(runCalibrate(text.path() + " --write " + output_).exit_code, 1);
+  EXPECT_EQ(runCalibrate(test::kSession + " --force --write " + test::kSession).exit_code, 1);
   const TemporaryFile wrong("crank_direction: 2\n");
-  EXPECT_EQ(runCalibrate(kBag + " --params " + wrong.path() + " --write " + output.path()).exit_code, 1);
-  EXPECT_FALSE(fs::exists(output.path()));
+  EXPECT_EQ(runCalibrate(test::kSession + " --params " + wrong.path() + " --write " + output_).exit_code, 1);
+  EXPECT_FALSE(fs::exists(output_));
+  const std::string pipe = path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(runCalibrate(pipe + " --write " + output_).err, pipe + ": is no regular file, must be a bag\n");
+  for (const std::string& usage : {test::kSession, std::string("--write x"), test::kSession + " --write x --nonsense"})
+    EXPECT_EQ(runCalibrate(usage).exit_code, 2) << usage;
+  EXPECT_EQ(runCalibrate("--help").exit_code, 0);
 }
 
 /// A hammer file that is exact: what is not known is by too few blows.
@@ -137,11 +121,10 @@ std::map<std::string, std::pair<double, double>> deviationsIn(const std::string&
   return found;
 }
 
-TEST(Calibrate, ReadsNoMoreOfALongRecordingThanItNeeds) {
-  const TemporaryFile bag("", ".bag");
-  const FreeName output;
-  recordWork(bag.path(), 400.0, 100.0, "/drive/encoder");  // topic and parameters are those of the run_info in it
-  const Outcome outcome = runCalibrate(bag.path() + " --verbose --write " + output.path());
+TEST_F(Calibrate, ReadsNoMoreOfALongRecordingThanItNeeds) {
+  const std::string bag = path("work.bag");
+  recordWork(bag, 300.0, 100.0, "/drive/encoder");  // topic and parameters are those of the run_info in it
+  const Outcome outcome = runCalibrate(bag + " --verbose --write " + output_);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("parameters of /hammer_loads/run_info are used"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find('\r'), std::string::npos);  // no bar without a terminal
@@ -155,58 +138,34 @@ TEST(Calibrate, ReadsNoMoreOfALongRecordingThanItNeeds) {
       EXPECT_LE(known.first, 0.5 * known.second) << key;
     }
   }
-  const Checked<Settings> settings = loadFiles(configDirectory(), {output.path()});
+  const Checked<Settings> settings = loadFiles(configDirectory(), {output_});
   ASSERT_TRUE(settings.value);
   EXPECT_NEAR(settings.value->pipeline.crank_sensor.reading(0.0), 0.4 * kDegree,
               3.0 * deviations.at("crank_zero_rad").first);
 }
 
-TEST(Calibrate, ShowsTheTimeLeftOnATerminal) {
+TEST_F(Calibrate, ShowsTheTimeLeftOnATerminal) {
   if (test::runCommand("script", "-qec true /dev/null").exit_code != 0) GTEST_SKIP() << "no terminal can be made here";
-  const FreeName output;
   const Outcome outcome = test::runCommand(
-      "script", "-qec '" HAMMER_LOADS_CALIBRATE " " + kBag + " --write " + output.path() + "' /dev/null");
+      "script", "-qec '" HAMMER_LOADS_CALIBRATE " " + test::kSession + " --write " + output_ + "' /dev/null");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   EXPECT_TRUE(std::regex_search(outcome.out, std::regex(R"(\r\[#+ +\] +\d+ %  \d+:\d\d left)"))) << outcome.out;
   EXPECT_NE(outcome.out.find(" 100 %"), std::string::npos);
 }
 
-TEST(ProgressBar, TimeLeftIsThatOfThePartLeft) {
-  EXPECT_EQ(progressLine(0.01, 1.0).find("left"), std::string::npos);
-  EXPECT_NE(progressLine(0.25, 30.0).find(" 25 %  1:30 left"), std::string::npos);
-  EXPECT_NE(progressLine(0.5, 5400.0).find(" 50 %  1:30:00 left"), std::string::npos);
-  EXPECT_NE(progressLine(1.0, 61.2).find("100 %  1:02"), std::string::npos);
-}
-
-TEST(Calibrate, ADamagedBagIsOneLine) {
-  const TemporaryFile bag("", ".bag");
-  const FreeName output;
-  recordWork(bag.path(), 30.0, 100.0, "/drive/encoder");
-  std::string bytes = contentOf(bag.path());
+TEST_F(Calibrate, ADamagedBagIsOneLine) {
+  const std::string bag = path("work.bag");
+  recordWork(bag, 30.0, 100.0, "/drive/encoder");
+  std::string bytes = contentOf(bag);
   const std::size_t at = bytes.find("crank_joint");  // within the chunk that holds the run_info
   ASSERT_NE(at, std::string::npos);
   std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at) + 60000,
             '\xff');
-  std::ofstream(bag.path(), std::ios::binary) << bytes;
-  const Outcome outcome = runCalibrate(bag.path() + " --write " + output.path());
+  std::ofstream(bag, std::ios::binary) << bytes;
+  const Outcome outcome = runCalibrate(bag + " --write " + output_);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(test::linesOf(outcome.err).size(), 1U) << outcome.err;
-  EXPECT_EQ(outcome.err.rfind(bag.path() + ": cannot be read", 0), 0U) << outcome.err;
-}
-
-TEST(Calibrate, RefusesAPipe) {
-  const FreeName pipe, output;
-  ASSERT_EQ(mkfifo(pipe.path().c_str(), 0600), 0);
-  const Outcome outcome = runCalibrate(pipe.path() + " --write " + output.path());
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_EQ(outcome.err, pipe.path() + ": is no regular file, must be a bag\n");
-}
-
-TEST(Calibrate, ReportsWrongUsageAndPrintsHelp) {
-  EXPECT_EQ(runCalibrate(kBag).exit_code, 2);
-  EXPECT_EQ(runCalibrate("--write x.yaml").exit_code, 2);
-  EXPECT_EQ(runCalibrate(kBag + " --write x.yaml --nonsense").exit_code, 2);
-  EXPECT_EQ(runCalibrate("--help").exit_code, 0);
+  EXPECT_EQ(outcome.err.rfind(bag + ": cannot be read", 0), 0U) << outcome.err;
 }
 
 }  // namespace

@@ -1,30 +1,17 @@
 /// process_grapple, as its user runs it, on bags written here.
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
-#include <filesystem>
-
+#include "commands/bag_files.h"
 #include "grapple/grapples.h"
 #include "ros/grapple_messages.h"
-#include "support/command.h"
 
 namespace hammer_loads {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kSamples = 400;
 
 double sliderAt(int i) { return 0.332 + 0.3 * std::sin(0.02 * i); }
 
-class GrappleBag : public testing::Test {
+class GrappleBag : public test::BagFiles {
  protected:
-  GrappleBag() : directory_(fs::temp_directory_path() / ("grapple_bag_test_" + std::to_string(getpid()))) {
-    fs::create_directories(directory_);
-  }
-  ~GrappleBag() override { fs::remove_all(directory_); }
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
-
   /// 100 Hz; sample `bad` lies across the fold. Record times are 5 ms late.
   std::string writeBag(const std::string& name, const std::string& topic, int bad = -1) const {
     rosbag::Bag bag(path(name), rosbag::bagmode::Write);
@@ -35,7 +22,7 @@ class GrappleBag : public testing::Test {
     }
     return path(name);
   }
-  test::Outcome run(const std::string& arguments) const {
+  static test::Outcome run(const std::string& arguments) {
     return test::runCommand(HAMMER_LOADS_PROCESS_GRAPPLE, arguments);
   }
   static std::map<std::string, std::size_t> counts(const std::string& path) {
@@ -45,7 +32,6 @@ class GrappleBag : public testing::Test {
     return counts;
   }
 
-  fs::path directory_;
   const std::string grapple_ = "--params " + test::claimsFile();
 };
 
@@ -86,7 +72,7 @@ TEST_F(GrappleBag, TopicAndPrefixCanBeGiven) {
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_EQ(missing.err,
             in + ": no topic /joint_states, is required; topics there: /machine/joints (sensor_msgs/JointState)\n");
-  EXPECT_FALSE(fs::exists(path("out.bag")));
+  EXPECT_EQ(names().size(), 1U);
   ASSERT_EQ(
       run(in + " " + path("out.bag") + " " + grapple_ + " --joint-states-topic /machine/joints --output-prefix /claw")
           .exit_code,
@@ -103,7 +89,7 @@ TEST_F(GrappleBag, BadParametersAreOneLineEachAndNothingIsWritten) {
   ASSERT_EQ(lines.size(), 3u) << outcome.err;
   for (const char* key : {"bd_length_m", "slider_acceleration", "no_such_key"})
     EXPECT_NE(outcome.err.find(key), std::string::npos) << key;
-  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "only the input";
+  EXPECT_EQ(names().size(), 1U) << "only the input";
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // life as its user runs it, on a ledger of the series of ASTM E1049-85, Fig. 6.
 #include <gtest/gtest.h>
-#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <cstdio>
@@ -118,29 +117,6 @@ TEST(Life, CsvHasTheFiguresOfTheStandardsExample) {
   EXPECT_GT(std::stod(stress.at("damage_std")), 0.0);
 }
 
-TEST(Life, JsonStatesTheSame) {
-  const Ledger ledger;
-  const std::vector<Row> rows = rowsOf(runLife(ledger.path() + " --csv").out);
-  const YAML::Node json = YAML::Load(runLife("--json " + ledger.path()).out);
-  ASSERT_EQ(json["epochs"].size(), 1U);
-  const YAML::Node epoch = json["epochs"][0];
-  EXPECT_EQ(epoch["machine"].as<std::string>(), "MO-100, \"yellow\"");
-  EXPECT_EQ(epoch["runs"].as<int>(), 1);
-  EXPECT_EQ(epoch["equivalent_cycles_per_hour"].as<double>(), 450.0);
-  ASSERT_EQ(epoch["channels"].size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const YAML::Node channel = epoch["channels"][i];
-    EXPECT_EQ(channel["channel"].as<std::string>(), rows[2 * i].at("channel"));
-    EXPECT_EQ(channel["largest_range"].as<double>(), std::stod(rows[2 * i].at("largest_range")));
-    EXPECT_EQ(channel["equivalent_range_3"]["value"].as<double>(), std::stod(rows[2 * i].at("equivalent_range_3")));
-    EXPECT_EQ(channel["days"][0]["day"].as<std::string>(), "2024-10-04");
-    EXPECT_EQ(channel["days"][0]["blows"].as<int>(), 2);
-    EXPECT_EQ(channel["samples"].as<int>(), 9);
-  }
-  EXPECT_TRUE(epoch["channels"][0]["damage"].IsNull());
-  EXPECT_EQ(epoch["channels"][1]["damage"]["value"].as<double>(), std::stod(rows[2].at("damage")));
-}
-
 TEST(Life, TextNamesChannelsDaysAndTheRulesOfCounting) {
   const Ledger ledger;
   const Outcome outcome = runLife(ledger.path());
@@ -196,7 +172,6 @@ TEST(Life, AnImpossibleLedgerIsOneLineHereAndWhereARunIsAdded) {
   for (const auto& [sql, words] : kDamage) {
     SCOPED_TRACE(sql);
     const Ledger ledger;
-    ASSERT_EQ(runLife(ledger.path() + " --csv").exit_code, 0);
     life::Database database(ledger.path(), life::Database::Use::kRead, 0);
     database.run(sql);
     ASSERT_TRUE(database.good()) << database.problem();
@@ -219,7 +194,6 @@ TEST(Life, WrongUsageIsOneLineAndExitCode2) {
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
   }
-  EXPECT_EQ(runLife("--help").exit_code, 0);
 }
 
 }  // namespace

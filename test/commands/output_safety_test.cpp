@@ -48,6 +48,7 @@ TEST_F(OutputSafety, AnExistingFileStaysWithoutForce) {
   std::ofstream(path("out.bag"), std::ios::app) << "changed";
   expectRefused(run(kSession + " " + path("out.bag")), {path("out.bag"), "exists", "--force"});
   EXPECT_TRUE(contentOf(path("out.bag")) == bytes + "changed");
+  expectRefused(run(kSession + " " + path("no/out.bag")), {path("no/out.bag"), "No such file or directory"});
   fs::create_symlink(path("nowhere"), path("dangling.bag"));
   expectRefused(run(kSession + " " + path("dangling.bag") + " --force"), {"symbolic link"});
   EXPECT_FALSE(fs::exists(path("nowhere")));
@@ -119,11 +120,11 @@ TEST_F(OutputSafety, ADeviceIsNeverReplaced) {
 }
 
 TEST_F(OutputSafety, AFullQuotaIsOneLineAndLeavesNothing) {
-  // At the bag's header, a chunk, the index: the output has some 1.4 MB, the shell counts blocks of 512 bytes. The
-  // last limit is one byte or more too little.
+  // At the bag's header, a chunk, the index: the shell counts blocks of 512 bytes. The last limit is one byte or more
+  // too little.
   ASSERT_EQ(run(kSession + " " + path("whole.bag")).exit_code, 0);
   const auto blocks = fs::file_size(path("whole.bag")) / 512;
-  for (const std::uintmax_t limit : {std::uintmax_t{2}, std::uintmax_t{8}, blocks / 2, blocks - 20, blocks}) {
+  for (const std::uintmax_t limit : {std::uintmax_t{2}, blocks / 2, blocks}) {
     const test::Outcome outcome = test::runCommand("ulimit -f " + std::to_string(limit) + "; " HAMMER_LOADS_PROCESS_BAG,
                                                    kSession + " " + path("out.bag"));
     expectRefused(outcome, {path("out.bag"), "cannot be written", "File too large"});
@@ -139,10 +140,6 @@ TEST_F(OutputSafety, AFullDiskIsOneLineAndLeavesNothing) {
   umount(path("disk").c_str());
   expectRefused(outcome, {path("disk/out.bag"), "cannot be written", "No space left on device"});
   EXPECT_TRUE(empty);
-}
-
-TEST_F(OutputSafety, ADirectoryThatIsMissingIsNamed) {
-  expectRefused(run(kSession + " " + path("no/out.bag")), {path("no/out.bag"), "No such file or directory"});
 }
 
 /// What the file held before is still there.
@@ -180,7 +177,7 @@ TEST_P(Interrupted, EndsWith130AndLeavesNothing) {
   {
     rosbag::Bag bag(path("long.bag"), rosbag::bagmode::Write);
     test::forEachOfSession([&](const rosbag::MessageInstance& item) {
-      for (int i = 0; i < 20; ++i) bag.write(item.getTopic(), item.getTime() + ros::Duration(100.0 * i), item);
+      for (int i = 0; i < 8; ++i) bag.write(item.getTopic(), item.getTime() + ros::Duration(100.0 * i), item);
     });
   }
   const pid_t child = fork();

@@ -1,12 +1,7 @@
 /// process_bag on the recorded sessions, judged by their truth.
-#include <gtest/gtest.h>
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
 #include <cstdio>
-#include <filesystem>
-#include <map>
 
+#include "commands/bag_files.h"
 #include "hammer_loads/ros/bag_processing.h"
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "support/csv.h"
@@ -15,7 +10,6 @@
 namespace hammer_loads {
 namespace {
 
-namespace fs = std::filesystem;
 using accuracy::BlowAt;
 using accuracy::WrenchAt;
 
@@ -90,45 +84,27 @@ Output outputOf(const std::string& path) {
   return output;
 }
 
-class ProcessBag : public testing::Test {
- protected:
-  ProcessBag() : directory_(fs::temp_directory_path() / ("process_bag_test_" + std::to_string(getpid()))) {
-    fs::create_directories(directory_);
-  }
-  ~ProcessBag() override { fs::remove_all(directory_); }
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
-
-  /// What went wrong, one line each.
-  std::string process(const std::string& input, const std::string& output, double inertia_factor = 1.0) {
-    BagJob job;
-    job.inputs = {input};
-    job.output = output;
-    job.parameters = parametersWithInertia(inertia_factor);
-    std::string text;
-    for (const std::string& problem : processBag(
-             job, [](double) {}, report_))
-      text += (text.empty() ? "" : "\n") + problem;
-    return text;
-  }
-
-  fs::path directory_;
-  BagReport report_;
-};
-
 struct SessionCase {
   const char* session;
   test::SessionBounds bounds;
 };
 
-class RecordedSession : public ProcessBag, public testing::WithParamInterface<std::tuple<SessionCase, double>> {};
+class RecordedSession : public test::BagFiles, public testing::WithParamInterface<std::tuple<SessionCase, double>> {};
 
 TEST_P(RecordedSession, StaysWithinTheBounds) {
   const auto& [session_case, inertia_factor] = GetParam();
   const std::string session = session_case.session;
-  ASSERT_EQ(process(data(session + ".bag"), path("out.bag"), inertia_factor), "");
+  BagJob job;
+  job.inputs = {data(session + ".bag")};
+  job.output = path("out.bag");
+  job.parameters = parametersWithInertia(inertia_factor);
+  BagReport report;
+  ASSERT_EQ(processBag(
+                job, [](double) {}, report),
+            std::vector<std::string>{});
   const Truth truth = truthOf(session);
   const Output output = outputOf(path("out.bag"));
-  EXPECT_EQ(output.wrenches.size() + report_.crank.beside_blow + report_.crank.uncertain, report_.crank.accepted);
+  EXPECT_EQ(output.wrenches.size() + report.crank.beside_blow + report.crank.uncertain, report.crank.accepted);
   const accuracy::Judged judged{3.0, truth.wrenches.back().time - 3.0, endsOfDropOuts(truth.wrenches)};
   const auto e = accuracy::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);
   test::expectWithin(e, session_case.bounds);
@@ -143,22 +119,6 @@ INSTANTIATE_TEST_SUITE_P(Sessions, RecordedSession,
                          testing::Combine(testing::Values(SessionCase{"mo100_1khz", test::kBounds1kHz},
                                                           SessionCase{"mo100_100hz", test::kBounds100Hz}),
                                           testing::Values(1.0, 0.5, 1.5)));
-
-TEST_F(ProcessBag, WritesOutputsAtTheRecordTimeOfTheirInput) {
-  ASSERT_EQ(process(data("mo100_100hz.bag"), path("out.bag")), "");
-  rosbag::Bag in(data("mo100_100hz.bag")), out(path("out.bag"));
-  rosbag::View inputs(in, rosbag::TopicQuery(std::string("/hammer/crank")));
-  rosbag::View outputs(out, rosbag::TopicQuery(std::string("/hammer_loads/hull_wrench")));
-  ASSERT_GT(outputs.size(), 0.99 * inputs.size()) << "samples beside a blow have none";
-  auto i = inputs.begin();
-  for (auto o = outputs.begin(); o != outputs.end(); ++o, ++i) {
-    while (i != inputs.end() && i->getTime() < o->getTime()) ++i;
-    ASSERT_TRUE(i != inputs.end());
-    ASSERT_EQ(i->getTime(), o->getTime());
-    ASSERT_EQ(i->instantiate<sensor_msgs::JointState>()->header.stamp,
-              o->instantiate<geometry_msgs::WrenchStamped>()->header.stamp);
-  }
-}
 
 }  // namespace
 }  // namespace hammer_loads

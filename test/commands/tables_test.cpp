@@ -137,9 +137,11 @@ TEST_F(Tables, HoldTheAlarms) {
 }
 
 TEST_F(Tables, KnowInputParametersAndMachine) {
-  const test::TemporaryFile level("level: rocker\n"), inertia("drive_inertia_kg_m2: 0.7\n");
+  const test::TemporaryFile level("level: rocker\n");
+  const test::TemporaryFile paths("log_directory: /tmp/a node's\nlog_split_mb: 77\nlife_ledger: /tmp/a.sqlite\n");
   ASSERT_EQ(tables(kSession, "shipped.sqlite").exit_code, 0);
   ASSERT_EQ(tables(kSession, "level.sqlite", "--params " + level.path()).exit_code, 0);
+  ASSERT_EQ(tables(kSession, "paths.sqlite", "--params " + paths.path()).exit_code, 0);
   const std::string sha = test::runCommand("sha256sum", kSession).out.substr(0, 64);
   EXPECT_EQ(ask("shipped.sqlite", "SELECT input_sha256 FROM runs"), std::vector<std::string>{sha});
   const auto both = [&](const char* column) {
@@ -159,16 +161,10 @@ TEST_F(Tables, KnowInputParametersAndMachine) {
   EXPECT_NE(yaml.find("crank_length_m: "), std::string::npos);
   for (const char* part : {"/tmp", ".bag", "mo100_100hz"})
     EXPECT_EQ(contentOf(path("shipped.sqlite")).find(part), std::string::npos) << part;
-}
-
-/// Where a node logs and counts is in a log's parameters, but no property of the machine.
-TEST_F(Tables, HoldNoPathOfANode) {
-  const test::TemporaryFile paths("log_directory: /tmp/a node's\nlog_split_mb: 77\nlife_ledger: /tmp/a.sqlite\n");
-  ASSERT_EQ(tables(kSession, "shipped.sqlite").exit_code, 0);
-  ASSERT_EQ(tables(kSession, "paths.sqlite", "--params " + paths.path()).exit_code, 0);
+  // Where a node logs and counts is in a log's parameters, but no property of the machine.
   EXPECT_EQ(contentOf(path("paths.sqlite")).find("/tmp"), std::string::npos);
-  const std::string sha = "SELECT parameters_sha256 FROM runs";
-  EXPECT_EQ(ask("paths.sqlite", sha), ask("shipped.sqlite", sha));
+  const std::string hash = "SELECT parameters_sha256 FROM runs";
+  EXPECT_EQ(ask("paths.sqlite", hash), ask("shipped.sqlite", hash));
 }
 
 TEST_F(Tables, RefusalsAndWarningsAreThoseOnTheConsole) {

@@ -8,9 +8,9 @@
 namespace hammer_loads {
 namespace {
 
-const std::vector<std::string> kCommands{HAMMER_LOADS_ACCURACY,        HAMMER_LOADS_EVALUATE,
-                                         HAMMER_LOADS_GRAPPLE_TABLE,   HAMMER_LOADS_PROCESS_BAG,
-                                         HAMMER_LOADS_PROCESS_GRAPPLE, HAMMER_LOADS_TURN_TABLE};
+const std::vector<std::string> kCommands{
+    HAMMER_LOADS_ACCURACY,      HAMMER_LOADS_COUNT_CYCLES, HAMMER_LOADS_EVALUATE,        HAMMER_LOADS_LIFE,
+    HAMMER_LOADS_GRAPPLE_TABLE, HAMMER_LOADS_PROCESS_BAG,  HAMMER_LOADS_PROCESS_GRAPPLE, HAMMER_LOADS_TURN_TABLE};
 const std::vector<std::string> kNodes{HAMMER_LOADS_HAMMER_LOADS_NODE, HAMMER_LOADS_GRAPPLE_NODE,
                                       HAMMER_LOADS_SIMULATE_HAMMER, HAMMER_LOADS_SIMULATE_GRAPPLE};
 
