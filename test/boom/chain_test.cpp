@@ -43,23 +43,6 @@ std::string oddRobot() {
 
 Checked<Chain> oddChain() { return Chain::make(oddRobot(), {"base", "tip", {"turn", "hinge"}}); }
 
-TEST(Chain, KnowsItsLinksAndJoints) {
-  const Checked<Chain> made = oddChain();
-  ASSERT_TRUE(made.value) << made.problems.front();
-  const Chain& chain = *made.value;
-  EXPECT_EQ(chain.jointNames(), (std::vector<std::string>{"turn", "slide", "hinge"}));
-  EXPECT_EQ(chain.links(), 5);
-  EXPECT_EQ(chain.link(chain.tip()).name, "tip");
-  EXPECT_EQ(chain.linkIndex("c"), 3);
-  EXPECT_FALSE(chain.linkIndex("beside"));
-  EXPECT_EQ(chain.jointIndex("hinge"), 2);
-  EXPECT_FALSE(chain.jointIndex("end"));
-  EXPECT_EQ(chain.linkBeyond(1), 2);
-  EXPECT_TRUE(std::isinf(chain.lower()[0]));
-  EXPECT_EQ(chain.lower()[1], -1.0);
-  EXPECT_EQ(chain.upper()[2], 2.0);
-}
-
 TEST(Chain, IncludesFixedNeighboursAndReportsMovingOnes) {
   const Checked<Chain> made = oddChain();
   ASSERT_TRUE(made.value);
@@ -177,15 +160,6 @@ TEST(Chain, ReportsEachFault) {
        }) {
     expectProblems(bad);
   }
-}
-
-TEST(Chain, OutlivesItsMaker) {
-  Checked<Chain> made = oddChain();
-  const Chain copy = *made.value;
-  const KDL::Chain* address = &copy.kdl();
-  made.value.reset();
-  EXPECT_EQ(copy.jointNames().size(), 3U);
-  EXPECT_EQ(&copy.kdl(), address);
 }
 
 }  // namespace

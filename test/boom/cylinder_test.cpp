@@ -69,19 +69,6 @@ TEST_F(Cylinders, ForceDoesTheOppositeWorkOfTheLoad) {
   }
 }
 
-TEST_F(Cylinders, FollowATriangleComputedByHand) {
-  // Base 2 m below the boom's pivot, rod 1 m along the boom: a right angle at zero, L = sqrt 5, arm -2/sqrt 5 (the
-  // boom's joint grows downwards, towards the base).
-  CylinderParameters p = parameters_.cylinders[0];
-  p.base_x = 0.25, p.base_z = 0.40 - 2.0, p.rod_x = 1.0, p.rod_z = 0.0;
-  p.closed_length = 1.6, p.stroke = 1.4;
-  const Cylinder cylinder = make(p);
-  const CylinderPosition at = cylinder.at(0.0);
-  EXPECT_NEAR(at.length, std::sqrt(5.0), 1e-15);
-  EXPECT_NEAR(at.arm, -2.0 / std::sqrt(5.0), 1e-15);
-  EXPECT_NEAR(cylinder.load(at, 10e3).force, 10e3 * std::sqrt(5.0) / 2.0, 1e-9);
-}
-
 TEST_F(Cylinders, StiffnessIsThatOfTheTrappedOil) {
   const CylinderParameters& p = parameters_.cylinders[0];
   const Cylinder cylinder = make(p);

@@ -91,30 +91,6 @@ TEST(Deviations, EqualDifferencesOfTheLoads) {
   }
 }
 
-TEST(Deviations, ManyErrorsAddUpByTheirSquares) {
-  Boom boom = test::shippedBoom();
-  boom.moveCompliant(still(test::workingPosition()), kLevel);
-  std::mt19937 random(62);
-  std::normal_distribution<> draw;
-  LoadErrors all(boom.cylinders());
-  JointVector sum = JointVector::Zero(4);
-  Eigen::Vector3d section = Eigen::Vector3d::Zero();
-  BoomDeviations deviations;
-  for (int i = 0; i < 20; ++i) {
-    LoadErrors one(boom.cylinders());
-    const JointVector acceleration = JointVector::NullaryExpr(4, [&] { return draw(random); });
-    const double across = i % 2 == 0 ? 0.0 : draw(random);  // of the boom's plane
-    const Wrench tip{{1e3 * draw(random), 1e3 * across, 1e3 * draw(random)}, {0.0, 1e2 * draw(random), 0.0}};
-    one.add(acceleration, tip);
-    boom.deviations(one, deviations);
-    sum += deviations.torque.cwiseAbs2(), section += deviations.section[0].torque.cwiseAbs2();
-    all.add(acceleration, tip);
-  }
-  boom.deviations(all, deviations);
-  EXPECT_LT((deviations.torque - sum.cwiseSqrt()).norm(), 1e-12 * sum.cwiseSqrt().norm());
-  EXPECT_LT((deviations.section[0].torque - section.cwiseSqrt()).norm(), 1e-12 * section.cwiseSqrt().norm());
-}
-
 TEST(Deviations, ALastingErrorOfTheLoadIsThatOfAnotherLoad) {
   // A load that is 4 % larger all along: the difference of two vibrations.
   Boom boom = test::shippedBoom(), larger = boom;

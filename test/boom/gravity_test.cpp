@@ -58,25 +58,6 @@ TEST(Gravity, FollowsTheTiltsOfTheDescriptionInTheTip) {
   }
 }
 
-TEST(Gravity, IsThatOfThePitchForALevelBase) {
-  const Checked<Chain> made = Chain::make(test::shippedUrdf(), {});
-  const JointVector q = test::joints({0.7, -0.3, 1.1, -0.6});
-  const Eigen::Vector3d g = gravityInTip(*made.value, q, gravityInRoot(kGravity, {}));
-  EXPECT_LT((g - kGravity * Eigen::Vector3d(std::sin(0.2), 0.0, -std::cos(0.2))).norm(), 1e-14);
-}
-
-TEST(Gravity, TiltOfTheMountTurnsTheWeightOfTheHammer) {
-  // 0.4 rad: the pitch joints alone miss 40 % of a vertical weight, 137 of 345 N.
-  const Checked<Chain> made =
-      Chain::make(test::withFirstReplaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
-                                          "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0.4 0\"/>"),
-                  {});
-  const double mass = 345.0 / kGravity;
-  const Eigen::Vector3d g = gravityInTip(*made.value, test::joints({0.0, -0.35, 1.2, -0.85}), {0.0, 0.0, -kGravity});
-  EXPECT_NEAR((mass * g - Eigen::Vector3d(0.0, 0.0, -345.0)).norm(), 2.0 * 345.0 * std::sin(0.2), 1e-9);
-  EXPECT_NEAR(2.0 * 345.0 * std::sin(0.2), 137.0, 0.2);
-}
-
 TEST(Gravity, JointTorquesOfABaseThatLeansAreThoseOfALeaningDescription) {
   // The same tilt in the description: base_link upright, all beyond on a tilted swing axis.
   const BaseTilt base{0.12, -0.2};

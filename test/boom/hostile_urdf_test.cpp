@@ -185,13 +185,5 @@ TEST(HostileUrdf, InertiaBeyondACylinderIsRequired) {
   EXPECT_TRUE(Boom::make(urdf).value);  // rigid it needs none
 }
 
-TEST(HostileUrdf, AnotherMachinesDescriptionIsNamedAsSuch) {
-  EXPECT_EQ(linksMissing(test::shippedUrdf(), {}), "");
-  EXPECT_EQ(linksMissing(test::shippedUrdf(), {"base_link", "bucket", {}}), "robot_description: has no link bucket");
-  EXPECT_EQ(linksMissing("<robot name=\"other\"><link name=\"arm\"/></robot>", {}),
-            "robot_description: has no link base_link");
-  EXPECT_EQ(linksMissing("no URDF", {}), "");
-}
-
 }  // namespace
 }  // namespace hammer_loads

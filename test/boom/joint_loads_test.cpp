@@ -60,21 +60,6 @@ TEST(JointLoads, TotalEqualsOneCallOfKdlWithEverything) {
   EXPECT_LT(worst, 1e-12);
 }
 
-TEST(JointLoads, MassMatrixEqualsTheHandMadePlanarChain) {
-  std::mt19937 random(15);
-  for (int k = 0; k < 20; ++k) {
-    const auto planar = test::PlanarChain<3>::random(random);
-    const Checked<Chain> chain = Chain::make(planar.urdf(), {"base_link", "tip", {}});
-    ASSERT_TRUE(chain.value);
-    ChainDynamics dynamics(*chain.value);
-    const test::PlanarChain<3>::Joints q{test::between(random, -3, 3), test::between(random, -3, 3),
-                                         test::between(random, -3, 3)};
-    const Eigen::Matrix3d expected = planar.massMatrix(q);
-    const JointMatrix M = dynamics.massMatrix(test::joints({q[0], q[1], q[2]}));
-    EXPECT_LT((M - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.norm());
-  }
-}
-
 TEST(JointLoads, AreEqualAtEveryLink) {
   // The wrench shifted to a link turns the joints before that link as the wrench at the hull does.
   Boom boom = test::shippedBoom();

@@ -58,14 +58,6 @@ TEST_F(Model, AllFramesAreAlignedAtZero) {
   }
 }
 
-TEST_F(Model, HullPitchIsTheSumOfThePitchJoints) {
-  const double boom = -0.31, arm = 1.27, hammer = -0.44;
-  const KDL::Frame X = frame("hammer_hull", {{"boom_joint", boom}, {"arm_joint", arm}, {"hammer_joint", hammer}});
-  EXPECT_TRUE(KDL::Equal(X.M, KDL::Rotation::RotY(boom + arm + hammer), 1e-15));
-  const KDL::Frame swung = frame("swing_link", {{"swing_joint", 0.4}});
-  EXPECT_TRUE(KDL::Equal(swung.M, KDL::Rotation::RotZ(0.4), 1e-15));
-}
-
 TEST_F(Model, PinsMeetAllAroundTheTurn) {
   const Mechanism mechanism = shippedMechanism();
   const LinkLengths& l = mechanism.parameters().lengths;

@@ -53,14 +53,6 @@ TEST_F(ShippedBoom, CylindersCarryWhatTheyHold) {
   EXPECT_LT((vibration().torque() + m.mass * vibration().acceleration()).norm(), 1e-11 * held.norm());
 }
 
-TEST_F(ShippedBoom, ComesToRestWhereTheOilHoldsTheLoad) {
-  const JointVector torque = boom_.hammerTorque(push_);
-  for (int i = 0; i < 10; ++i) steadyLoad(3.0, torque);
-  const Eigen::Vector3d expected = torque.tail<3>().cwiseQuotient(modes().stiffness);
-  EXPECT_LT((vibration().displacement().tail<3>() - expected).norm(), 1e-12 * expected.norm());
-  EXPECT_LT(vibration().torque().norm(), 1e-9 * torque.norm());
-}
-
 TEST_F(ShippedBoom, StrikeGivesTheImpulseAsMomentum) {
   const JointVector impulse = test::joints({3.0, -20.0, 14.0, 5.0});
   vibration().strike(impulse);

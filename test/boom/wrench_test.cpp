@@ -21,15 +21,6 @@ Pose randomPose(std::mt19937& random) {
   return X;
 }
 
-TEST(WrenchShift, ForceAtALeverGivesItsMoment) {
-  // 20 kN along z, 2.5 m ahead in x: -50 kN m about y; the moment arm that tf2 0.7.6 leaves out.
-  Pose X_QP = Pose::Identity();
-  X_QP.translation() = Eigen::Vector3d(2.5, 0.0, 0.0);
-  const Wrench w_Q = shifted(X_QP, {Eigen::Vector3d(0.0, 0.0, 20e3), Eigen::Vector3d::Zero()});
-  EXPECT_EQ(w_Q.force, Eigen::Vector3d(0.0, 0.0, 20e3));
-  EXPECT_EQ(w_Q.torque, Eigen::Vector3d(0.0, -50e3, 0.0));
-}
-
 /// The shift as a matrix on (force, torque): [R 0; [p]x R  R].
 Eigen::Matrix<double, 6, 6> shiftMatrix(const Pose& X_QP) {
   const Eigen::Matrix3d R = X_QP.linear();

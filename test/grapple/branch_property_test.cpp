@@ -11,8 +11,6 @@
 namespace hammer_loads {
 namespace {
 
-using test::Digits50;
-
 /// theta2 and theta5 over the whole working branch by Newton alone in steps so small that the curve cannot be left:
 /// knows nothing of predictors, signs, polynomials and limits but where to stop.
 class DenseBranch {
@@ -80,7 +78,7 @@ double apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * k
 TEST(RandomGrapples, ColdAndWarmStayOnTheBranchWhateverTheJump) {
   test::Random random(41);
   int grapples = 0, samples = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 750; ++i) {
     const auto grapple = test::randomGrapple(random);
     if (!grapple) continue;
     ++grapples;
@@ -100,14 +98,14 @@ TEST(RandomGrapples, ColdAndWarmStayOnTheBranchWhateverTheJump) {
     }
   }
   std::printf("%d grapples, %d jumps\n", grapples, samples);
-  EXPECT_GT(grapples, 80);
+  EXPECT_GT(grapples, 40);
 }
 
 TEST(RandomGrapples, EqualTheExplicitCurveToFiftyDigits) {
   test::Random random(42);
   int well_conditioned = 0, checked = 0;
-  double worst[3] = {0.0, 0.0, 0.0};
-  for (int i = 0; i < 1500; ++i) {
+  test::CurveErrors errors;
+  for (int i = 0; i < 750; ++i) {
     const auto grapple = test::randomGrapple(random);
     if (!grapple) continue;
     const GrappleParameters& p = grapple->parameters();
@@ -121,29 +119,19 @@ TEST(RandomGrapples, EqualTheExplicitCurveToFiftyDigits) {
         std::min(m->slider - grapple->lowerLimit().slider, grapple->upperLimit().slider - m->slider);
     if (std::abs(m->determinant) < 1e-2 * std::pow(size, 4) || from_limit < 1e-2) continue;
     ++well_conditioned;
-    const test::PsiPoint edge = exact->edgeBySlider();
-    const auto add = [&](double& error, double value, const Digits50& truth) {
-      const double scale = std::max(1.0, std::abs(static_cast<double>(truth)));
-      error = std::max(error, std::abs(static_cast<double>(value - truth)) / scale);
-    };
-    add(worst[0], m->p.re, edge.x.v);
-    add(worst[0], m->p.im, edge.y.v);
-    add(worst[1], m->dp.re, edge.x.d);
-    add(worst[1], m->dp.im, edge.y.d);
-    add(worst[2], m->ddp.re, edge.x.dd);
-    add(worst[2], m->ddp.im, edge.y.dd);
+    errors.add(*m, *exact);
   }
   std::printf("%d checked, %d well conditioned: P %.1e, dP/ds %.1e, d2P/ds2 %.1e\n", checked, well_conditioned,
-              worst[0], worst[1], worst[2]);
-  EXPECT_GT(well_conditioned, 50);
-  EXPECT_LT(worst[0], 1e-12);
-  EXPECT_LT(worst[1], 1e-10);
-  EXPECT_LT(worst[2], 1e-8);
+              errors.position, errors.first, errors.second);
+  EXPECT_GT(well_conditioned, 25);
+  EXPECT_LT(errors.position, 1e-12);
+  EXPECT_LT(errors.first, 1e-10);
+  EXPECT_LT(errors.second, 1e-8);
 }
 
 TEST(RandomGrapples, KeepTheirLengths) {
   test::Random random(43);
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 750; ++i) {
     const auto grapple = test::randomGrapple(random);
     if (!grapple) continue;
     const GrappleParameters& p = grapple->parameters();
@@ -169,7 +157,7 @@ TEST(RandomGrapples, KeepTheirLengths) {
 TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
   test::Random random(44);
   int across_fold = 0, across_dead_centre = 0, out_of_reach = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 750; ++i) {
     const auto grapple = test::randomGrapple(random);
     if (!grapple) continue;
     const auto inside = grapple->at(grapple->parameters().reference_slider);
@@ -189,9 +177,9 @@ TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
       }
     }
   }
-  EXPECT_GT(across_fold, 50);
-  EXPECT_GT(across_dead_centre, 2);
-  EXPECT_GT(out_of_reach, 50);
+  EXPECT_GT(across_fold, 25);
+  EXPECT_GT(across_dead_centre, 1);
+  EXPECT_GT(out_of_reach, 25);
 }
 
 }  // namespace

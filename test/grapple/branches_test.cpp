@@ -69,7 +69,7 @@ TEST(Branches, ClaimsSetHasTwoModesBetweenItsFoldsAndNoneBeyond) {
 TEST(Branches, EveryPoseClosesAndNoPoseIsListedTwice) {
   test::Random random(21);
   int poses = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 10000; ++i) {
     const GrappleParameters p = test::randomLinkage(random);
     const LeverGroup group(p);
     const Planar a = pinA(p, random(-kPi, kPi));
@@ -88,7 +88,7 @@ TEST(Branches, EveryPoseClosesAndNoPoseIsListedTwice) {
       ++poses;
     }
   }
-  EXPECT_GT(poses, 10000);
+  EXPECT_GT(poses, 5000);
 }
 
 /// Modes counted without the polynomial: seen from link 5 the jaw's side DB is the crank of a four-bar D-B-C-E; a mode
@@ -118,7 +118,7 @@ int modesByScan(const GrappleParameters& p, double distance, int samples) {
 TEST(Branches, AreAsManyAsAScanOfTheConfigurationCurveFinds) {
   test::Random random(22);
   int with_six = 0, differing = 0;
-  for (int i = 0; i < 800; ++i) {
+  for (int i = 0; i < 400; ++i) {
     const GrappleParameters p = test::randomLinkage(random);
     const Planar a = pinA(p, random(-kPi, kPi));
     const Branches found = enumerateBranches(LeverGroup(p), a);
@@ -128,13 +128,13 @@ TEST(Branches, AreAsManyAsAScanOfTheConfigurationCurveFinds) {
     ++differing;
     EXPECT_GT(found.count, modesByScan(p, norm(a), 200000)) << "linkage " << i << ": a mode is missing";
   }
-  EXPECT_GT(with_six, 1);
+  EXPECT_GT(with_six, 0);
   EXPECT_LE(differing, 5);  // the scan's own losses at the ends of its sides
 }
 
 TEST(Branches, SpecialTrianglesLoseNoMode) {
   test::Random random(23);
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 250; ++i) {
     GrappleParameters p = test::randomLinkage(random);
     const int kind = i % 4;
     const double scale = kind == 0 ? random(0.5, 2.0) : 1.0;  // similar, else congruent

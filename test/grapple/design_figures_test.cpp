@@ -93,13 +93,13 @@ TEST(DesignFigures, StraightSetIsStraighterButDropsAtTheOpenEnd) {
 
 TEST(DesignFigures, NoStretchOf200MillimetresRises70Millimetres) {
   // The paper's L = 200 mm with h = 70 mm: neither set has it anywhere on its path, whether L is meant per jaw or for
-  // both, and no path at all is 80 % straight with it: the part that is not straight is at least h long.
+  // both.
   for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
     const Grapple grapple = test::grappleOf(p);
     for (const double extent : {0.1, 0.2}) {
       double most = 0.0;
       const double widest = grapple.at(p.slider_open)->p.re;
-      for (double x = 0.0; x + extent < widest; x += 0.005) {
+      for (double x = 0.0; x + extent < widest; x += 0.01) {
         double low = 0.0, high = -10.0;
         for (int i = 0; i <= 40; ++i) {
           const double y = grapple.at(*sliderForOpening(grapple, 2.0 * (x + extent * i / 40.0)).value)->p.im;
@@ -111,9 +111,6 @@ TEST(DesignFigures, NoStretchOf200MillimetresRises70Millimetres) {
       EXPECT_LT(most, 0.040) << extent;
     }
   }
-  const double length = 0.2, height = 0.07;
-  EXPECT_NEAR(length / (length + height), 0.741, 5e-4);              // L per jaw
-  EXPECT_NEAR(0.5 * length / (0.5 * length + height), 0.588, 5e-4);  // L for both
 }
 
 TEST(SliderForOpening, InvertsThePath) {

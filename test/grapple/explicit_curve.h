@@ -167,4 +167,19 @@ inline std::optional<ExplicitPose> exactFoldNear(const GrappleParameters& k, con
   return pose;
 }
 
+/// Largest errors of motions against the exact curve, relative to max(1, |value|): position, first, second.
+struct CurveErrors {
+  double position{}, first{}, second{};
+  void add(const GrappleMotion& m, const ExplicitPose& exact) {
+    const PsiPoint p = exact.edgeBySlider();
+    const auto error = [](double value, const Digits50& truth) {
+      const Digits50 size = abs(truth) > 1 ? Digits50(abs(truth)) : Digits50(1);
+      return static_cast<double>(abs(value - truth) / size);
+    };
+    position = std::max({position, error(m.p.re, p.x.v), error(m.p.im, p.y.v)});
+    first = std::max({first, error(m.dp.re, p.x.d), error(m.dp.im, p.y.d)});
+    second = std::max({second, error(m.ddp.re, p.x.dd), error(m.ddp.im, p.y.dd)});
+  }
+};
+
 }  // namespace hammer_loads::test

@@ -99,23 +99,5 @@ TEST(Grapple, ParallelogramAtTheReferenceIsRefused) {
   EXPECT_TRUE(mentions(grapple.problems, "can move with the slider held"));
 }
 
-TEST(Grapple, StatesWhyThereIsNoPose) {
-  const Grapple grapple = test::grappleOf(test::claimsParameters());
-  EXPECT_EQ(grapple.judge(0.74), SliderRefusal::kAcrossFold);        // the drive closes, the lever group does not
-  EXPECT_EQ(grapple.judge(0.9), SliderRefusal::kOutOfReach);         // beyond the drive's upper dead centre at 0.89
-  EXPECT_EQ(grapple.judge(-0.2701), SliderRefusal::kOutOfReach);     // beyond its lower one at -0.27
-  EXPECT_EQ(grapple.judge(-2.0), SliderRefusal::kAcrossDeadCentre);  // G below O1: closes again
-  EXPECT_EQ(grapple.judge(0.7), SliderRefusal::kNone);
-  EXPECT_EQ(grapple.judgeInStroke(0.7), SliderRefusal::kOutsideStroke);
-  EXPECT_EQ(grapple.judgeInStroke(0.6569), SliderRefusal::kNone);  // within the margin
-  EXPECT_EQ(grapple.judge(std::nan("")), SliderRefusal::kNotFinite);
-  EXPECT_EQ(grapple.explain(SliderRefusal::kAcrossFold, 0.74),
-            "slider position: 0.74 m, across fold: must lie between the dead centre at -0.27 m and the fold at "
-            "0.7331923934967 m");
-  EXPECT_EQ(grapple.explain(SliderRefusal::kOutsideStroke, 0.7, "--to"),
-            "--to: 0.7 m, outside stroke: must lie between 0.00669560852 m and 0.656 m (+- 0.001 m)");
-  EXPECT_TRUE(grapple.explain(SliderRefusal::kNone, 0.3).empty());
-}
-
 }  // namespace
 }  // namespace hammer_loads

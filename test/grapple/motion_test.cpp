@@ -9,8 +9,6 @@
 namespace hammer_loads {
 namespace {
 
-using test::Digits50;
-
 constexpr double kPositions = 1e-12, kFirst = 1e-10, kSecond = 1e-8;  // demanded, relative to max(1, |value|)
 
 void expectClose(double value, double expected, double tolerance, const std::string& what) {
@@ -22,25 +20,10 @@ void expectClose(Planar value, Planar expected, double tolerance, const std::str
   expectClose(value.im, expected.im, tolerance, what + ".y");
 }
 
-/// Largest error of a jet's components against the motion, relative to max(1, |value|): position, first, second.
-struct Errors {
-  double position{}, first{}, second{};
-  void add(const GrappleMotion& m, const test::ExplicitPose& exact) {
-    const test::PsiPoint p = exact.edgeBySlider();
-    const auto error = [](double value, const Digits50& truth) {
-      const Digits50 size = abs(truth) > 1 ? Digits50(abs(truth)) : Digits50(1);
-      return static_cast<double>(abs(value - truth) / size);
-    };
-    position = std::max({position, error(m.p.re, p.x.v), error(m.p.im, p.y.v)});
-    first = std::max({first, error(m.dp.re, p.x.d), error(m.dp.im, p.y.d)});
-    second = std::max({second, error(m.ddp.re, p.x.dd), error(m.ddp.im, p.y.dd)});
-  }
-};
-
 TEST(GrappleMotion, EqualsTheExplicitCurveToFiftyDigitsOverTheStroke) {
   for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
     const Grapple grapple = test::grappleOf(p);
-    Errors errors;
+    test::CurveErrors errors;
     for (int i = 0; i <= 100; ++i) {
       const auto m = grapple.at(p.slider_closed + (p.slider_open - p.slider_closed) * i / 100.0);
       ASSERT_TRUE(m);
@@ -71,7 +54,7 @@ TEST(GrappleMotion, DerivativesGrowAsTheyMustBesideTheFold) {
     const GrappleMotion m = near(distance);
     const auto exact = test::exactPoseOf(p, m);
     ASSERT_TRUE(exact) << distance;
-    Errors errors;
+    test::CurveErrors errors;
     errors.add(m, *exact);
     EXPECT_LT(errors.position, 1e-14 / std::sqrt(distance)) << distance;
     EXPECT_LT(errors.first, 1e-13 / distance) << distance;

@@ -41,11 +41,11 @@ TEST(Speed, StaysBelowItsBoundInAWarmStepOfBothJaws) {
     GrappleTracker tracker(test::grappleOf(p));
     const std::vector<double> sliders = swing(p);
     double sum = 0.0;
-    const double step = medianTime(200, 2000, [&](int i) {
+    const double step = medianTime(60, 2000, [&](int i) {
       tracker.update({sliders[static_cast<std::size_t>(i) % sliders.size()], 0.3, -0.2});
       sum += tracker.motion().p.re;
     });
-    const double with_jaws = medianTime(200, 2000, [&](int i) {
+    const double with_jaws = medianTime(60, 2000, [&](int i) {
       tracker.update({sliders[static_cast<std::size_t>(i) % sliders.size()], 0.3, -0.2});
       sum += tracker.right().edge_acceleration.re + tracker.left().edge_acceleration.re;
     });
