@@ -3,9 +3,7 @@
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
-#include <kdl/chain.hpp>
 
-#include "boom/booms.h"
 #include "boom/vibrating_machine.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/shaft_load.h"
@@ -15,31 +13,6 @@ namespace hammer_loads {
 namespace {
 
 using test::PlanarChain;
-
-/// Pitch joints of the shipped boom as the hand-made planar chain; KDL only tells the figures.
-PlanarChain<3> planarBoom(const Chain& chain) {
-  PlanarChain<3> planar;
-  planar.gravity = 0.0;
-  for (int j = 0; j < 3; ++j) {
-    const int first = chain.linkBeyond(j + 1), end = j < 2 ? chain.linkBeyond(j + 2) : chain.links();
-    auto& link = planar.links[static_cast<std::size_t>(j)];
-    // Bodies fixed to each other as one; frames are aligned.
-    KDL::Vector offset = KDL::Vector::Zero();
-    KDL::RigidBodyInertia body = KDL::RigidBodyInertia::Zero();
-    for (int i = first; i < end; ++i) {
-      const KDL::Segment& segment = chain.kdl().getSegment(static_cast<unsigned>(i - 1));
-      if (i > first) offset += segment.pose(0.0).p;
-      body = body + KDL::Frame(offset) * segment.getInertia();
-    }
-    link.mass = body.getMass();
-    link.com = {body.getCOG().x(), body.getCOG().z()};
-    link.inertia = body.getRotationalInertia().data[4] - link.mass * std::norm(link.com);
-    const KDL::Vector next =
-        end < chain.links() ? chain.kdl().getSegment(static_cast<unsigned>(end - 1)).pose(0.0).p : offset;
-    link.to_next = {next.x(), next.z()};
-  }
-  return planar;
-}
 
 /// Crank with a steady torque, and the boom vibrating under it while its pose moves: everything smooth between blows.
 /// M from the hand-made chain, C = 2 zeta M sqrt(M^-1 K), K and poses as given.
@@ -51,8 +24,9 @@ class Reference {
   Reference(const Boom& boom, double amplitude)
       : mechanism_(test::mechanismOf(test::mo100Parameters())),
         boom_(boom),
-        planar_(planarBoom(boom.chain())),
+        planar_(test::planarEo2621()),
         amplitude_(amplitude) {
+    planar_.gravity = 0.0;
     state_[kSpeed] = 13.5;
   }
 

@@ -74,12 +74,4 @@ std::vector<Message> messagesIn(const std::string& path, const std::string& topi
   return messages;
 }
 
-/// By stamp [ns].
-inline std::map<StampNs, geometry_msgs::Wrench> wrenchesIn(const std::string& path, const std::string& topic) {
-  std::map<StampNs, geometry_msgs::Wrench> wrenches;
-  for (const auto& m : messagesIn<geometry_msgs::WrenchStamped>(path, topic))
-    wrenches[static_cast<StampNs>(m.header.stamp.toNSec())] = m.wrench;
-  return wrenches;
-}
-
 }  // namespace hammer_loads::test

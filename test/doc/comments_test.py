@@ -3,8 +3,6 @@ import ast
 import pathlib
 import re
 
-import pytest
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = [path for path in sorted((ROOT / "src").rglob("*")) if path.suffix in (".h", ".cpp")]
 SCRIPTS = [path for folder in ("src", "scripts", "fleet", "test") for path in sorted((ROOT / folder).rglob("*"))
@@ -89,40 +87,3 @@ def test_names_of_tests_state_a_behaviour():
     names += [name for path in SCRIPTS if ROOT / "test" in path.parents for name in names_of_python_tests(path.read_text())]
     assert len(names) > 1500
     assert [name for name in names if BAD_NAME.match(name)] == []
-
-
-@pytest.mark.parametrize("text, wrong", [
-    ("/// Speed of the crank [rad/s].\n", 0),
-    ("/// Of the crank [rad/s].\n", 1),
-    ("/// Speed of the crank,\n/// of which the sign counts.\n", 0),
-    ("/// [rad]: what a sensor shows.\n", 0),
-    ("/// [rad] what a sensor shows.\n", 1),
-    ("double speed{};  ///< of the crank [rad/s]\n", 1),
-    ("double speed{};  ///< speed of the crank [rad/s]\n", 0),
-    ("double a{};  ///< angle\ndouble b{};  ///< as above\n", 1),
-    ("// What the crank does.\nint f();\n", 1),
-    ("  // Where the pins meet, the force is zero.\n", 0),
-    ("/// Where the pins meet.\n", 1),
-    ("/// Offset of the encoder.\n", 0),
-    ("int steps = 3;  // of the crank\n", 0),
-])
-def test_beginnings_are_found(text, wrong):
-    assert len(bad_beginnings(text)) == wrong
-
-
-@pytest.mark.parametrize("text, wrong", [
-    ("/// The crank turns. Of its speed the mean counts.\n", 1),
-    ("/// The crank turns.\n/// What it drives, follows.\nint f();\n", 1),
-    ("/// The crank turns. Its speed counts, of which the mean is known.\n", 0),
-    ("/// Speed at 5.\nint f();\n/// So far.\n", 0),
-])
-def test_bad_sentences_are_found(text, wrong):
-    assert len(bad_sentences(text)) == wrong
-
-
-@pytest.mark.parametrize("name, bad", [
-    ("OfTheBoom", True), ("WhatIsWrongIsNamed", True), ("OffsetIsExact", False), ("ImuSaysSo", True), ("ItsWeightCounts", True),
-    ("InertiaIsPositive", False), ("AnswersAreTold", True), ("ToolTakesTheBlow", False), ("AsPrinted", True),
-])
-def test_bad_names_are_found(name, bad):
-    assert bool(BAD_NAME.match(name)) == bad

@@ -3,7 +3,6 @@
 import glob
 import os
 import pathlib
-import re
 import shutil
 import signal
 import subprocess
@@ -187,21 +186,11 @@ class YourMachine(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, str(cls.directory))
         cls.machine = Loader(str(cls.directory / "loader2"))
         text = (HERE.parents[1] / "doc" / "your_machine.md").read_text()
-        cls.text = text
         here = cls.directory / "empty"
         here.mkdir()
         cls.stranger = Stranger(here, setup, cls.machine, page.parts_of(text))
         cls.stranger.follow()
         cls.here = here
-
-    def test_a_wrong_figure_or_word_on_the_page_would_be_found(self):
-        said = "x_rad   -1.0e+00 rad (37.04 deg) +- 0.1"
-        self.assertTrue(page.agrees("x_rad -1 rad (37.0 deg)", said))
-        for wrong in ("x_rad 1 rad", "x_rad -1 rad (37.2 deg)", "y_rad -1 rad"):
-            self.assertFalse(page.agrees(wrong, said), wrong)
-
-    def test_there_are_ten_steps(self):
-        self.assertEqual(re.findall(r"^## (\d+)\. ", self.text, re.M), [str(step) for step in range(1, 11)])
 
     def test_each_launch_has_left_a_bag(self):
         self.assertEqual([len(list((self.here / name).iterdir())) for name in ("first", "work")], [2, 1])

@@ -196,10 +196,5 @@ TEST_F(LogTest, TwoNodesWithoutAPrefixHaveNamesOfTheirOwn) {
   EXPECT_EQ(names, (std::vector<std::string>{"left_hammer_loads", "right_hammer_loads"}));
 }
 
-TEST_F(LogTest, APrefixHoldsWhateverTheNodeIsCalled) {
-  record(forNode(settings_, "/left/hammer_loads"), 1);
-  EXPECT_EQ(files().at(0).rfind(path("test_2"), 0), 0u);
-}
-
 }  // namespace
 }  // namespace hammer_loads::test

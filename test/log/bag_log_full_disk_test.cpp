@@ -47,20 +47,6 @@ TEST_F(LogTest, StopsCleanlyWhenTheDiskIsNearlyFullAndStartsAgain) {
   EXPECT_EQ(log.health().reason, "");
 }
 
-TEST_F(LogTest, HasRoomAgainOnlyForALogThatIsWanted) {
-  settings_.min_free_space = 1'000'000;
-  std::atomic<std::uint64_t> free{0};
-  LogDisk disk;
-  disk.free_space = [&free](const std::string&) { return free.load(); };
-  BagLog log(settings_, disk);
-  EXPECT_FALSE(log.hasRoomAgain()) << "never started";
-  ASSERT_EQ(log.start().size(), 1u);
-  free = 50'000'000;
-  EXPECT_TRUE(log.hasRoomAgain()) << "a full disk kept it from starting";
-  log.stop();
-  EXPECT_FALSE(log.hasRoomAgain());
-}
-
 /// A small disk of its own, where the system lets us mount one.
 class SmallDiskTest : public LogTest {
  protected:
@@ -112,13 +98,6 @@ TEST_F(SmallDiskTest, DoesNotStartOnAFullDisk) {
   EXPECT_TRUE(log.start().empty());
   EXPECT_EQ(log.health().state, LogState::kRecording);
   EXPECT_EQ(log.health().reason, "");
-}
-
-TEST_F(SmallDiskTest, StopsBeforeItIsFull) {
-  settings_.min_free_space = 6'000'000;
-  BagLog log(settings_);
-  fillUp(log, "log_min_free_mb: 6.0 MB must stay free");
-  EXPECT_GT(freeSpace(directory_), 0u);
 }
 
 TEST_F(SmallDiskTest, ClosesItsBagEvenIfItBecomesFullBetweenTwoChecks) {

@@ -1,6 +1,5 @@
 #include "hammer_loads/log/bag_log.h"
 
-#include <sensor_msgs/JointState.h>
 #include <std_msgs/String.h>
 
 #include <random>
@@ -17,38 +16,6 @@ std_msgs::String text(const std::string& data) {
   std_msgs::String message;
   message.data = data;
   return message;
-}
-
-TEST_F(LogTest, KeepsEveryMessageWithTypeTimeAndOrder) {
-  constexpr std::size_t kCount = 3000;
-  {
-    BagLog log(settings_);
-    ASSERT_EQ(log.start(), std::vector<std::string>{});
-    for (std::size_t i = 0; i < kCount; ++i) {
-      sensor_msgs::JointState input;
-      input.name = {"hammer_crank_joint"};
-      input.position.assign(1 + i % 50, 0.01 * static_cast<double>(i));  // all sizes
-      log.write("/hammer/crank", at(i), input);
-      log.write("/node/hull_wrench", at(i), wrench(i));
-    }
-  }
-  ASSERT_EQ(files().size(), 1u);
-  ASSERT_TRUE(files(".active").empty());
-  const auto entries = readAll();
-  ASSERT_EQ(entries.size(), 2 * kCount);
-  const auto inputs = onTopic(entries, "/hammer/crank");
-  const auto outputs = onTopic(entries, "/node/hull_wrench");
-  ASSERT_EQ(outputs.size(), kCount);
-  for (std::size_t i = 0; i < kCount; ++i) {
-    ASSERT_EQ(inputs[i].time, at(i));
-    ASSERT_EQ(outputs[i].time, at(i));
-    ASSERT_EQ(inputs[i].as<sensor_msgs::JointState>().position.size(), 1 + i % 50);
-    ASSERT_EQ(outputs[i].as<geometry_msgs::WrenchStamped>(), wrench(i));
-  }
-  EXPECT_EQ(inputs[0].datatype, "sensor_msgs/JointState");
-  EXPECT_EQ(inputs[0].md5sum, ros::message_traits::md5sum<sensor_msgs::JointState>());
-  EXPECT_EQ(inputs[0].definition, ros::message_traits::definition<sensor_msgs::JointState>());
-  EXPECT_FALSE(inputs[0].latched);
 }
 
 TEST_F(LogTest, CompressionChangesTheSizeAlone) {
@@ -108,43 +75,6 @@ TEST_F(LogTest, EverySplitStandsAlone) {
     EXPECT_EQ(info.back().caller, "/node");
   }
   EXPECT_EQ(next, kCount);
-}
-
-TEST_F(LogTest, StartsStopsAndSplitsOnRequest) {
-  BagLog log(settings_);
-  EXPECT_FALSE(log.split());
-  log.writeLatched(kRunInfo, at(0), text("remembered while off"));
-  log.write("/wrench", at(1), wrench(1));  // off: not kept, not counted
-  EXPECT_EQ(log.health().state, LogState::kOff);
-  ASSERT_TRUE(log.start().empty());
-  EXPECT_EQ(log.health().state, LogState::kRecording);
-  EXPECT_NE(log.health().file.find(directory_), std::string::npos);
-  ASSERT_EQ(log.start().size(), 1u);  // already recording
-  log.write("/wrench", at(2), wrench(2));
-  EXPECT_TRUE(log.split());
-  log.write("/wrench", at(3), wrench(3));
-  log.stop();
-  log.write("/wrench", at(4), wrench(4));
-  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
-  EXPECT_EQ(log.health().files_closed, 2u);
-  EXPECT_EQ(readBag(log.health().file).size(), 2u);  // whole while the log lives on
-  ASSERT_TRUE(log.start().empty());
-  log.stop();
-  ASSERT_TRUE(log.start().empty());  // at once, whatever the disk is at
-  log.write("/wrench", at(5), wrench(5));
-  log.stop();
-  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
-  ASSERT_EQ(files().size(), 4u);
-  std::vector<std::size_t> kept;
-  for (const std::string& file : files()) {
-    const auto entries = readBag(file);
-    EXPECT_EQ(onTopic(entries, kRunInfo).size(), 1u) << "even where there is nothing else";
-    for (const Entry& entry : onTopic(entries, "/wrench")) kept.push_back(number(entry));
-  }
-  std::sort(kept.begin(), kept.end());
-  EXPECT_EQ(kept, (std::vector<std::size_t>{2, 3, 5}));
-  EXPECT_EQ(log.health().messages_written, 3u);
-  EXPECT_EQ(log.health().messages_dropped, 0u);
 }
 
 TEST_F(LogTest, DoesNotRepeatAForgottenMessage) {

@@ -24,16 +24,6 @@ std::vector<diagnostic_msgs::DiagnosticStatus> gapsIn(const std::vector<Entry>& 
   return gaps;
 }
 
-TEST_F(LogTest, BagWithoutLossHasNoGap) {
-  settings_.node = "/left/hammer_loads";
-  {
-    BagLog log(settings_);
-    ASSERT_TRUE(log.start().empty());
-    log.write("/input", at(0), text(10));
-  }
-  EXPECT_EQ(readAll().size(), 1u);
-}
-
 TEST_F(LogTest, BagReportsAnInputThatIsTooLargeForTheQueue) {
   settings_.node = "/left/hammer_loads";
   settings_.queue_size = 1'000'000;

@@ -160,11 +160,6 @@ class Words(unittest.TestCase):
                      hl.Hammer.pulse, hl.Hammer.blow, hl.count_cycles, hl.read_database, hl.support_impulse):
             self.assertRegex(call.__doc__, units)
 
-    def test_a_hammer_shows_what_it_is(self):
-        self.assertEqual(repr(hl.Hammer.from_yaml().changed(rocker_mass_kg=40.5)),
-                         "<Hammer: crank_length_m 0.048, rod_length_m 0.15, rocker_length_m 0.12, pivot_distance_m 0.078, "
-                         "rocker_mass_kg 40.5, rocker_inertia_about_pivot_kg_m2 0.737, level linkage>")
-
     def test_missing_files_are_named(self):
         self.assertEqual(support.message(hl.Hammer.from_yaml, "/no/such.yaml"),
                          "/no/such.yaml: cannot be read: No such file or directory")

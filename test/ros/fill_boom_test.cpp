@@ -141,16 +141,5 @@ TEST_F(Messages, StateTheVibrationAndTheReason) {
   EXPECT_EQ(after.hold_down_limit, "boom_cylinder");
 }
 
-TEST_F(Messages, HoldTheLoadAtALinkOfTheChain) {
-  sample(kStamp);
-  const Wrench expected = follower_.wrenchAtLink(*follower_.linkIndex("arm_link"), kLoad);
-  geometry_msgs::WrenchStamped arm;
-  fillWrench(1000000000, expected, arm);
-  EXPECT_EQ(arm.header.stamp, ros::Time(1.0));
-  EXPECT_EQ(arm.wrench.force.x, expected.force.x());
-  EXPECT_EQ(arm.wrench.force.z, expected.force.z());
-  EXPECT_EQ(arm.wrench.torque.y, expected.torque.y());
-}
-
 }  // namespace
 }  // namespace hammer_loads

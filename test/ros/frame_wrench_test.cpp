@@ -157,14 +157,6 @@ TEST_F(Frames, AcceptTimeThatRestarts) {
   EXPECT_EQ(told_[0].wrench.wrench.torque.y, 7.0 - 20e3);
 }
 
-TEST_F(Frames, ABadTransformIsNotTaken) {
-  tf({transform("gauge", kHull, 1.0, std::nan(""), 0.0)}, 1.0, true);
-  load(1.0, 1.0);
-  EXPECT_TRUE(told_.empty());
-  tf({transform("gauge", kHull, 1.0, 1.0, 0.0)}, 1.1, true);
-  EXPECT_EQ(told_.size(), 1U);
-}
-
 /// tf2 throws in the callback for a stamp near the end of time; what it takes may still be no place.
 TEST_F(Frames, RefuseStampsBeyondTf2AndUseTheNextGoodOne) {
   const double nan = std::nan("");

@@ -129,19 +129,6 @@ TEST_F(GrappleFlowTest, RefusesEachBadSampleCountsItAndStaysOnItsBranch) {
   EXPECT_EQ(last("short array"), "");
 }
 
-TEST_F(GrappleFlowTest, ReportsMissingVelocityAndPublishesNeitherTwistNorAccel) {
-  send(0.3, std::nullopt);
-  EXPECT_EQ(kept_.edges[kRight].size(), 1u);
-  EXPECT_TRUE(kept_.twists[kRight].empty());
-  EXPECT_TRUE(kept_.accels[kRight].empty());
-  EXPECT_TRUE(kept_.mechanisms.back().second.velocity.empty());
-  EXPECT_EQ(flow_.withoutVelocity(), 1u);
-  send(0.3, 0.2);
-  EXPECT_EQ(kept_.twists[kRight].size(), 1u);
-  EXPECT_EQ(kept_.accels[kRight].size(), 1u);
-  EXPECT_EQ(flow_.withoutVelocity(), 1u);
-}
-
 TEST_F(GrappleFlowTest, AcceptsTimeThatRunsBackFromTheSecondSampleOn) {
   send(0.3, 0.1);
   stamp_ -= ros::Duration(100.0);
@@ -150,18 +137,6 @@ TEST_F(GrappleFlowTest, AcceptsTimeThatRunsBackFromTheSecondSampleOn) {
   send(0.31, 0.1);
   send(0.32, 0.1);
   EXPECT_EQ(flow_.accepted(), 3u);
-}
-
-TEST_F(GrappleFlowTest, RunInfoComesOnceAndItsParametersGiveTheSameSettings) {
-  send(0.3, 0.1);
-  send(0.31, 0.1);
-  ASSERT_EQ(kept_.run_infos.size(), 1u);
-  const std::string yaml = kept_.run_infos.front().second.parameters_yaml;
-  std::vector<std::string> problems;
-  const auto given = parameterMap(YAML::Load(yaml), "", problems);
-  const auto again = loadGrappleSettings(configDirectory(), *given);
-  ASSERT_TRUE(again.value);
-  EXPECT_EQ(again.value->yaml, yaml);
 }
 
 TEST(SliderAccelerationTest, DifferenceIsThatOfTheLastTwoVelocities) {

@@ -99,14 +99,6 @@ class GrappleProcessTest(unittest.TestCase):
         self.assertTrue(logged == outputs(again))
         os.remove(again)
 
-    def test_process_grapple_over_the_log_gives_the_logged_outputs_bit_for_bit(self):
-        node, work = self.node_at_work('log_again')
-        work()
-        code, _, err = node.end(signal.SIGTERM)
-        self.assertEqual(code, 0, err)
-        self.assertEqual(len(self.bags()), 1, os.listdir(self.directory))
-        self.expect_same_again('log_again', self.bags()[0])
-
     def test_the_log_starts_splits_and_stops_on_request_and_each_bag_stands_alone(self):
         name = 'served'
         node, work = self.node_at_work(name, log_enabled=False)

@@ -29,22 +29,6 @@ bool beginsWith(const std::string& text, const std::string& beginning) { return 
 
 class EveryHammerKey : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryHammerKey, IsRequired) {
-  EXPECT_EQ(problemsWith({}), Lines{});
-  const Lines problems = problemsWith({{GetParam(), ""}});
-  ASSERT_EQ(problems.size(), 1U);
-  EXPECT_TRUE(beginsWith(problems[0], GetParam() + ": missing, must be a finite number")) << problems[0];
-}
-
-TEST_P(EveryHammerKey, MustBeAFiniteNumber) {
-  for (const char* text : {"\"0.1\"", "word", "true", "[0.1]", ".nan", ".inf", "~"}) {
-    const Lines problems = problemsWith({{GetParam(), text}});
-    ASSERT_EQ(problems.size(), 1U) << text;
-    EXPECT_TRUE(beginsWith(problems[0], GetParam() + ": ")) << problems[0];
-    EXPECT_NE(problems[0].find(", must be a finite number"), std::string::npos) << problems[0];
-  }
-}
-
 TEST_P(EveryHammerKey, MustHaveItsSign) {
   const bool any_sign = GetParam().find("_com_a") != std::string::npos;  // angle, along, across
   const Lines problems = problemsWith({{GetParam(), "-0.003"}});
@@ -159,11 +143,7 @@ TEST(HammerParameters, TakesTheRodAsUncertainUnlessTheFileStatesIt) {
     const TemporaryFile file(hammerYaml() + more);
     return loadFiles(configDirectory(), {file.path()}).value->mechanism.parameters();
   };
-  const HammerParameters usual = parametersOf(""), known = parametersOf("rod_stiffness_N_m: 1e9\n");
-  EXPECT_EQ(usual.rod_std.stiffness, 4e8);
-  EXPECT_EQ(usual.rod_std.play, 1e-4);
-  EXPECT_EQ(usual.rod_std.friction_radius, 1e-3);
-  EXPECT_EQ(known.rod_std.stiffness, 2e8);
+  const HammerParameters usual = parametersOf("");
   EXPECT_TRUE(priorOf(usual.rod, usual.rod_std).gives);
   const HammerParameters weighed =
       parametersOf("rod_stiffness_std_N_m: 1e8\nrod_damping_ratio_std: 0.1\npin_play_std_m: 5e-5\n");

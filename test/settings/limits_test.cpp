@@ -29,11 +29,6 @@ Lines limitProblems(const std::string& text) {
   return lines;
 }
 
-TEST(Limits, AreNoneWithoutAFile) {
-  EXPECT_TRUE(limitsFrom("{}").value->limits.empty());
-  EXPECT_TRUE(limitsFrom("limits_file: none").value->limits.empty());
-}
-
 TEST(Limits, ShippedExampleHasTheLimitsOfItsComments) {
   const Checked<Settings> settings = limitsFrom("limits_file: " + configDirectory() + "/limits.yaml");
   ASSERT_TRUE(settings.value) << settings.problems.front();
@@ -62,13 +57,6 @@ TEST(Limits, NeedTheFileNoMoreOnceInForce) {
     EXPECT_EQ(damage.error, 0.01);
     EXPECT_TRUE(std::isnan(damage.warn));
   }
-}
-
-TEST(Limits, OwnKeysGoOverThoseOfTheFile) {
-  const test::TemporaryFile limits("limit_hold_down_force_warn_N: 900\n");
-  const Checked<Settings> settings =
-      limitsFrom("limits_file: " + limits.path() + "\nlimit_hold_down_force_warn_N: 800\n");
-  EXPECT_EQ(settings.value->limits.at(0).warn, 800.0);
 }
 
 TEST(Limits, AreNamedIfTheyCannotBe) {

@@ -30,17 +30,6 @@ class LoadBoom : public testing::Test {
   const std::string rigid_ = "boom: rigid\n";
 };
 
-TEST_F(LoadBoom, GivesNoneWithoutDescriptionAndFile) {
-  const Checked<Settings> settings = loadShippedWith({});
-  ASSERT_TRUE(settings.value);
-  EXPECT_FALSE(settings.value->boom);
-  EXPECT_EQ(settings.value->pipeline.boom, BoomModel::kAuto);
-  EXPECT_EQ(settings.value->pipeline.boom_acceleration, BoomAcceleration::kNone);
-  EXPECT_EQ(settings.value->pipeline.joint_max_age, 0.2);
-  EXPECT_EQ(settings.value->pipeline.boom_wrench_links, Lines{});
-  EXPECT_EQ(settings.value->pipeline.tf_max_wait, 0.5);
-}
-
 TEST_F(LoadBoom, ReadsTheShippedDescriptionAndFile) {
   const Checked<Settings> settings = loaded(urdf_, boom_);
   ASSERT_EQ(settings.problems, Lines{});

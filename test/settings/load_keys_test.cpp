@@ -100,11 +100,6 @@ TEST(Load, CrankSensorsPlaceIsRead) {
   EXPECT_TRUE(loadShippedWith({}).value->pipeline.crank_sensor.isIdentity());
 }
 
-TEST(Load, RefusesTheKeysOfAFlexibleShaftAsUnknown) {
-  EXPECT_EQ(problemsOf("shaft: flexible\ncoupling_motor_share: 0.4\n"),
-            (Lines{"coupling_motor_share: unknown key (FILE:2)", "shaft: unknown key (FILE:1)"}));
-}
-
 TEST(Load, ImpossibleCrankSensorIsRefusedByItsKeys) {
   EXPECT_EQ(problemsOf("crank_direction: 0\n"), (Lines{"crank_direction: 0, must be 1 or -1 (FILE:1)"}));
   EXPECT_EQ(problemsOf("crank_ratio: 2.0\ncrank_eccentricity_1_rad: 0.02\n"),

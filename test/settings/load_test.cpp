@@ -22,17 +22,6 @@ TEST(Load, ShippedFilesOfOneKindEachLoadOverThemselves) {
   }
 }
 
-TEST(Load, GivenKeysReplaceShippedOnesKeyByKey) {
-  const TemporaryFile file("gravity_m_s2: 1.62\ncrank_stamps: steady\nlog_enabled: false\n");
-  const Checked<Settings> settings = loadShippedWith({file.path()});
-  ASSERT_EQ(settings.problems, Lines{});
-  EXPECT_EQ(settings.value->pipeline.gravity, 1.62);
-  EXPECT_EQ(settings.value->pipeline.crank_stamps, CrankStamps::kSteady);
-  EXPECT_FALSE(settings.value->log.enabled);
-  EXPECT_EQ(settings.value->pipeline.stale_after, 0.25);
-  EXPECT_EQ(settings.value->mechanism.parameters().rocker_mass, 35.2);
-}
-
 TEST(Load, MergedKeysLeaveWhatWasReadBeforeAsItIs) {
   std::vector<std::string> problems;
   const ParameterMap over = *parameterMap(YAML::Load("level: rocker"), "over", problems);
@@ -60,13 +49,6 @@ TEST(Load, OneHammerKeyMeansThatAllMustBeGiven) {
   EXPECT_TRUE(std::all_of(problems.begin(), problems.end(), [](const std::string& line) {
     return line.find(": missing, must be") != std::string::npos;
   }));
-}
-
-TEST(Load, HammerKeysMayBeSpreadOverFiles) {
-  const TemporaryFile most(hammerYaml({{"rocker_mass_kg", ""}})), rest("rocker_mass_kg: 40.0\n");
-  const Checked<Settings> settings = loadShippedWith({most.path(), rest.path()});
-  ASSERT_EQ(settings.problems, Lines{});
-  EXPECT_EQ(settings.value->mechanism.parameters().rocker_mass, 40.0);
 }
 
 TEST(Load, DumpIsStableAndReloadsToTheSame) {
@@ -157,11 +139,6 @@ TEST(Load, AFileTooLongForParametersIsNotParsed) {
   EXPECT_EQ(problems, Lines{"FILE: more than 1000000 bytes, must be a file of parameters"});
   EXPECT_EQ(loadShippedWith({"/dev/zero"}).problems,
             Lines{"/dev/zero: more than 1000000 bytes, must be a file of parameters"});
-}
-
-TEST(Load, ConfigDirectoryHoldsTheShippedFiles) {
-  for (const char* name : {"hammer_mo100.yaml", "pipeline.yaml", "log.yaml", "life.yaml"})
-    EXPECT_TRUE(std::filesystem::is_regular_file(configDirectory() + "/" + name)) << name;
 }
 
 }  // namespace

@@ -89,16 +89,6 @@ TEST(ParameterReader, RefusesWrongTypesOfEveryKind) {
   EXPECT_EQ(reader.yaml(), "");
 }
 
-TEST(ParameterReader, ReportsMissingKeysWithUnitAndRule) {
-  ParameterReader reader = readerOf("");
-  EXPECT_TRUE(std::isnan(reader.number("a_m", "m", NumberRule::positive())));
-  reader.integer("b", "", 0, 3);
-  reader.boolean("c");
-  EXPECT_EQ(reader.problems(),
-            (Lines{"a_m: missing, must be a finite number > 0 in m", "b: missing, must be an integer in [0, 3]",
-                   "c: missing, must be true or false"}));
-}
-
 TEST(ParameterReader, NamesTheNearestKeyForAnUnknownOne) {
   ParameterReader reader = readerOf("crank_lenght_m: 1\nsomething_else: 2\n\"two\\nlines\": 3");
   reader.number("crank_length_m", "m", NumberRule::positive());
@@ -117,12 +107,6 @@ TEST(ParameterReader, AddsAProblemOnlyToAKeyWithoutOne) {
   reader.addProblem("a: does not go with b");
   reader.addProblem("b: does not go with a");
   EXPECT_EQ(reader.problems(), (Lines{"a: x, must be a finite number (x.yaml:1)", "b: does not go with a (x.yaml:2)"}));
-}
-
-TEST(ParameterReader, LeavesOutAnUnknownOrigin) {
-  ParameterReader reader(ParameterMap{{"a", {YAML::Node("x"), ""}}});
-  reader.number("a", "", NumberRule::any());
-  EXPECT_EQ(reader.problems(), Lines{"a: x, must be a finite number"});
 }
 
 }  // namespace

@@ -49,14 +49,6 @@ class BoomFile : public testing::Test {
   std::filesystem::path file_;
 };
 
-TEST_F(BoomFile, ShippedOneLoads) {
-  EXPECT_TRUE(problems("damping_ratio", "damping_ratio").empty());
-  const Boom boom = test::shippedBoom();
-  EXPECT_EQ(boom.chain().jointNames(),
-            (std::vector<std::string>{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"}));
-  EXPECT_EQ(boom.cylinders().size(), 3U);
-}
-
 TEST_F(BoomFile, EachFaultIsOneLine) {
   expectOne("damping_ratio: 0.05", "damping_ratio: 1.5", "damping_ratio: 1.5, must be > 0 and < 1");
   expectOne("damping_ratio: 0.05", "damping_ratio: lots", "damping_ratio: ");

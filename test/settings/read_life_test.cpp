@@ -39,18 +39,6 @@ const std::string kToe =
 const std::string kCurve =
     "toe_sn_knee_range_MPa: 52.6\ntoe_sn_knee_cycles: 1.0e+7\ntoe_sn_slope: 3\ntoe_sn_slope_below: 5\n";
 
-TEST(ReadLife, TheShippedFileCountsTheHullsWrench) {
-  const Read shipped = read("{}");
-  EXPECT_EQ(shipped.problems, std::vector<std::string>{});
-  ASSERT_EQ(shipped.settings.channels.size(), 3U);
-  EXPECT_EQ(shipped.settings.channels[1].name, "hull_wrench/force_z");
-  EXPECT_EQ(shipped.settings.channels[1].grid.classes(), 4096U);
-  EXPECT_EQ(shipped.settings.channels[1].grid.greatest(), 200000.0);
-  EXPECT_EQ(shipped.settings.period, 60000000000);
-  EXPECT_TRUE(shipped.settings.hot_spots.empty());
-  EXPECT_TRUE(shipped.settings.ledger.empty());
-}
-
 TEST(ReadLife, ReadsStressByModulusAreaOrCoefficient) {
   const Read plain = read(kToe);
   EXPECT_EQ(plain.problems, std::vector<std::string>{});

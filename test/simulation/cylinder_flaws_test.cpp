@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "hammer_loads/simulation/chamber_oil.h"
 #include "hammer_loads/simulation/session.h"
@@ -221,21 +220,6 @@ TEST(CylinderFlaws, AHoseShowsThePressureLate) {
   }
   EXPECT_GT(largest, 2e4);
   EXPECT_LT(worst, 0.02 * largest);
-}
-
-TEST(CylinderFlaws, SensorsOfFewBitsGiveWholeCounts) {
-  MachineSettings m = swungBoom();
-  m.joint_count = 2e-3;
-  m.on_boom.pressures.count = 39e3;
-  const Session session = recordSession(m);
-  std::set<long long> numbers;
-  for (const JointReading& r : session.joints) {
-    const double counts = r.position[1] / 2e-3;
-    ASSERT_NEAR(counts, std::round(counts), 1e-6);
-    numbers.insert(std::llround(counts));
-  }
-  EXPECT_GT(numbers.size(), 10U);
-  for (const PressureReading& r : session.pressures) ASSERT_NEAR(std::remainder(r.rod[2], 39e3), 0.0, 1e-3);
 }
 
 /// In their order, each up to the delay late, and as often by little as by much.

@@ -45,18 +45,6 @@ std::vector<TurnAngle> angles() {
   return all;
 }
 
-TEST(MovingLinks, RodKeepsItsLength) {
-  const LinkLengths l = workingMo100().hammer.lengths;
-  const MovingLinks links = make(workingMo100().hammer, Level::kRocker);
-  for (const TurnAngle angle : angles()) {
-    const double psi = links.rockerAngle(angle).value;
-    const double xi = l.pivot_distance + l.rocker * std::cos(psi) - l.crank * std::cos(angle.offset);
-    const double eta = l.rocker * std::sin(psi) - l.crank * std::sin(angle.offset);
-    EXPECT_NEAR(std::hypot(xi, eta), l.rod, 1e-15) << angle.offset;
-    EXPECT_GE(psi, 0.0);
-  }
-}
-
 TEST(MovingLinks, LoadAgreesWithHullWrench) {
   const HammerParameters p = workingMo100().hammer;
   const Mechanism mechanism = *Mechanism::make(p).value;

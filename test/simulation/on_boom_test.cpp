@@ -71,21 +71,6 @@ TEST(OnBoom, HoldsItsWeightAtRest) {
   EXPECT_NEAR(machine.truth().hold[0], -about_boom, 0.005 * about_boom) << "but for the rocker's place";
 }
 
-TEST(OnBoom, CrankRestsOnTheToolUntilThePressureRises) {
-  MachineSettings m = onBoom();
-  m.start_angle = 0.2;
-  HammerOnBoom machine(m);
-  machine.advanceTo(0.65);
-  EXPECT_EQ(machine.truth().speed, 0.0);
-  EXPECT_EQ(machine.truth().angle, 0.0);
-  machine.advanceTo(3.0);
-  const auto blows = machine.takeBlows();
-  ASSERT_GT(blows.size(), 4U);
-  EXPECT_FALSE(blows.front().whole_turn);
-  EXPECT_TRUE(blows.back().whole_turn);
-  EXPECT_NEAR(blows.back().turn_period, 0.21, 0.02);
-}
-
 TEST(OnBoom, RestitutionIsTheToolsSpeedOverTheRockers) {
   MachineSettings m = onSteel();
   m.blow.restitution_drawn = true, m.blow.restitution_low = m.blow.restitution_high = 0.25;

@@ -89,25 +89,6 @@ TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
   EXPECT_LT(largest, 1e-4);
 }
 
-TEST(Stamps, LostSamplesLeaveTheOthersAsTheyAre) {
-  MachineSettings s = flawedRun();
-  const Session plain = recordSession(s);
-  s.crank.loss_share = 0.05;
-  const Session session = recordSession(s);
-  EXPECT_NEAR(static_cast<double>(session.crank.size()) / static_cast<double>(plain.crank.size()), 0.95, 0.01);
-  std::set<std::int64_t> stamps;
-  for (const CrankReading& reading : plain.crank) stamps.insert(reading.stamp);
-  for (const CrankReading& reading : session.crank) ASSERT_EQ(stamps.count(reading.stamp), 1U);
-}
-
-TEST(Stamps, AreInOrderWhereAskedFor) {
-  MachineSettings s = flawedRun();
-  s.crank.stamp_noise = 1e-3;
-  s.crank.stamps_ordered = true;
-  const Session session = recordSession(s);
-  for (std::size_t i = 1; i < session.crank.size(); ++i) ASSERT_GT(session.crank[i].stamp, session.crank[i - 1].stamp);
-}
-
 /// A Husky's odometry (robot_localization, test/test1.bag; 3952 messages at 10 Hz) about its own line, in intervals:
 /// standard deviation 0.0314, quantiles of 1, 50 and 99 % -0.057, 0.000 and 0.053.
 TEST(Stamps, EqualThoseOfARealPolledDriver) {

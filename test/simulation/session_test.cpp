@@ -86,18 +86,6 @@ TEST(Session, SpeedNoiseHasItsDeviation) {
   EXPECT_NEAR(fourth / n / (variance * variance), 3.0, 4.0 * std::sqrt(24.0 / n));  // Gaussian
 }
 
-TEST(Session, SpeedMayBeMissing) {
-  MachineSettings s = quietRun();
-  s.crank.speed = false;
-  const Session with = recordSession(quietRun()), without = recordSession(s);
-  ASSERT_EQ(with.crank.size(), without.crank.size());
-  for (std::size_t i = 0; i < with.crank.size(); ++i) {
-    ASSERT_FALSE(without.crank[i].speed);
-    ASSERT_EQ(with.crank[i].stamp, without.crank[i].stamp);
-    ASSERT_EQ(with.crank[i].angle, without.crank[i].angle);
-  }
-}
-
 TEST(Session, JointsGiveTheTruthsPitch) {
   const MachineSettings s = quietRun();
   const Session session = recordSession(s);
@@ -114,20 +102,6 @@ TEST(Session, JointsGiveTheTruthsPitch) {
   }
   EXPECT_GT(largest, 0.02);
   EXPECT_LT(largest, 0.2);
-}
-
-TEST(Session, HoldsAtOtherRatesAndCounts) {
-  for (const double rate : {100.0, 5000.0}) {
-    MachineSettings s = quietRun();
-    s.crank.rate = rate;
-    s.crank.counts = 0;
-    s.crank.jitter = 0.5 / rate;  // far too much: cut at 0.45 periods, order is kept
-    const Session session = recordSession(s);
-    EXPECT_NEAR(static_cast<double>(session.crank.size()), 4.0 * rate, 1.0);
-    for (std::size_t i = 1; i < session.crank.size(); ++i)
-      ASSERT_GT(session.crank[i].stamp, session.crank[i - 1].stamp);
-    EXPECT_EQ(session.crank[10].angle, session.truth[10].angle);
-  }
 }
 
 }  // namespace

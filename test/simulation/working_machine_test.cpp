@@ -154,11 +154,5 @@ TEST(WorkingMachine, SwingsByWeightWithoutLoss) {
   EXPECT_NEAR(machine.energy().kinetic, machine.energy().weight, 1e-9);
 }
 
-TEST(WorkingMachine, ImpossibleLinkageIsRefused) {
-  MachineSettings s = shortRun();
-  s.hammer.lengths.rod = 0.160;
-  EXPECT_THROW(WorkingMachine{s}, std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace hammer_loads::simulation
