@@ -63,40 +63,6 @@ TEST(ModeResponse, FreeJointHasNoFrequency) {
   EXPECT_DOUBLE_EQ(r.parabola, 3.375);
 }
 
-TEST(ModeAdvance, ManySmallStepsEqualOneLarge) {
-  std::mt19937 random(31);
-  std::uniform_real_distribution<> between(-1.0, 1.0);
-  for (int i = 0; i < 200; ++i) {
-    const Mode mode{std::exp(3.0 * between(random) + 2.0), 0.5 + 0.49 * between(random)};
-    const double h = std::exp(3.0 * between(random) - 3.0);
-    const double from = between(random), to = between(random);
-    const ModeState start{between(random) / mode.omega, between(random)};
-    const ModeState whole = advanced(mode, start, {from, to, 0.5 * (from + to)}, h);
-    ModeState parts = start;
-    constexpr int kParts = 16;
-    for (int k = 0; k < kParts; ++k) {
-      const double a = from + (to - from) * k / kParts, b = from + (to - from) * (k + 1) / kParts;
-      parts = advanced(mode, parts, {a, b, 0.5 * (a + b)}, h / kParts);
-    }
-    const double size = std::hypot(start.v, mode.omega * start.x) + std::min(h, 1.0 / mode.omega);
-    EXPECT_NEAR(whole.x * mode.omega, parts.x * mode.omega, 2e-14 * size);
-    EXPECT_NEAR(whole.v, parts.v, 2e-14 * size);
-  }
-}
-
-TEST(ModeAdvance, ParabolaKeepsMeanAndEnds) {
-  // A heavy slow mode feels the impulse only: v = mean h, whatever the ends.
-  const ModeState after = advanced({1e-9, 0.05}, {}, {3.0, -8.0, 5.0}, 0.01);
-  EXPECT_NEAR(after.v, 0.05, 1e-12);
-  // Exact for a parabola in time: t^2 over [1, 2] is 1, 4 at the ends and 7/3 in the mean.
-  const Mode mode{12.0, 0.07};
-  ModeState state = advanced(mode, {}, {0.0, 1.0, 1.0 / 3.0}, 1.0);
-  state = advanced(mode, state, {1.0, 4.0, 7.0 / 3.0}, 1.0);
-  const ModeState whole = advanced(mode, {}, {0.0, 4.0, 4.0 / 3.0}, 2.0);
-  EXPECT_NEAR(state.x, whole.x, 1e-15);
-  EXPECT_NEAR(state.v, whole.v, 1e-14);
-}
-
 /// Duhamel's integral, Gauss-Legendre: int f(s) e^(-zeta w (t - s)) sin(root w (t - s))/(root w) ds.
 double duhamel(const Mode& mode, double mu, double t) {
   static const std::array<double, 8> node{0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863,

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "calibration/recorded.h"
 
 namespace hammer_loads::calibration {
@@ -64,25 +62,6 @@ TEST(CrankRecording, GapsStayGaps) {
   for (const BlowSegment& segment : cutAtBlows(track, 0.0)) {
     for (std::size_t i = 1; i < segment.points.size(); ++i)
       ASSERT_LT(segment.points[i].time - segment.points[i - 1].time, 4.6e-3);
-  }
-}
-
-TEST(CrankRecording, SegmentsAreTheBlows) {
-  for (const int direction : {1, -1}) {
-    simulation::MachineSettings s = atWork(8.0, 500.0);
-    s.crank.zero = 2.0;
-    s.crank.direction = direction;
-    const CrankTrack track = trackOf(recorded(s), 1.0);
-    EXPECT_EQ(track.direction, direction);
-    const std::vector<BlowSegment> segments = cutAtBlows(track, direction * 2.0);
-    const std::vector<simulation::BlowTruth> blows = simulation::recordSession(s).blows;
-    EXPECT_NEAR(static_cast<double>(segments.size()), static_cast<double>(blows.size()), 2.0);
-    for (const BlowSegment& segment : segments) {
-      const double least = std::accumulate(blows.begin(), blows.end(), 1.0, [&](double a, const auto& blow) {
-        return std::min(a, std::abs(blow.time - 0.5 * (segment.points.front().time + segment.points.back().time)));
-      });
-      EXPECT_LT(least, 0.05);
-    }
   }
 }
 

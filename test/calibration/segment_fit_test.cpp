@@ -7,33 +7,6 @@
 namespace hammer_loads::calibration {
 namespace {
 
-/// The filter's own integration, another form of the equation with steps of its own.
-TEST(BlowShot, GoesWhereTheFiltersIntegrationGoes) {
-  const Mechanism mechanism = test::mechanismOf(simulation::workingMo100());
-  ShaftModel model(mechanism, Level::kRocker);
-  model.setHullMotion(Gravity{0.7, -9.7});
-  for (const bool before : {true, false}) {
-    HalfShot half{before, 13.5, {150, 150, 150, 150, 150}, 0.03, 0.6, {}};
-    std::vector<ShotPoint> points;
-    std::vector<double> times;
-    for (int i = 0; i < 90; ++i) times.push_back(1e-3 * i + 4e-4);
-    shoot(model, half, times, points);
-    ShaftState state{{0, {0.0, before ? Side::kBeforeBlow : Side::kAfterBlow}}, 13.5, 150.0, 0.6};
-    ShaftLoad load = model(state.position.angle);
-    double now = 0.0;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      advance(model, (before ? -1.0 : 1.0) * (times[i] - now), Passing{}, state, load);
-      now = times[i];
-      const double offset = static_cast<double>(state.position.blow) * kTwoPi + state.position.angle.offset;
-      // A hundredth of a count of 4096, a thousandth of the noise of a measured speed (0.3 rad/s). The acceleration
-      // serves the weights alone: with a stamp off by 0.6 ms its error moves the speed as much.
-      ASSERT_NEAR(points[i].offset, offset, 1.5e-5) << before << i;
-      ASSERT_NEAR(points[i].speed, state.speed, 3e-4);
-      ASSERT_NEAR(points[i].acceleration, acceleration(load, state), 0.5);
-    }
-  }
-}
-
 /// Work of the torque, with drag and stiffness in it, is the gain of energy.
 TEST(BlowShot, TorquesWorkIsTheGainOfEnergy) {
   const Mechanism mechanism = test::mechanismOf(simulation::workingMo100());

@@ -129,31 +129,6 @@ TEST(RandomGrapples, EqualTheExplicitCurveToFiftyDigits) {
   EXPECT_LT(errors.second, 1e-8);
 }
 
-TEST(RandomGrapples, KeepTheirLengths) {
-  test::Random random(43);
-  for (int i = 0; i < 750; ++i) {
-    const auto grapple = test::randomGrapple(random);
-    if (!grapple) continue;
-    const GrappleParameters& p = grapple->parameters();
-    const double low = grapple->lowerLimit().slider, high = grapple->upperLimit().slider;
-    for (int j = 0; j < 20; ++j) {
-      const auto m = grapple->at(low + (high - low) * random(1e-4, 1.0 - 1e-4));
-      ASSERT_TRUE(m);
-      for (const auto& [vector, length] : {std::pair{m->h - p.o1, p.o1h},
-                                           {m->h - m->g, p.gh},
-                                           {m->a - p.o1, p.o1a},
-                                           {m->b - m->a, p.ab},
-                                           {m->c - m->a, p.ac},
-                                           {m->d - m->b, p.bd},
-                                           {m->p - m->b, p.bp},
-                                           {m->e - m->c, p.ce},
-                                           {m->d, p.od},
-                                           {m->e, p.oe}})
-        EXPECT_NEAR(norm(vector), length, 1e-14) << i;
-    }
-  }
-}
-
 TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
   test::Random random(44);
   int across_fold = 0, across_dead_centre = 0, out_of_reach = 0;

@@ -52,20 +52,6 @@ TEST(Branches, FindsAllSixOfTheSixModeCase) {
             3);
 }
 
-TEST(Branches, ClaimsSetHasTwoModesBetweenItsFoldsAndNoneBeyond) {
-  const GrappleParameters p = test::claimsParameters();
-  const LeverGroup group(p);
-  for (int i = -1800; i < 1800; ++i) {
-    const double degrees = 0.1 * i + 0.05;
-    const Branches found = enumerateBranches(group, pinA(p, degrees * kPi / 180.0));
-    const bool inside = degrees > -176.87 && degrees < -3.13;
-    ASSERT_EQ(found.count, inside ? 2 : 0) << degrees;
-    if (inside) {
-      EXPECT_LT(found.branch[0].determinant * found.branch[1].determinant, 0.0) << degrees;
-    }
-  }
-}
-
 TEST(Branches, EveryPoseClosesAndNoPoseIsListedTwice) {
   test::Random random(21);
   int poses = 0;

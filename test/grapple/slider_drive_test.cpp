@@ -75,47 +75,5 @@ TEST(SliderDrive, ReachEndsInTheDeadCentres) {
   EXPECT_NEAR(lower->high, -0.94 - 0.67, 1e-15);
 }
 
-TEST(SliderDrive, Theta1IsContinuousWithinOneInterval) {
-  test::Random random(12);
-  int passing_beside = 0;
-  for (int i = 0; i < 200; ++i) {
-    const GrappleParameters p = test::randomLinkage(random);
-    const SliderDrive drive(p);
-    const auto reach = drive.reachAround(p.o1.im + random(-2.5, 2.5));
-    if (!reach) continue;
-    passing_beside += reach->low < p.o1.im && reach->high > p.o1.im;
-    const double margin = 1e-3 * (reach->high - reach->low), low = reach->low + margin, high = reach->high - margin;
-    double before = drive.theta1(low), slope_before = drive.at(low)->dtheta1;
-    const int steps = 4000;
-    for (int j = 1; j <= steps; ++j) {
-      const double slider = low + (high - low) * j / steps;
-      const double theta1 = drive.theta1(slider), slope = drive.at(slider)->dtheta1;
-      const double predicted = 0.5 * (slope + slope_before) * (high - low) / steps;
-      ASSERT_NEAR(theta1 - before, predicted, 0.05) << i << ' ' << slider;
-      before = theta1;
-      slope_before = slope;
-    }
-  }
-  EXPECT_GT(passing_beside, 10);
-}
-
-TEST(SliderDrive, FindsTheSliderOfARockerAngle) {
-  test::Random random(13);
-  int checked = 0;
-  for (int i = 0; i < 300; ++i) {
-    const GrappleParameters p = test::randomLinkage(random);
-    const SliderDrive drive(p);
-    const double slider = p.o1.im + random(-2.5, 2.5);
-    const auto reach = drive.reachAround(slider);
-    if (!reach || std::min(slider - reach->low, reach->high - slider) < 1e-2) continue;
-    const auto candidates = drive.slidersAt(drive.theta1(slider));
-    double nearest = 1e9;
-    for (int j = 0; j < candidates.count; ++j) nearest = std::min(nearest, std::abs(candidates.slider[j] - slider));
-    EXPECT_LT(nearest, 1e-6);  // the root of rounding where theta1 turns back
-    ++checked;
-  }
-  EXPECT_GT(checked, 100);
-}
-
 }  // namespace
 }  // namespace hammer_loads

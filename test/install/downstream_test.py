@@ -82,7 +82,7 @@ def test_installed_launch_files_find_their_nodelets():
 
 
 def test_launch_files_state_what_is_required():
-    for name in ("hammer_loads", "hammer_loads_nodelet", "demo", "grapple"):
+    for name in ("hammer_loads_nodelet", "demo", "grapple"):
         arguments = in_install_space(f"roslaunch hammer_loads {name}.launch --ros-args")
         assert "Optional Arguments" in arguments and "Required Arguments" not in arguments
     replay = in_install_space("roslaunch hammer_loads replay.launch --ros-args")
@@ -108,8 +108,9 @@ def test_launch_arguments_become_parameters():
     assert "hull_imu:=/imu" in in_install_space("roslaunch --args /hammer_loads hammer_loads hammer_loads.launch hull_imu:=/imu")
 
 
-@pytest.mark.parametrize("launch", ["hammer_loads", "hammer_loads_nodelet", "replay", "demo"])
+@pytest.mark.parametrize("launch", ["hammer_loads_nodelet", "replay", "demo"])
 def test_a_calibration_is_merged_with_the_hammer(tmp_path, launch):
+    """Each includes hammer_loads.launch."""
     calibration, hammer = tmp_path / "calibration.yaml", PREFIX / "share" / "hammer_loads" / "config" / "hammer_mo100.yaml"
     calibration.write_text("crank_zero_rad: 0.125\ndrive_inertia_kg_m2: 0.375\n")
     bag = " bag:=some.bag" if launch == "replay" else ""

@@ -218,35 +218,6 @@ TEST(LoadCycles, ARunsNameIsThatOfItsInputs) {
   EXPECT_EQ(parameters[0], parameters[2]);
 }
 
-/// Name of a run of so many messages, one of them with another reading; empty while it has none.
-std::string nameOfRun(std::uint32_t messages, std::uint32_t other, bool ends) {
-  HammerBridge bridge(test::settingsWith("{}"));
-  Notes notes;
-  bridge.keepPieces(notes);
-  SentMessages m;
-  for (std::uint32_t i = 0; i < messages; ++i) {
-    m.crank.header.stamp = ros::Time(1000, i * 1000000U);
-    m.crank.position[0] = 0.5 + 0.02 * i + (i == other ? 1e-9 : 0.0);
-    bridge.crank(m.crank, m.crank.header.stamp);
-  }
-  if (ends) bridge.finishRun();
-  EXPECT_LE(notes.runs.size(), 1U);
-  return notes.runs.empty() ? "" : notes.runs[0];
-}
-
-TEST(LoadCycles, TheFirst64MessagesNameARunAsSoonAsTheyAreThere) {
-  constexpr std::uint32_t kNone = 1000;
-  const std::string name = nameOfRun(64, kNone, false);
-  ASSERT_NE(name, "") << "long before the first piece: who waits for the ledger can say so";
-  EXPECT_EQ(name.rfind("1000000000000-", 0), 0U) << name << " begins with the first stamp";
-  EXPECT_EQ(nameOfRun(63, kNone, false), "");
-  const std::string of_short = nameOfRun(63, kNone, true);
-  EXPECT_NE(of_short, "") << "a short run has its name at the end";
-  EXPECT_NE(of_short, name);
-  for (const std::uint32_t other : {0U, 10U, 63U}) EXPECT_NE(nameOfRun(200, other, true), name) << other;
-  for (const std::uint32_t other : {64U, 150U, kNone}) EXPECT_EQ(nameOfRun(200, other, true), name) << other;
-}
-
 TEST(LoadCycles, NameTheirKeyBeyondTheFullScale) {
   HammerBridge bridge(test::settingsWith("hull_z_full_scale_greatest: 3000.0\n"));
   play(bridge, 1000.0, true, kNothing);

@@ -84,17 +84,6 @@ def test_ros_2_translates_the_package_to_idl(tmp_path):
     assert sorted(path.stem for path in tmp_path.glob("*.idl")) == NAMES
 
 
-@pytest.mark.parametrize("line, converted", [
-    ("time since    # of the run", "builtin_interfaces/Time since # of the run"),
-    ("duration[] lag", "builtin_interfaces/Duration[] lag"),
-    ("Header header  # stamp", "std_msgs/Header header # stamp"),
-    ("hammer_loads/Blow[3] blow", "hammer_loads_msgs/Blow[3] blow"),
-    ("uint8 STRUCK_TOOL = 1   # the tool", "uint8 STRUCK_TOOL = 1   # the tool"),
-    ("# time is no type here", "# time is no type here")])
-def test_a_line_is_converted(script, line, converted):
-    assert script["converted_line"](line, "Some.msg:1") == converted
-
-
 @pytest.mark.parametrize("line", ["byte[] data", "char letter", "float64", "*"])
 def test_a_line_without_equal_in_ros_2_is_refused(script, line):
     with pytest.raises(ValueError, match="Some.msg:1: "):

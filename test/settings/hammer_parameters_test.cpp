@@ -195,12 +195,5 @@ TEST(HammerParameters, ReportsSeveralProblemsTogetherOneLineEach) {
     EXPECT_TRUE(beginsWith(problems[i], beginnings[i])) << problems[i];
 }
 
-TEST(HammerParameters, ProblemOfSeveralKeysNamesTheFile) {
-  const TemporaryFile file(hammerYaml({{"rod_length_m", "0.2"}}));
-  const Lines problems = loadFiles(configDirectory(), {file.path()}).problems;
-  ASSERT_EQ(problems.size(), 1U);
-  EXPECT_NE(problems[0].find("(" + file.path() + ":2)"), std::string::npos) << problems[0];
-}
-
 }  // namespace
 }  // namespace hammer_loads

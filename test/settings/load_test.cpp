@@ -43,14 +43,6 @@ TEST(Load, LaterFilesReplaceEarlierOnes) {
   EXPECT_EQ(loadShippedWith({second.path(), first.path()}).value->pipeline.gravity, 1.0);
 }
 
-TEST(Load, OneHammerKeyMeansThatAllMustBeGiven) {
-  const Lines problems = problemsOf("rocker_mass_kg: 40.0\n");
-  EXPECT_EQ(problems.size(), hammerKeys().size() - 1);
-  EXPECT_TRUE(std::all_of(problems.begin(), problems.end(), [](const std::string& line) {
-    return line.find(": missing, must be") != std::string::npos;
-  }));
-}
-
 TEST(Load, DumpIsStableAndReloadsToTheSame) {
   const TemporaryFile changes(
       "gravity_m_s2: 9.8123456789012345\nlog_directory: \"C:\\\\a \\\"b\\\"\"\npitch_joints: []\n");

@@ -100,14 +100,5 @@ TEST(ParameterReader, NamesTheNearestKeyForAnUnknownOne) {
   EXPECT_EQ(reader.problems()[4], "two lines: unknown key (x.yaml:3)");
 }
 
-TEST(ParameterReader, AddsAProblemOnlyToAKeyWithoutOne) {
-  ParameterReader reader = readerOf("a: x\nb: 1");
-  reader.number("a", "", NumberRule::any());
-  reader.number("b", "", NumberRule::any());
-  reader.addProblem("a: does not go with b");
-  reader.addProblem("b: does not go with a");
-  EXPECT_EQ(reader.problems(), (Lines{"a: x, must be a finite number (x.yaml:1)", "b: does not go with a (x.yaml:2)"}));
-}
-
 }  // namespace
 }  // namespace hammer_loads

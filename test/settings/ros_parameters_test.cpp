@@ -33,25 +33,6 @@ TEST(RosParameters, KeepsTypesAndValues) {
   }
 }
 
-TEST(RosParameters, KeepsListsAndMaps) {
-  XmlRpcValue list;
-  list[0] = "a";
-  list[1] = "2";
-  EXPECT_EQ(asTexts(yamlFromXmlRpc(list)), (Lines{"a", "2"}));
-  list[1] = 2;
-  EXPECT_FALSE(asTexts(yamlFromXmlRpc(list)).has_value());
-  list.setSize(0);
-  XmlRpcValue map;
-  map["x"] = 1.5;
-  map["list"] = list;
-  const YAML::Node node = yamlFromXmlRpc(map);
-  ASSERT_TRUE(node.IsMap());
-  EXPECT_EQ(node.size(), 2U);
-  EXPECT_EQ(asNumber(node["x"]), 1.5);
-  XmlRpcValue invalid;
-  EXPECT_TRUE(yamlFromXmlRpc(invalid).IsNull());
-}
-
 TEST(RosParameters, ReachTheSameReaderAsFiles) {
   XmlRpcValue parameters;
   parameters["gravity_m_s2"] = 9;

@@ -222,29 +222,5 @@ TEST(OnBoom, SealsYieldBeforeTheySlide) {
   EXPECT_GT(taken, 1.0);  // [J]
 }
 
-TEST(OnBoom, SectionsCarryWhatTheirCylindersDoNot) {
-  MachineSettings m = onBoom();
-  holdStill(m);
-  m.drive.start_time = 100.0;
-  HammerOnBoom machine(m);
-  machine.advanceTo(0.01);
-  const OnBoomTruth t = machine.truth();
-  const OilBoom b = oilBoomEo2621();
-  // Boom foot: moments about the cut of all weight beyond it and of the boom cylinder's push, which crosses it.
-  const double q = t.angles[0];
-  const double push = t.hold[0] / b.cylinders[0].arm(q);
-  const PlanePoint turned = std::polar(1.0, -q), rod = turned * b.cylinders[0].rod;
-  const PlanePoint direction = (rod - b.cylinders[0].base) / std::abs(rod - b.cylinders[0].base);
-  const PlanePoint cut = turned * b.cuts[0].place;
-  // All weights about the boom's joint are -hold; those about the cut lack the part before it.
-  const PlanePoint before_com = turned * ((400.0 * b.links[0].com - 308.7 * b.cuts[0].beyond.com) / (400.0 - 308.7));
-  const double weight_beyond = kGravity * (1030.0 - (400.0 - 308.7));
-  const double about_joint = -t.hold[0] - kGravity * (400.0 - 308.7) * before_com.real();
-  const double weights = about_joint - weight_beyond * cut.real();
-  const PlanePoint r = rod - cut, f = push * direction;
-  const double expected = weights + r.imag() * f.real() - r.real() * f.imag();
-  EXPECT_NEAR(t.cut[0].torque_y, expected, 0.01 * std::abs(t.hold[0]));
-}
-
 }  // namespace
 }  // namespace hammer_loads::simulation

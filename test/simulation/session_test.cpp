@@ -42,22 +42,6 @@ TEST(Session, ChangesTheNoiseAloneWithTheSeed) {
   EXPECT_NEAR(a.blows.back().time, b.blows.back().time, 1e-6);
 }
 
-/// The grid of integration differs, so readings agree to its error, the noise exactly.
-TEST(Session, PiecesGiveTheWhole) {
-  const Session whole = recordSession(quietRun());
-  SessionStream stream(quietRun());
-  Session pieces;
-  for (int i = 1; i <= 800; ++i) stream.advanceTo(0.005 * i, pieces);
-  ASSERT_EQ(whole.crank.size(), pieces.crank.size());
-  ASSERT_EQ(whole.blows.size(), pieces.blows.size());
-  ASSERT_EQ(whole.joints.size(), pieces.joints.size());
-  for (std::size_t i = 0; i < whole.crank.size(); ++i) {
-    ASSERT_EQ(whole.crank[i].stamp, pieces.crank[i].stamp);
-    ASSERT_NEAR(*whole.crank[i].speed - whole.truth[i].speed, *pieces.crank[i].speed - pieces.truth[i].speed, 1e-13);
-    ASSERT_NEAR(whole.truth[i].speed, pieces.truth[i].speed, 1e-4);
-  }
-}
-
 TEST(Session, AngleIsTheEncodersCount) {
   const Session session = recordSession(quietRun());
   const double count = kTwoPi / 4096;

@@ -38,22 +38,6 @@ void expectWhole(const TurnTrace& trace, int samples) {
   EXPECT_EQ(trace.samples.back().stamp - trace.start, samples * kMs);
 }
 
-TEST(TurnTraces, AreNoneForNothing) {
-  TurnTraces traces;
-  EXPECT_FALSE(traces.worst());
-  EXPECT_EQ(traces.typical(), nullptr);
-  traces.turnEnded(1, 5 * kMs, 0.005, 1.0);
-  EXPECT_FALSE(traces.worst()) << "no sample of it";
-}
-
-TEST(TurnTraces, WorstIsTheFirstOfTheLargestWholeWithItsSamples) {
-  TurnTraces traces;
-  play(traces, {3.0, 9.0, 1.0, 9.0, 5.0}, 200);
-  ASSERT_TRUE(traces.worst());
-  EXPECT_EQ(traces.worst()->turn, 2U);
-  expectWhole(*traces.worst(), 200);
-}
-
 /// However long the run: the typical turn lies near the median of all of them.
 TEST(TurnTraces, TypicalIsNearTheMedian) {
   std::mt19937 random(1);
