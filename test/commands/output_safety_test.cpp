@@ -54,15 +54,6 @@ TEST_F(OutputSafety, AnExistingFileStaysWithoutForce) {
   EXPECT_FALSE(fs::exists(path("nowhere")));
 }
 
-TEST_F(OutputSafety, ForceReplacesWhatProcessBagWrote) {
-  ASSERT_EQ(run(kSession + " " + path("first.bag") + " --pins").exit_code, 0);
-  ASSERT_EQ(run(kSession + " " + path("second.bag")).exit_code, 0);
-  ASSERT_FALSE(contentOf(path("first.bag")) == contentOf(path("second.bag")));
-  const test::Outcome outcome = run(kSession + " " + path("first.bag") + " --force");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contentOf(path("first.bag")) == contentOf(path("second.bag")));
-}
-
 /// A recording, a node's log (outputs and inputs, these perhaps under the node's own name), notes.
 TEST_F(OutputSafety, ForceReplacesNothingElse) {
   const auto write = [&](const std::string& name, const std::string& crank_topic, bool run_info) {

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from support import DATA, needs_programs, page_of, report_here, with_budget
-from report.budget import budget_of, share_lines
+from report.budget import budget_of
 from report.database import Database
 from report.subjects import subjects_of
 
@@ -49,12 +49,6 @@ def test_text_and_csv_state_every_source(made):
     header, *rows = (line.split(",") for line in report_here(path, "--csv", command="budget").stdout.splitlines())
     assert [(row[header.index("source")], float(row[header.index("share")])) for row in rows] == [
         ("rocker_mass_kg", 0.64), ("readings", 0.36)]
-
-
-def test_negligible_shares_are_one_line():
-    shares = [("rocker_mass_kg", 0.9991), ("readings", 5e-4), ("supply", 3e-4), ("crank_mass_kg", 1e-4)]
-    assert share_lines(shares) == ["   99.9 %  rocker_mass_kg", "    0.1 %  readings", "    0.0 %  2 more"]
-    assert share_lines(shares[:1]) == ["   99.9 %  rocker_mass_kg"]
 
 
 def test_wrong_files_are_named(made):

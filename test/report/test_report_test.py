@@ -6,7 +6,6 @@ import pytest
 from support import DATA, SOURCE, Reader, assert_refused, execute, needs_programs, report_here, with_budget
 from budget_test import ROWS
 from report.formats import rounded
-from report.test_report import deviation_key
 
 
 @pytest.fixture
@@ -28,12 +27,6 @@ def parts(tmp_path):
     (-11996.4, 17258.0, ("\u221212\u202f000", "17\u202f000")), (3.5, None, ("3.5", "\u2013"))])
 def test_an_uncertainty_has_two_digits_and_the_value_as_many_places(value, uncertainty, shown):
     assert rounded(value, uncertainty) == shown
-
-
-def test_std_keys_stand_before_the_unit():
-    keys = {"rocker_mass_std_kg", "rod_damping_ratio_std"}
-    assert [deviation_key(key, keys) for key in ("rocker_mass_kg", "rod_damping_ratio", "rocker_length_m")] == [
-        "rocker_mass_std_kg", "rod_damping_ratio_std", None]
 
 
 def test_expanded_uncertainty_is_twice_the_std(made, parts):

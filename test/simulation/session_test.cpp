@@ -42,19 +42,6 @@ TEST(Session, ChangesTheNoiseAloneWithTheSeed) {
   EXPECT_NEAR(a.blows.back().time, b.blows.back().time, 1e-6);
 }
 
-TEST(Session, AngleIsTheEncodersCount) {
-  const Session session = recordSession(quietRun());
-  const double count = kTwoPi / 4096;
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const double below = session.truth[i].angle - session.crank[i].angle;
-    ASSERT_GE(below, -1e-12);
-    ASSERT_LE(below, count + 1e-12);
-    ASSERT_GE(session.crank[i].angle, 0.0);
-    ASSERT_LT(session.crank[i].angle, kTwoPi);
-    ASSERT_NEAR(std::remainder(session.crank[i].angle, count), 0.0, 1e-12);
-  }
-}
-
 TEST(Session, SpeedNoiseHasItsDeviation) {
   const Session session = recordSession(quietRun());
   double sum = 0.0, squares = 0.0, fourth = 0.0;
