@@ -1,5 +1,4 @@
 """Tables of the documents."""
-import math
 
 
 def table(head, rows):
@@ -8,9 +7,11 @@ def table(head, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
-def below(difference):
-    """A power of ten, one to two decades above a difference: the same text on a computer that rounds otherwise."""
-    return f"below 1e{math.ceil(math.log10(difference)) + 1:+03d}"
+def below(difference, bound):
+    """The bound, a power of ten, which a difference by rounding has to keep: the same text on every computer."""
+    if not difference < bound:
+        raise ValueError(f"difference: {difference:g}, must be below {bound:g}")
+    return f"below {bound:.0e}"
 
 
 def beside(value, right):

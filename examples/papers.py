@@ -85,7 +85,7 @@ def motion_table(hammer):
     paper = [np.degrees(paper[0]), np.degrees(paper[1]), *paper[2:]]
     names = ("psi [deg], (2)", "beta [deg], (3)", "u, (4)", "u', (5)")
     return table(["crank angle", *(f"{a:.0f} deg" for a in np.degrees(ANGLES)), "largest difference"],
-                 [[n, *(f"{v:.6f}" for v in o), below(abs(o - q).max())] for n, o, q in zip(names, ours, paper)])
+                 [[n, *(f"{v:.6f}" for v in o), below(abs(o - q).max(), 1e-10)] for n, o, q in zip(names, ours, paper)])
 
 
 def reactions(hammer, angle, speed, about_com):
@@ -116,7 +116,7 @@ def reaction_table(hammer, angle=np.radians(350.0)):
     names = ("R12, (11)", "R03 normal, (10)", "R03 tangential, (9)", "Rx, (13)", "Ry, (14)")
     columns = zip(names, ours, reactions(hammer, angle, SPEED, False), reactions(hammer, angle, SPEED, True))
     return table(["at 350 deg [N]", "package", "P0, (8) as printed", "P0, (8) about S", "difference"],
-                 [[n, f"{o:.1f}", beside(q, o), f"{r:.1f}", below(abs(r - o))] for n, o, q, r in columns])
+                 [[n, f"{o:.1f}", beside(q, o), f"{r:.1f}", below(abs(r - o), 1e-6)] for n, o, q, r in columns])
 
 
 def session_values(bag=SOURCE / "test" / "data" / "mo100_1khz.bag"):
