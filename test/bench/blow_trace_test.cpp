@@ -1,11 +1,9 @@
 #include "hammer_loads/bench/blow_trace.h"
 
 #include <gtest/gtest.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "support/held_hull.h"
 
@@ -40,17 +38,6 @@ TEST(BlowTrace, ShowsAVibrationThatOneLevelFollows) {
   EXPECT_GT(covered(trace.elastic, trace.truth), 0.85);
   const double widest = *std::max_element(trace.elastic.deviation.begin(), trace.elastic.deviation.end());
   EXPECT_LT(1.6 * widest, *std::max_element(trace.linkage.deviation.begin(), trace.linkage.deviation.end()));
-}
-
-TEST(BlowTrace, IsJson) {
-  BlowTrace trace;
-  trace.machine = "m";
-  trace.elastic = {{-1e-3, 2e-3}, {5.0, -6.5}, {0.25, 1.0}};
-  const YAML::Node node = YAML::Load(json(trace));
-  EXPECT_EQ(node["elastic"]["time_ms"].as<std::vector<double>>(), (std::vector<double>{-1.0, 2.0}));
-  EXPECT_EQ(node["elastic"]["force_z"].as<std::vector<double>>(), (std::vector<double>{5.0, -6.5}));
-  EXPECT_EQ(node["elastic"]["deviation_N"].as<std::vector<double>>(), (std::vector<double>{0.25, 1.0}));
-  EXPECT_EQ(node["truth"]["time_ms"].size(), 0U);
 }
 
 }  // namespace

@@ -22,8 +22,6 @@ TEST(LifeError, IsTheFactorOfTheLoad) {
   EXPECT_NEAR(errorOf(0.9, 0.0).figure().error, -0.1, 1e-12);
 }
 
-TEST(LifeError, AConstantErrorCostsNothing) { EXPECT_NEAR(errorOf(1.0, 5e4).figure().error, 0.0, 1e-12); }
-
 /// Two turns of ranges 20 and 60: weighed by the range, 20 is known to hypot(1, 2) and 60 to hypot(6, 8) of its own.
 TEST(LifeError, HasTheDeviationsOfTheRangesOfTurns) {
   LifeError error;

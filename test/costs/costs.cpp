@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <random>
-#include <stdexcept>
 
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/grapple/branches.h"

@@ -102,15 +102,6 @@ TEST_F(CrankDynamics, PassesTheBlowInOneStepAsInMany) {
   EXPECT_NEAR(whole.speed, parts.speed, 1e-5);
 }
 
-TEST_F(CrankDynamics, GoesBackTheWayItCame) {
-  for (const double dt : {0.01, 0.05, 0.1}) {
-    const ShaftState from = stateAt(5.7, 25.0, 150.0);
-    const ShaftState back = advanced(rocker_, -dt, advanced(rocker_, dt, from));
-    EXPECT_NEAR(difference(back.position, from.position), 0.0, 1e-5) << dt;
-    EXPECT_NEAR(back.speed, from.speed, 1e-3) << dt;
-  }
-}
-
 TEST_F(CrankDynamics, ReversesAndTurnsBackwardsThroughTheBlow) {
   const ShaftState reversed = advanced(rocker_, 0.2, stateAt(1.0, 3.0, -40.0));
   EXPECT_LT(reversed.speed, 0.0);
@@ -227,16 +218,6 @@ TEST(CrankPosition, CountsTurnsWithoutLosingTheAngle) {
   for (int i = 0; i < 1000000; ++i) p.turn(0.75 * kTwoPi);
   EXPECT_EQ(p.blow, 750000);
   EXPECT_NEAR(p.angle.offset, 1.0, 1e-9);
-}
-
-TEST(CrankPosition, PassesABlowOnlyWhenItIsAtOrBehindIt) {
-  CrankPosition p{3, {-0.01, Side::kBeforeBlow}};
-  EXPECT_EQ(p.blowsPassed(), 2);
-  p.turn(0.02);
-  EXPECT_EQ(p.blowsPassed(), 3);
-  EXPECT_EQ(p.blow, 3);
-  p.turn(-0.02);
-  EXPECT_EQ(p.blowsPassed(), 2);
 }
 
 }  // namespace

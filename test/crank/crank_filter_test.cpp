@@ -75,35 +75,6 @@ TEST_F(CrankFilterTest, LearnsNoInertiaFromADeadStopOnTheTool) {
   }
 }
 
-TEST_F(CrankFilterTest, FollowsTheAccelerationThatDifferencesCannotSee) {
-  CrankFilter f = filter(0.6);
-  double filter_error = 0, peak = 0;
-  run(f, shortSession(true, 1000.0, 0.6), [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
-    if (truth.time < 3.0) return;
-    peak = std::max(peak, std::abs(truth.acceleration));
-    filter_error = std::max(filter_error, std::abs(at.estimate().acceleration - truth.acceleration));
-  });
-  EXPECT_GT(peak, 1000.0);
-  EXPECT_LT(filter_error, 0.03 * peak);
-}
-
-TEST_F(CrankFilterTest, ErrorsLieWithinTwoDeviationsAsOftenAsTheyShould) {
-  CrankFilter f = filter(0.6);
-  double samples = 0, angle = 0, speed = 0, acceleration = 0;
-  run(f, shortSession(true, 1000.0, 0.6), [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
-    if (truth.time < 3.0) return;
-    const Eigen::Vector3d deviation = at.uncertainty(1.0).covariance().diagonal().cwiseSqrt();
-    const CrankEstimate e = at.estimate();
-    ++samples;
-    angle += std::abs(CrankAngle::wrapToPi(e.position.angle.offset - truth.angle)) < 2 * deviation[0];
-    speed += std::abs(e.speed - truth.speed) < 2 * deviation[1];
-    acceleration += std::abs(e.acceleration - truth.acceleration) < 2 * deviation[2];
-  });
-  EXPECT_GT(angle / samples, 0.90);
-  EXPECT_GT(speed / samples, 0.90);
-  EXPECT_GT(acceleration / samples, 0.90);
-}
-
 TEST_F(CrankFilterTest, GivesTheMotionBetweenSamples) {
   simulation::Session dense = shortSession(true, 2000.0, 0.6);
   CrankFilter f = filter(0.6);
@@ -131,23 +102,6 @@ TEST_F(CrankFilterTest, GivesTheMotionBetweenSamples) {
   EXPECT_GT(f.uncertaintyBetween(0.005, 1.0).own(0, 0), 0.0);
 }
 
-TEST_F(CrankFilterTest, StandsStill) {
-  CrankFilter f = filter(0.6);
-  f.start({1.0 - std::fmod(1.0, test::kEncoderCount), 0.0});
-  for (int i = 0; i < 2000; ++i) f.update(1e-3, {1.0 - std::fmod(1.0, test::kEncoderCount), 0.0});
-  EXPECT_NEAR(f.estimate().speed, 0.0, 0.01);
-  EXPECT_NEAR(f.estimate().acceleration, 0.0, 3.0);
-}
-
-TEST_F(CrankFilterTest, LearnsTheSpeedUpFromAnglesAlone) {
-  CrankFilter f = filter(0.6);
-  f.start({0.5, std::nullopt});
-  EXPECT_FALSE(f.hasSpeed());
-  for (int i = 1; i <= 20; ++i) f.update(1e-3, {0.5 + 0.02 * i, std::nullopt});
-  EXPECT_TRUE(f.hasSpeed());
-  EXPECT_NEAR(f.estimate().speed, 20.0, 1.0);
-}
-
 TEST_F(CrankFilterTest, IgnoresOneOutlierAndAcceptsTwo) {
   CrankFilter f = filter(0.6);
   f.start({0.5, 20.0});
@@ -158,29 +112,6 @@ TEST_F(CrankFilterTest, IgnoresOneOutlierAndAcceptsTwo) {
   EXPECT_EQ(f.update(1e-3, {angle + 2.02, 20.0}), Tracking::kOutlier);
   EXPECT_EQ(f.update(2e-3, {angle + 2.04, 20.0}), Tracking::kRestarted);
   EXPECT_NEAR(CrankAngle::wrapToPi(f.estimate().position.angle.offset - (angle + 2.04)), 0.0, test::kEncoderCount);
-}
-
-TEST_F(CrankFilterTest, AKickThatNoTorqueGivesIsAnOutlierHoweverSmall) {
-  for (const double kick : {0.01, -0.01, 0.03, -0.1, 0.3}) {
-    CrankFilter f = filter(0.6);
-    f.start({0.5, 20.0});
-    double angle = 0.5;
-    for (int i = 0; i < 50; ++i) f.update(1e-3, {angle += 0.02, 20.0});
-    const double speed = f.estimate().speed;
-    EXPECT_EQ(f.update(1e-3, {angle + 0.02 + kick, 20.0}), Tracking::kOutlier) << kick;
-    EXPECT_EQ(f.update(2e-3, {angle += 0.04, 20.0}), Tracking::kContinued) << kick;
-    EXPECT_NEAR(f.estimate().speed, speed, 0.1) << kick;
-  }
-}
-
-TEST_F(CrankFilterTest, ASpeedWithoutInformationDoesNoHarm) {
-  for (const double told : {0.0, -20.0, 26.0}) {
-    CrankFilter f = filter(0.6);
-    f.start({0.5, told});
-    double angle = 0.5;
-    for (int i = 0; i < 50; ++i) f.update(1e-3, {angle += 0.02, told});
-    EXPECT_NEAR(f.estimate().speed, 20.0, 0.5) << told;
-  }
 }
 
 TEST_F(CrankFilterTest, TheEncoderDecidesTheSideOfTheBlow) {

@@ -18,22 +18,6 @@ EncoderSlip quiet() {
   return slip;
 }
 
-TEST(EncoderSlip, IsWhatStaysAfterAJump) {
-  EncoderSlip slip = quiet();
-  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
-  EXPECT_EQ(slip.follow(0.036, kVariance, kByTorque, kWay, kWay, true), Step::kSlipped);
-  EXPECT_NEAR(slip.last(), 0.0355, 1e-12);
-  EXPECT_EQ(slip.count(), 1);
-  EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);
-}
-
-TEST(EncoderSlip, ADamagedReadingIsNone) {
-  EncoderSlip slip = quiet();
-  EXPECT_EQ(slip.follow(0.1, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
-  EXPECT_EQ(slip.follow(2e-4, kVariance, kByTorque, kWay, kWay, true), Step::kNone);
-  EXPECT_EQ(slip.count(), 0);
-}
-
 /// Pushed at some time within the step: after the next one it is off by at least twice as much.
 TEST(EncoderSlip, ACrankThatWasPushedIsNone) {
   for (const double part : {0.2, 0.6, 1.0}) {
@@ -64,17 +48,6 @@ TEST(EncoderSlip, IsNeitherAClockThatWasSetNorASurpriseOfEachTurn) {
   EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);
   slip.endTurn();
   EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);  // and the turn before
-}
-
-/// Readings that were damaged for a while, and an index that is found again.
-TEST(EncoderSlip, AStepBackIsOneAtOnce) {
-  EncoderSlip slip = quiet();
-  slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true);
-  slip.follow(0.035, kVariance, kByTorque, kWay, kWay, true);
-  slip.follow(1e-4, kVariance, kByTorque, kWay, 0.0, true);
-  EXPECT_EQ(slip.follow(-0.0352, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
-  EXPECT_EQ(slip.follow(-0.0350, kVariance, kByTorque, kWay, kWay, true), Step::kSlipped);
-  EXPECT_EQ(slip.count(), 2);
 }
 
 TEST(EncoderSlip, IsNoChangeThatTheTorqueCanCause) {

@@ -95,31 +95,27 @@ TEST(FieldCrank, AllThatIsExactStaysExact) {
   EXPECT_LT(run.doubtful, 5);
 }
 
-TEST(FieldCrank, LearnsHowMuchTheStampsJitter) {
-  for (const double jitter : {1e-4, 2e-4, 5e-4}) {
-    for (const bool speeds : {true, false}) {
-      Machine machine;
-      machine.jitter = jitter;
-      machine.speeds = speeds;
-      const Record run = follow(machine);
-      EXPECT_NEAR(run.timing / jitter, 1.0, 0.15) << jitter << ' ' << speeds;
-      EXPECT_EQ(run.restarts, 0) << jitter << ' ' << speeds;
-      EXPECT_LT(run.outliers, 3);
-      EXPECT_NEAR(run.consistency, 1.0, 0.25);
-    }
-  }
-}
-
 /// At 200 Hz without speeds a sample's prediction is as uncertain as 0.3 ms of its stamp.
-TEST(FieldCrank, LearnsALargeJitterFromFewSamples) {
-  Machine machine;
-  machine.jitter = 1e-3;
-  machine.rate = 200.0;
-  machine.speeds = false;
-  const Record run = follow(machine);
-  EXPECT_NEAR(run.timing / machine.jitter, 1.0, 0.2);
-  EXPECT_EQ(run.restarts, 0);
-  EXPECT_LT(run.consistency, 1.3);
+TEST(FieldCrank, LearnsHowMuchTheStampsJitter) {
+  const struct {
+    double jitter, rate;
+    bool speeds;
+    double tolerance;
+  } cases[] = {{1e-4, 1000.0, true, 0.15},
+               {1e-4, 1000.0, false, 0.15},
+               {5e-4, 1000.0, true, 0.15},
+               {5e-4, 1000.0, false, 0.15},
+               {1e-3, 200.0, false, 0.2}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(testing::Message() << c.jitter << " s, " << c.rate << " Hz, speeds " << c.speeds);
+    Machine machine;
+    machine.jitter = c.jitter, machine.rate = c.rate, machine.speeds = c.speeds;
+    const Record run = follow(machine);
+    EXPECT_NEAR(run.timing / c.jitter, 1.0, c.tolerance);
+    EXPECT_EQ(run.restarts, 0);
+    EXPECT_LT(run.outliers, 3);
+    EXPECT_NEAR(run.consistency, 1.0, 0.25);
+  }
 }
 
 TEST(FieldCrank, MeasuresEachBlowsFactor) {
@@ -146,7 +142,7 @@ TEST(FieldCrank, MeasuresEachBlowsFactor) {
 /// A speed read just before the blow may bear a stamp just after it, or the reverse: it is of the other side's motion.
 TEST(FieldCrank, MeasuresEachBlowsFactorThroughJitter) {
   for (const bool speeds : {true, false}) {
-    for (unsigned seed = 1; seed <= 3; ++seed) {
+    for (unsigned seed = 1; seed <= 2; ++seed) {
       Machine machine;
       machine.jitter = 2e-4;
       machine.speeds = speeds;
@@ -171,7 +167,7 @@ TEST(FieldCrank, MeasuresEachBlowsFactorThroughJitter) {
 /// What alike blows taught is no reason to take the change that a next one makes for two changes.
 TEST(FieldCrank, ABlowUnlikeTheFirstOnesIsOneBlow) {
   for (const bool speeds : {true, false}) {
-    for (const double last : {0.7, 0.8, 1.25}) {
+    for (const double last : {0.7, 1.25}) {
       Machine machine;
       machine.speeds = speeds;
       machine.blow = [last](int number) { return Blow{number < 10 ? (last < 1.0 ? 1.2 : 0.75) : last, true, 0.0}; };

@@ -1,7 +1,6 @@
 // A rod that gives is known by where in the turn innovations are too large.
 #include <gtest/gtest.h>
 
-#include <cmath>
 
 #include "hammer_loads/crank/consistency.h"
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 namespace hammer_loads {
 namespace {
@@ -19,57 +18,6 @@ struct SwingingCrank {
     return kMean + kSwing / std::hypot(1.0, lag * kOmega) * std::sin(kOmega * t - std::atan(lag * kOmega));
   }
 };
-
-/// noise [rad/s] of the speeds, `memory` of it from one sample to the next.
-SpeedTrust trustAfter(double rate, double lag, double scale, double noise, double memory = 0.0, int turns = 40) {
-  SpeedTrust trust;
-  std::mt19937 random(5);
-  std::normal_distribution<> normal;
-  double error = 0.0;
-  const int turn = static_cast<int>(rate * 2.0 * M_PI / SwingingCrank::kOmega);
-  for (int i = 1; i < turns * turn; ++i) {
-    const double t = i / rate;
-    error = memory * error + noise * std::sqrt(1.0 - memory * memory) * normal(random);
-    const double measured =
-        scale * (lag < 0.0 ? SwingingCrank::speed(t - lag) : SwingingCrank::filtered(t, lag)) + error;
-    trust.follow(1.0 / rate, {measured, SwingingCrank::speed(t), SwingingCrank::acceleration(t), 0.0, 0.0, 0.0});
-    if (i % turn == 0) trust.endTurn();
-  }
-  return trust;
-}
-
-TEST(SpeedTrust, TakesSpeedsThatAreRight) {
-  for (const double rate : {1000.0, 200.0, 50.0}) {
-    const SpeedTrust trust = trustAfter(rate, 0.0, 1.0, 0.15);
-    EXPECT_TRUE(trust.isTrusted()) << rate;
-    EXPECT_LT(std::abs(trust.lag()), 4.0 * trust.lagDeviation());
-  }
-}
-
-TEST(SpeedTrust, FindsTheLagOfAFilterWithItsDeviation) {
-  for (const double rate : {1000.0, 200.0}) {
-    for (const double lag : {1e-3, 2e-3, 5e-3, 2e-2}) {
-      const SpeedTrust trust = trustAfter(rate, lag, 1.0, 0.3);
-      EXPECT_TRUE(trust.lags()) << lag;
-      EXPECT_FALSE(trust.isTrusted() || trust.isOutOfScale()) << lag;
-      EXPECT_NEAR(trust.lag(), lag, 4.0 * trust.lagDeviation() + 0.01 * lag) << rate;
-      EXPECT_LT(trust.lagDeviation(), 0.1 * lag + 5e-5);
-    }
-  }
-}
-
-TEST(SpeedTrust, AnAngleThatIsLateMakesTheSpeedsEarly) {
-  const SpeedTrust trust = trustAfter(1000.0, -2e-3, 1.0, 0.15);
-  EXPECT_TRUE(trust.lags());
-  EXPECT_NEAR(trust.lag(), -2e-3, 4.0 * trust.lagDeviation() + 1e-5);
-}
-
-TEST(SpeedTrust, FindsAScaleApartFromALag) {
-  const SpeedTrust trust = trustAfter(1000.0, 4e-3, 1.05, 0.15);
-  EXPECT_TRUE(trust.lags() && trust.isOutOfScale());
-  EXPECT_NEAR(trust.scale(), 0.05, 2e-3);
-  EXPECT_NEAR(trust.lag(), 4e-3, 1e-4);
-}
 
 TEST(SpeedTrust, LearnsNothingFromAnEvenSpeedWithoutNoise) {
   for (const double wrong : {0.0, 1e-3}) {

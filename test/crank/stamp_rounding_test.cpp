@@ -1,7 +1,6 @@
 // Which stamps are rounded, and by how much.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 
 #include "hammer_loads/crank/stamp_sequence.h"

@@ -129,17 +129,6 @@ TEST(GaussianBelief, TransitionOfFewRowsIsTheDenseOne) {
   EXPECT_EQ(few.covariance, few.covariance.transpose());
 }
 
-TEST(GaussianBelief, MeasurementOfOneVariableIsTheGeneralOne) {
-  const Machine machine(6);
-  Belief one = machine.begin(), general = one;
-  one.by_constant = general.by_constant = machine.B;
-  const Machine::Vector gain = one.correct(2, 0.3, machine.D);
-  EXPECT_TRUE(gain.isApprox(general.correct(Belief::Row::Unit(2), 0.3, machine.D), 1e-14));
-  EXPECT_TRUE(one.covariance.isApprox(general.covariance, 1e-13));
-  EXPECT_TRUE(one.by_constant.isApprox(general.by_constant, 1e-14));
-  EXPECT_EQ(one.covariance, one.covariance.transpose());
-}
-
 /// Schmidt's filter on all variables at once, dense: the gain of what is corrected, none of the constants.
 TEST(GaussianBelief, WeighsAMeasurementByConstantsThatAreConsidered) {
   constexpr int kAll = kN + kC;
@@ -190,13 +179,6 @@ TEST(GaussianBelief, SurvivesExactReadingsOfBadlyScaledVariables) {
   EXPECT_NEAR(belief.covariance(0, 0), kNoise / 500.0, 1e-3 * kNoise / 500.0);
 }
 
-TEST(GaussianBelief, ExactReadingLeavesNothingOfIt) {
-  Belief belief = Machine(4).begin();
-  belief.correct(1, 0.0, Belief::ConstantRow::Zero());
-  EXPECT_EQ(belief.covariance.row(1).norm(), 0.0);
-  EXPECT_TRUE(belief.isSound());
-}
-
 TEST(GaussianBelief, DrawsDecouplesAndWidens) {
   const Machine machine(9);
   Belief belief = machine.begin();
@@ -221,17 +203,6 @@ TEST(GaussianBelief, DrawsDecouplesAndWidens) {
   EXPECT_EQ(wide.covariance(0, 0), 4.0 * before.covariance(0, 0));
   EXPECT_DOUBLE_EQ(wide.covariance(0, 3), 6.0 * before.covariance(0, 3));
   EXPECT_EQ(wide.covariance(1, 2), before.covariance(1, 2));
-}
-
-/// A filter without constants is the plain one.
-TEST(GaussianBelief, NeedsNoConstants) {
-  GaussianBelief<2, 0> belief;
-  belief.covariance << 2.0, 1.0, 1.0, 3.0;
-  belief.predict<0>(Eigen::RowVector2d(1.0, 0.1));
-  EXPECT_DOUBLE_EQ(belief.covariance(0, 0), 2.0 + 0.2 + 0.03);
-  const Eigen::Vector2d gain = belief.correct(0, 1.0, {});
-  EXPECT_DOUBLE_EQ(gain[0], 2.23 / 3.23);
-  EXPECT_DOUBLE_EQ(belief.covariance(0, 0), 2.23 / 3.23);
 }
 
 TEST(ConstantFit, FadesUpdatesAndBoundsTheEffectOfOneInnovation) {

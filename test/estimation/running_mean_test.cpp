@@ -45,12 +45,6 @@ TEST(RunningMean, TakesTimesForWeights) {
   EXPECT_TRUE(coarse.mean().isApprox(-value, 1e-12));
 }
 
-TEST(RunningMean, FirstGuessCountsAsStated) {
-  RunningMean<> mean(10.0, 4.0, 1.0);
-  mean.add(0.0);
-  EXPECT_DOUBLE_EQ(mean.mean(), 2.0);
-}
-
 TEST(Latch, EngagesHighAndReleasesLow) {
   Latch latch(2.0, 1.0);
   EXPECT_FALSE(latch.follow(1.5));

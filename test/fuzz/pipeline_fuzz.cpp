@@ -3,7 +3,6 @@
 // Bytes of an input: first the level and the estimator, then messages, each an operation and its arguments; what is cut
 // off at the end counts as zeros. The common operation is a plausible sample, so that the filter is at work when the
 // others come. Operation 254 begins anew with other settings: any that the reader accepts.
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>

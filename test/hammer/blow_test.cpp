@@ -96,25 +96,6 @@ TEST(Blow, RodLosesTheEnergyThatTheLinkageLoses) {
   EXPECT_NEAR(lost + work_b, blow.energy, 1e-10 * blow.energy);
 }
 
-TEST(Blow, ReducedRodMassOnlyCountsAtLevelLinkage) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
-  EXPECT_EQ(strikingRocker(mechanism, Level::kRocker).reduced_rod_mass, 0.0);
-  EXPECT_NEAR(strikingRocker(mechanism, Level::kLinkage).reduced_rod_mass,
-              (0.012 + 4.5 * (0.07 * 0.07 + 0.004 * 0.004)) / (0.15 * 0.15), 1e-14);
-  EXPECT_GT(blowAtCrankSpeed(mechanism, Level::kLinkage, 13.6).tool_impulse_z,
-            blowAtCrankSpeed(mechanism, Level::kRocker, 13.6).tool_impulse_z);
-}
-
-TEST(Blow, JointLiesWhereTheLinkageHasIt) {
-  // Pin C at psi = 0 is at D + l3 along xi; model.md 1 maps (xi, eta) to (x, z) = -(c xi + s eta), -s xi + c eta.
-  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
-  const StrikingRocker rocker = strikingRocker(mechanism, Level::kLinkage);
-  EXPECT_NEAR(rocker.rod_joint.x, -0.120 * std::cos(50.0 * kPi / 180.0), 1e-15);
-  EXPECT_NEAR(rocker.rod_joint.z, -0.120 * std::sin(50.0 * kPi / 180.0), 1e-15);
-  EXPECT_EQ(rocker.com.x, -0.106);
-  EXPECT_EQ(rocker.striking_point.z, 0.0);
-}
-
 /// Random rocker that strikes with its speed before: x_K opposite in sign to w- = -speed.
 StrikingRocker randomRocker(std::mt19937& random, double speed_before) {
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <complex>
 #include <random>
 
 #include "hammer_loads/simulation/moving_links.h"
@@ -71,16 +70,6 @@ TEST(DisplacedLinks, AreTheBodiesWhereTheyAreLessTheirMeanOverATurn) {
     }
   }
   EXPECT_GT(greatest, 30.0) << "what there is to find";
-}
-
-TEST(DisplacedLinks, AHalfSineHasNone) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
-  const HullModel model(mechanism, Level::kPulse);
-  const HullWrench w =
-      DisplacedLinks(model).wrench(linksAt(model, CrankAngle::fromAngle(2.0)).links, 30.0, {{1.0, -9.0}, 0.3, 5.0});
-  EXPECT_NEAR(w.force_x, 0.0, 1e-9);
-  EXPECT_NEAR(w.force_z, 0.0, 1e-9);
-  EXPECT_NEAR(w.torque_y, 0.0, 1e-9);
 }
 
 }  // namespace

@@ -62,29 +62,6 @@ TEST(LevelPulse, EqualsTheRockerAlongTheToolAsTheSpeedVanishes) {
   }
 }
 
-TEST(LevelPulse, NeglectsForceAcrossAndMoment) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
-  const HullModel model(mechanism, Level::kPulse);
-  const HullWrench wrench = hullWrench(model, {CrankAngle::fromAngle(6.0), 31.0, 500.0}, {4.0, -9.0});
-  EXPECT_EQ(wrench.force_x, 0.0);
-  EXPECT_EQ(wrench.torque_y, 0.0);
-  EXPECT_EQ(movingMass(mechanism, Level::kPulse), 35.2);
-}
-
-TEST(LevelPulse, DeviatesFromTheRockerByTheKnownResidual) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
-  const HullModel model(mechanism, Level::kPulse);
-  const HalfSinePulse rocker = pulseAtConstantSpeed(mechanism, Level::kRocker, 10.0, {}).pulse;
-  constexpr int kSteps = 20000;
-  double sum = 0.0;
-  for (int k = 0; k < kSteps; ++k) {
-    const CrankMotion crank{CrankAngle::fromAngle(2.0 * kPi * (k + 0.5) / kSteps), 10.0, 0.0};
-    sum += std::pow(hullWrench(model, crank, {}).force_z - hullWrench(mechanism, Level::kRocker, crank, {}).force_z, 2);
-  }
-  EXPECT_NEAR(std::sqrt(sum / kSteps) / rocker.amplitude, rocker.half_sine_rms_error, 1e-6);
-  EXPECT_NEAR(rocker.half_sine_rms_error, 0.062, 0.001);
-}
-
 TEST(LevelPulse, MomentumDifferenceIsTheImpulse) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const HullModel model(mechanism, Level::kPulse);

@@ -58,24 +58,6 @@ TEST(LoadErrors, StayBelowTheBoundForAnyMachine) {
   }
 }
 
-TEST(LoadErrors, SeeAWrongDigit) {
-  const HardCase regular = caseNamed("regular turn");
-  const ExactCase exact(regular, Level::kLinkage);
-  std::vector<LinkLoads> loads = wayNamed("linkage with pins").loads(regular);
-  double peak = 0.0;
-  for (const LinkLoads& l : loads) peak = std::max(peak, std::hypot(l.wrench.force_x, l.wrench.force_z));
-  loads[7].wrench.force_z += 1e-6 * peak;
-  EXPECT_NEAR(errorOf(loads, exact, Parts::kWrench).of_peak, 1e-6, 1e-8);  // the peak lies between the states
-  EXPECT_GT(errorOf(loads, exact, Parts::kWrench).relative, 1e-6);
-  EXPECT_GT(errorOf(loads, exact, Parts::kForceZ).of_peak, 1e-6);  // of the peak of Fz alone
-  loads = wayNamed("linkage with pins").loads(regular);
-  loads[3].pins.crank_on_rod.x *= 1.0 + 1e-9;
-  EXPECT_LT(errorOf(loads, exact, Parts::kWrench).relative, 1e-13);
-  EXPECT_NEAR(errorOf(loads, exact, Parts::kPins).relative, 1e-9, 1e-9);
-  loads[3].pins.hull_on_crank.z = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isinf(errorOf(loads, exact, Parts::kPins).relative));
-}
-
 HardCase atOffset(double offset) {
   HardCase one = caseNamed("regular turn");
   one.angles = {offset > 0.0 ? offset : kTwoPi + offset};
@@ -107,25 +89,6 @@ TEST(PrintedFormulas, LoseTheirDigitsTowardsTheBlowWhereOursKeepThem) {
       EXPECT_LE(errorOf(wayNamed("rocker with pins").loads(near_blow), exact, Parts::kPins).relative, 1e-14);
     }
   }
-}
-
-TEST(PrintedFormulas, SecondTransferFunctionLosesThreeDigitsBesideZero) {
-  const PrintedFormulas printed(kHammer, Positions::kTrigonometry);
-  const Mechanism mechanism = mechanismOf(kHammer);
-  const NewtonEuler exact(kHammer, Level::kRocker);
-  double worst_printed = 0.0, worst_ours = 0.0;
-  for (int decade = 1; decade <= 12; ++decade) {
-    for (const double digit : {1.0, 1.9, 2.7, 4.4, 6.1, 8.3}) {
-      const double phi = digit * std::pow(10.0, -decade);
-      const Real right = exact.at(Real(phi), 1, 0, {}).psi_accel;
-      const auto error = [&](double du) { return static_cast<double>(abs(Real(du) / right - 1)); };
-      worst_printed = std::max(worst_printed, error(printed.transfer(phi).du));
-      worst_ours = std::max(worst_ours, error(motion(mechanism.linkage(), CrankAngle::fromAngle(phi)).du));
-    }
-  }
-  std::printf("u' beside 0: printed %.1e, half-angle form %.1e\n", worst_printed, worst_ours);
-  EXPECT_GE(worst_printed, 1e-13);
-  EXPECT_LE(worst_ours, 5e-15);
 }
 
 /// P0 (1), (13) and (14) with the sign of the acceleration as printed.

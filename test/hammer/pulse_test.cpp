@@ -38,13 +38,6 @@ TEST(ConstantSpeedPulse, IsNearThePapersFigures) {
   EXPECT_NEAR(pulse.start, 0.1815, 0.0005);
 }
 
-TEST(ConstantSpeedPulse, HalfSineKeepsPeakAndImpulse) {
-  const HalfSinePulse pulse = paperPulse().pulse;
-  const double impulse = 2.0 * pulse.amplitude / pulse.frequency;  // of half a period
-  EXPECT_NEAR(impulse, pulse.impulse, 1e-10);
-  EXPECT_NEAR(pulse.start + kPi / pulse.frequency, pulse.period, 1e-15);
-}
-
 /// Fz of MO-100 at constant speed; phi in [0, 2 pi].
 double forceZ(const Mechanism& mechanism, Level level, double phi, double w, Gravity gravity) {
   const CrankAngle angle =

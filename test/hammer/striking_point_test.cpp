@@ -41,21 +41,6 @@ TEST(StrikingPoint, GivesTheImpulsesOfARigidBodyImpactForAnyRocker) {
   EXPECT_GT(slid, 500);
 }
 
-TEST(StrikingPoint, DoesNotSlideOnTheLineWhateverTheFriction) {
-  HammerParameters rough = test::mo100LinkageParameters(), smooth = rough;
-  rough.striking_friction = 0.9;
-  for (const Level level : {Level::kRocker, Level::kLinkage}) {
-    const RockerBlow a = blowAtCrankSpeed(test::mechanismOf(rough), level, 13.6);
-    const RockerBlow b = blowAtCrankSpeed(test::mechanismOf(smooth), level, 13.6);
-    EXPECT_EQ(a.tool_impulse_x, 0.0);
-    EXPECT_EQ(a.tool_impulse_z, b.tool_impulse_z);
-    EXPECT_EQ(a.support_impulse_x, b.support_impulse_x);
-    EXPECT_EQ(a.support_impulse_z, b.support_impulse_z);
-    EXPECT_EQ(a.energy, b.energy);
-    EXPECT_EQ(a.friction_work, 0.0);
-  }
-}
-
 /// The tool that holds the rocker is the one that the hammer file may not have.
 TEST(StrikingPoint, SticksWhereTheMechanismIsRefused) {
   for (const double side : {-1.0, 1.0}) {

@@ -66,23 +66,6 @@ TEST(CycleCounter, ANumberThatIsNoneChangesItsOwnCountAlone) {
   EXPECT_EQ(exactCount(with).residue(), exactCount(good).residue());
 }
 
-TEST(CycleCounter, NoCycleAtAllGivesNone) {
-  for (const Series& series : {Series{}, Series{3}, Series{3, 3, 3}, Series{kNaN}}) {
-    EXPECT_TRUE(rangesAndMeans(exactCount(series)).empty());
-    EXPECT_TRUE(rangesAndMeans(gridCount(series, integerGrid(0, 5))).empty());
-  }
-}
-
-TEST(CycleCounter, AGapIsCountedAndTheSeriesGoesOn) {
-  CycleCounter counter(integerGrid(0, 9));
-  counter.add(1);
-  counter.gap();
-  counter.add(9);
-  const CycleCount count = counter.take();
-  EXPECT_EQ(count.tally.gaps, 1U);
-  EXPECT_EQ(count.residue.size(), 2U);
-}
-
 TEST(CycleCounter, TakesNoMemoryAfterItsStart) {
   CycleCounter counter(LoadGrid::make(-1.0, 1.0, 4096).value.value());
   std::mt19937 random(7);

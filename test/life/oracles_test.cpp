@@ -45,26 +45,6 @@ TEST(Oracles, EqualsO1AstmFigure6) {
   EXPECT_EQ(cyclesOf(rangesAndMeans(exactCount(kSeriesOfFigure6))), expected);
 }
 
-struct Numbered {
-  double value;
-  int index;
-  bool operator<(const Numbered& o) const { return value < o.value; }
-  bool operator==(const Numbered& o) const { return value == o.value; }
-};
-
-TEST(Oracles, PointsCarryTheirPlacesInO1) {
-  FourPointStack<Numbered> stack;
-  std::vector<std::pair<int, int>> closed;
-  for (int i = 0; i < static_cast<int>(kSeriesOfFigure6.size()); ++i) {
-    stack.push({kSeriesOfFigure6[static_cast<std::size_t>(i)], i},
-               [&](const Numbered& b, const Numbered& c) { closed.emplace_back(b.index, c.index); });
-  }
-  EXPECT_EQ(closed, (std::vector<std::pair<int, int>>{{4, 5}}));
-  std::vector<int> residue;
-  for (const Numbered& point : stack.residue()) residue.push_back(point.index);
-  EXPECT_EQ(residue, (std::vector<int>{0, 1, 2, 3, 6, 7, 8}));
-}
-
 // A repeating history: begun at its largest peak it closes up to one cycle (ASTM E1049-85, 5.4.5).
 TEST(Oracles, EqualsO2AstmFigure7) {
   const Series history{-2, 1, -3, 5, -1, 3, -4, 4};

@@ -80,14 +80,5 @@ TEST(BlowInertia, MasslessLinksFollowTheContractsFormula) {
   EXPECT_NEAR((b.restitution(k + 1e-6) - b.restitution(k)) / 1e-6, b.restitutionPerFactor(), 1e-8);
 }
 
-TEST(BlowInertia, TheRodTakesTwoPercentOfTheCrank) {
-  Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
-  const BlowInertia b = blowInertia(mechanism, Level::kLinkage, kDrive);
-  EXPECT_NEAR(b.smoothFactor(), 1.0 - 0.024, 1e-3);
-  // That rebound leaves the second part of the blow nothing to do.
-  const double k = b.smoothFactor();
-  EXPECT_NEAR(b.factor(-b.u_after * k / b.u_before), k, 1e-12);
-}
-
 }  // namespace
 }  // namespace hammer_loads

@@ -32,10 +32,5 @@ TEST(DriveReaction, HasTheCranksInertiaAtOneForALevelThatCountsItAsDrive) {
   EXPECT_NEAR(reaction.by_hull, 0.0625 * (0.6 - crank) + crank, 1e-15);
 }
 
-TEST(DriveReaction, IsLeftOutWithRatioZero) {
-  for (const Level level : {Level::kRocker, Level::kLinkage})
-    EXPECT_EQ(driveReaction(hammerWith(0.0), level, 0.6).torque(1000.0, 10.0), 0.0);
-}
-
 }  // namespace
 }  // namespace hammer_loads

@@ -111,19 +111,5 @@ TEST(Motion, BranchContinuesSmoothlyPastTheBlow) {
   }
 }
 
-TEST(Motion, WindingAndDirectionDoNotMatter) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
-  for (double phi = 0.1; phi < 6.2; phi += 0.37) {
-    const Motion first = motion(mechanism.linkage(), CrankAngle::fromAngle(phi));
-    for (double turns : {-1e6, -3.0, -1.0, 1.0, 1000.0, 1e6}) {
-      const double wound = phi + turns * 2.0 * kPi;
-      const Motion again = motion(mechanism.linkage(), CrankAngle::fromAngle(wound));
-      const double tolerance = 1e-14 + 100.0 * std::abs(turns) * 2.0 * kPi * 2.3e-16;  // rounding of the angle itself
-      EXPECT_NEAR(again.u, first.u, tolerance) << phi << ' ' << turns;
-      EXPECT_NEAR(again.sin_psi, first.sin_psi, tolerance) << phi << ' ' << turns;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace hammer_loads

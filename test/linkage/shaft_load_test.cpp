@@ -58,12 +58,5 @@ TEST(ShaftLoad, SlopesAreDerivatives) {
   }
 }
 
-TEST(ShaftLoad, LevelPulseTurnsLikeTheRocker) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
-  const CrankAngle angle = CrankAngle::fromAngle(5.0);
-  EXPECT_EQ(shaftLoad(mechanism, Level::kPulse, angle, kGravity).inertia,
-            shaftLoad(mechanism, Level::kRocker, angle, kGravity).inertia);
-}
-
 }  // namespace
 }  // namespace hammer_loads

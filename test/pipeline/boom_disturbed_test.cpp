@@ -1,8 +1,6 @@
 // What the boom carries while a sensor gives damaged readings or others than said: close to the truth or with a
 // deviation that says how far it may be.
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>

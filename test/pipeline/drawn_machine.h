@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <iterator>
 #include <random>
-#include <string>
 
 #include "hammer_loads/pipeline/warnings.h"
 #include "support/session_player.h"

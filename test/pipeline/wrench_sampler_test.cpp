@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"

@@ -1,7 +1,6 @@
 /// Random machines and states of their cranks.
 #pragma once
 
-#include <algorithm>
 #include <random>
 
 #include "hammer_loads/hammer/hull_model.h"

@@ -92,21 +92,6 @@ class FreeHull {
     return out;
   }
 
-  /// Momentum along x and z, about the inertial origin, and energy of all bodies.
-  Eigen::Vector4d invariants(const FreeState& state) const {
-    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-    const Bodies bodies = bodiesAt(state.crank);
-    for (std::size_t b = 0; b < bodies.count; ++b) {
-      const Relative& body = bodies.body[b];
-      const Place p = place(body, state.hull, rates(state));
-      const double vx = p.x.first, vz = p.z.first, turn = body.inertia * p.angle.first;
-      sum += Eigen::Vector4d(
-          body.mass * vx, body.mass * vz, body.mass * (p.z.value * vx - p.x.value * vz) + turn,
-          0.5 * (body.mass * (vx * vx + vz * vz) + turn * p.angle.first) + body.mass * body_.gravity * p.z.value);
-    }
-    return sum;
-  }
-
  private:
   using Jet = simulation::Jet;
   /// Centre of mass in hull axes and angle about +y relative to the hull, by the crank angle.

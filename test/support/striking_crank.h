@@ -1,7 +1,6 @@
 /// A crank with its rocker, struck as a test wants: brute-force integration that shares only the kinematics.
 #pragma once
 
-#include <cmath>
 #include <functional>
 
 #include "hammer_loads/linkage/motion.h"
