@@ -43,33 +43,6 @@ TEST(ConstantErrors, AreSeenInTheInnovations) {
   }
 }
 
-TEST(ConstantErrors, ReadingsDerivativeIsThatOfTheSensor) {
-  for (double offset = -3.1; offset < 3.1; offset += 0.05) {
-    const ConstantErrors::Row by_error = ConstantErrors::ofAngle({offset, 30.0, 0.0});
-    EXPECT_EQ(by_error[0], 1.0);
-    EXPECT_NEAR(by_error[1], std::sin(offset), 2e-3);
-    EXPECT_NEAR(by_error[2], std::cos(offset) - 1.0, 2e-3);
-    const ConstantErrors::Row by_speed = ConstantErrors::ofSpeed({offset, 30.0, 0.0});
-    EXPECT_NEAR(by_speed[1], 30.0 * std::cos(offset), 0.05);
-    EXPECT_NEAR(by_speed[2], -30.0 * std::sin(offset), 0.05);
-  }
-}
-
-TEST(ConstantErrors, ConcludesNothingBeforeSomeTurns) {
-  ConstantErrors errors;
-  for (int i = 0; i < 3; ++i) {
-    errors.learn(0.1, 1e-4, ConstantErrors::ofAngle({0.5, 30.0, 0.0}));
-    errors.endTurn(1.0, kTwoPi / 4096.0);
-  }
-  EXPECT_EQ(errors.estimate(), ConstantErrors::Vector::Zero());
-  ConstantErrors::Matrix moment = errors.moment();
-  for (const int by_prior : {ConstantErrors::kZero, ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale}) {
-    EXPECT_GT(moment(by_prior, by_prior), 0.0);
-    moment(by_prior, by_prior) = 0.0;
-  }
-  EXPECT_EQ(moment, ConstantErrors::Matrix::Zero());
-}
-
 /// What is off for certain is part of the uncertainty with what is not known of it; what may be nothing is not.
 TEST(ConstantErrors, CountsACertainConstantWithItsDeviation) {
   const auto momentOf = [](double b) {
@@ -86,20 +59,14 @@ TEST(ConstantErrors, CountsACertainConstantWithItsDeviation) {
   EXPECT_LT(momentOf(0.0005), 0.8);
 }
 
-/// A turn's samples with an error of the zero, seen with this variance.
-void learnTurn(ConstantErrors& errors, double zero, int samples, double variance, double growth, double count) {
-  for (int i = 0; i < samples; ++i)
-    errors.learn(zero, variance, ConstantErrors::ofAngle({-3.0 + 6.0 * i / samples, 30.0, 0.0}));
-  errors.endTurn(growth, count);
-}
-
 /// On which side of the blow a sample is cannot wait for it.
 TEST(ConstantErrors, AZeroIsSeenBeforeAnythingElseIsConcluded) {
   const auto seen = [](double zero, double variance) {
     ConstantErrors errors;
     std::vector<double> after;
     for (int turn = 0; turn < 8; ++turn) {
-      learnTurn(errors, zero, 40, variance, 1.0, 0.0);
+      for (int i = 0; i < 40; ++i) errors.learn(zero, variance, ConstantErrors::ofAngle({-3.0 + 0.15 * i, 30.0, 0.0}));
+      errors.endTurn(1.0, 0.0);
       after.push_back(errors.zeroSeen());
     }
     return after;

@@ -118,27 +118,6 @@ TEST(FieldCrank, LearnsHowMuchTheStampsJitter) {
   }
 }
 
-TEST(FieldCrank, MeasuresEachBlowsFactor) {
-  for (const double rate : {1000.0, 100.0}) {
-    Machine machine;
-    machine.rate = rate;
-    machine.blow = [](int number) {
-      std::mt19937 random(static_cast<unsigned>(100 + number));
-      return Blow{std::uniform_real_distribution<>(0.64, 1.26)(random), true, 0.0};
-    };
-    const Record run = follow(machine);
-    ASSERT_GT(run.blows.size(), 20u);
-    int within = 0;
-    for (const Told& told : run.blows) {
-      EXPECT_NEAR(told.factor, told.truth, 0.02) << rate;
-      within += std::abs(told.factor - told.truth) < 2.0 * told.deviation;
-    }
-    EXPECT_GT(within, static_cast<int>(0.85 * static_cast<double>(run.blows.size())));
-    EXPECT_EQ(run.restarts, 0);
-    EXPECT_EQ(run.mirrored, 0);
-  }
-}
-
 /// A speed read just before the blow may bear a stamp just after it, or the reverse: it is of the other side's motion.
 TEST(FieldCrank, MeasuresEachBlowsFactorThroughJitter) {
   for (const bool speeds : {true, false}) {
@@ -175,16 +154,6 @@ TEST(FieldCrank, ABlowUnlikeTheFirstOnesIsOneBlow) {
       ASSERT_GT(run.blows.size(), 20u);
       for (const Told& told : run.blows) EXPECT_NEAR(told.factor, told.truth, 0.02) << last << ' ' << speeds;
     }
-  }
-}
-
-TEST(FieldCrank, ABlowThatTakesHalfTheSpeedIsNoRestart) {
-  for (const double early : {0.0, 0.005}) {
-    Machine machine;
-    machine.blow = [early](int number) { return Blow{number % 3 == 0 ? 0.5 : 0.9, true, early}; };
-    const Record run = follow(machine);
-    EXPECT_EQ(run.restarts, 0) << early;
-    EXPECT_LT(run.rms, 0.02 * run.peak) << early;
   }
 }
 

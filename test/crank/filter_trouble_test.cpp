@@ -1,11 +1,13 @@
-// Readings that contradict the crank's filter.
+// Readings that contradict the crank's filter, what it takes for the tool, and the bounds of its belief.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "support/constants.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
+#include "support/striking_crank.h"
 
 namespace hammer_loads {
 namespace {
@@ -91,6 +93,71 @@ TEST_F(FilterTrouble, ALostFilterFollowsReadingsThatAgree) {
   EXPECT_LT(samples, 30);
   for (int i = 0; f.isLost() && i < 5000; ++i) f.update(1e-3, {angle_ + 0.4, 0.0});
   EXPECT_FALSE(f.isLost());
+}
+
+using FilterAtBlow = FilterTrouble;
+
+/// What a tool takes that is met before the dead centre is not known when the first reading shows it: up to nine tenths
+/// of the speed are within two deviations, and these are no wider than that.
+TEST_F(FilterAtBlow, AToolMayTakeMostOfTheSpeed) {
+  double worst = 0.0;
+  for (const double taken : {0.1, 0.3, 0.6, 0.9}) {
+    test::StrikingCrank crank(mechanism_.linkage(), 0.737, 0.6);
+    crank.blow = [&](int number) {
+      const bool early = number == 6;
+      return test::StrikingCrank::Blow{early ? 1.0 - taken : 0.9, true, early ? 0.03 : 0.0};
+    };
+    CrankFilter f = filterOf();
+    f.start({crank.angle(), std::nullopt});
+    for (int i = 1; i < 4000 && !(crank.blows() == 7 && f.belief().tool_met); ++i) {
+      crank.advanceTo(1e-3 * i);
+      f.update(1e-3, {crank.angle(), std::nullopt});
+    }
+    ASSERT_TRUE(f.belief().tool_met);
+    const double deviation = std::sqrt(f.covariance()(CrankBelief::kFactor, CrankBelief::kFactor));
+    worst = std::max(worst, std::abs(f.belief().factor - (1.0 - taken)) / deviation);
+  }
+  EXPECT_LT(worst, 2.0);
+  EXPECT_GT(worst, 1.0);
+}
+
+/// Just before a sample it shows little there, just after one at once: without speeds, by readings in counts.
+TEST_F(FilterAtBlow, KnowsTheSpeedThatAToolTookWhereverItIsMet) {
+  double sum = 0.0, worst = 0.0;
+  constexpr int kPlaces = 40;
+  for (int place = 0; place < kPlaces; ++place) {
+    test::StrikingCrank crank(mechanism_.linkage(), 0.737, 0.6);
+    crank.blow = [&](int number) {
+      const bool early = number == 6;
+      return test::StrikingCrank::Blow{early ? 0.3 : 0.9, true, early ? 0.03 + 0.0005 * place : 0.0};
+    };
+    CrankFilter f = filterOf(test::kEncoderCount);
+    const auto read = [&] { return test::kEncoderCount * (std::floor(crank.angle() / test::kEncoderCount) + 0.5); };
+    f.start({read(), std::nullopt});
+    int met = 0;
+    for (int i = 1; i < 4000 && met < 6; ++i) {
+      crank.advanceTo(1e-3 * i);
+      f.update(1e-3, {read(), std::nullopt});
+      met += crank.blows() == 7 && f.belief().struck_early;
+    }
+    const double error = f.belief().factor - 0.3;
+    sum += error, worst = std::max(worst, std::abs(error));
+  }
+  EXPECT_LT(std::abs(sum / kPlaces), 0.005);
+  EXPECT_LT(worst, 0.03);
+}
+
+/// What the bound takes off the factor it gives to the speed that goes with it.
+TEST(BeliefBounds, ABoundFactorTakesTheSpeedAlong) {
+  constexpr double kBefore = 13.0;
+  CrankBelief belief;
+  belief.factor = -0.3;
+  belief.state = {{0, {0.3, Side::kAfterBlow}}, kBefore * belief.factor, 100.0, 0.6};
+  belief.least_inertia = 1e-6, belief.most_inertia = 1e6;
+  belief.covariance.diagonal() << 1e-6, 0.04, 100.0, 1e-4, 1e-4;
+  belief.addNoise(CrankBelief::kSpeed, CrankBelief::kFactor, kBefore * 1e-4);
+  belief.boundFactor();
+  EXPECT_NEAR(belief.state.speed, kBefore * belief.factor, 1e-9);
 }
 
 }  // namespace

@@ -87,24 +87,6 @@ TEST(StampSequence, WholeMillisecondsAndBurstsGetTheirInstantsBack) {
   }
 }
 
-/// Of a crank at rest all readings are alike: messages of one burst look like the same one again. Two seconds at rest,
-/// three of motion, two at rest, three of motion.
-TEST(StampSequence, BurstsOfACrankThatRestedGetTheirInstantsBack) {
-  StampSequence sequence(CrankStamps::kAuto, 0.25);
-  double worst = 0.0;
-  for (int i = 0; i < 10000; ++i) {
-    const bool rests = i % 5000 < 2000, same = i % 10 != 0;
-    const Repeats repeats = rests && same && i > 0 ? Repeats::kAtRest : Repeats::kNo;
-    const StampSequence::Place place = sequence.place(kStart + (i / 10 * 10 + 9) * kMs, repeats);
-    const bool is_known = i % 5000 >= 2300;
-    if (!is_known) continue;
-    ASSERT_EQ(place.kind, Kind::kPlaced);
-    worst = std::max(worst, std::abs(1e-9 * static_cast<double>(place.stamp - (kStart + i * kMs))));
-  }
-  EXPECT_LT(worst, 1e-4);
-  EXPECT_TRUE(sequence.isSteady());
-}
-
 /// Their first instants would be a microsecond apart: for a crank filter a machine that breaks all bounds, for seconds.
 TEST(StampSequence, InstantsOfBurstsAreRightOrNone) {
   for (const int interval : {1, 5}) {
@@ -123,31 +105,6 @@ TEST(StampSequence, InstantsOfBurstsAreRightOrNone) {
   }
 }
 
-TEST(StampSequence, MessagesThatComeTwiceAreNoBursts) {
-  StampSequence sequence(CrankStamps::kAuto, 0.25);
-  for (int i = 0; i < 5000; ++i) {
-    sequence.place(kStart + i * kMs, Repeats::kNo);
-    if (i % 3 == 0) {
-      ASSERT_EQ(sequence.place(kStart + i * kMs, Repeats::kWithinCount).kind, Kind::kDuplicate);
-    }
-  }
-  EXPECT_FALSE(sequence.isSteady());
-}
-
-TEST(StampSequence, AMessageOfABurstMayComeTwice) {
-  StampSequence sequence(CrankStamps::kAuto, 0.25);
-  for (int i = 0; i < 5000; ++i) {
-    const std::int64_t stamp = kStart + (i / 10 * 10 + 9) * kMs;
-    const Kind kind = sequence.place(stamp, Repeats::kNo).kind;
-    const bool is_known = i >= 100 || i % 10 == 0;  // of the first bursts only the first sample gets an instant
-    if (is_known) {
-      ASSERT_EQ(kind, i == 0 ? Kind::kRestart : Kind::kPlaced) << i;
-    }
-    ASSERT_EQ(sequence.place(stamp, Repeats::kAtWork).kind, Kind::kDuplicate);
-  }
-  EXPECT_TRUE(sequence.isSteady());
-}
-
 TEST(StampSequence, FollowsTheLineWhereManyChangePlaces) {
   const auto jitter = [](std::int64_t t, std::mt19937& random) {
     return t + static_cast<std::int64_t>(1e6 * std::normal_distribution<>()(random));
@@ -155,20 +112,6 @@ TEST(StampSequence, FollowsTheLineWhereManyChangePlaces) {
   StampSequence sequence(CrankStamps::kAuto, 0.25);
   EXPECT_LT(scatterOf(sequence, stream(15000, 0.0, jitter)), 2e-4);
   EXPECT_TRUE(sequence.isSteady());
-}
-
-/// A stamp that is late by many intervals is no loss: the next one is in its place again, or waited behind it.
-TEST(StampSequence, LateStampsAreNoLostSamples) {
-  const auto late = [](std::int64_t t, std::mt19937& random) {
-    const double more = std::uniform_real_distribution<>()(random) < 0.01 ? 5e6 : 0.0;
-    return t + static_cast<std::int64_t>(5e4 * std::normal_distribution<>()(random) + more);
-  };
-  for (const bool ordered : {false, true}) {
-    Stream s = stream(15000, 0.002, late);
-    for (std::size_t i = 1; i < s.stamp.size() && ordered; ++i) s.stamp[i] = std::max(s.stamp[i], s.stamp[i - 1] + 1);
-    StampSequence sequence(CrankStamps::kSteady, 0.25);
-    EXPECT_LT(scatterOf(sequence, s), 3e-4) << ordered << " [s]";
-  }
 }
 
 /// While the readings exclude a loss, stamps that wander by whole intervals move no line.
@@ -231,12 +174,26 @@ TEST(StampSequence, KnowsDuplicatesLateOnesAndTimeThatRanBack) {
   EXPECT_EQ(sequence.place(last, Repeats::kNo).kind, Kind::kRestart) << "a gap";
 }
 
-TEST(StampSequence, HeaderStampsAreHeldToTheirOrder) {
-  StampSequence sequence(CrankStamps::kHeader, 0.25);
-  sequence.place(kStart, Repeats::kNo);
-  EXPECT_EQ(sequence.place(kStart, Repeats::kNo).kind, Kind::kDuplicate);
-  EXPECT_EQ(sequence.place(kStart + kMs, Repeats::kNo).stamp, kStart + kMs);
-  EXPECT_EQ(sequence.place(kStart + kMs - 1, Repeats::kNo).kind, Kind::kOutOfOrder);
+/// Samples at `rate` [Hz] whose instants scatter [ns], stamped in steps [ns].
+double roundingOf(double rate, std::int64_t step, std::int64_t scatter) {
+  StampRounding rounding;
+  std::mt19937 random(9);
+  std::normal_distribution<> normal;
+  std::int64_t last = 0;
+  for (int i = 1; i < 2000; ++i) {
+    const double instant = 1e9 * i / rate + static_cast<double>(scatter) * normal(random);
+    const std::int64_t stamp = static_cast<std::int64_t>(instant) / step * step;
+    rounding.add(stamp - last);
+    last = stamp;
+  }
+  return rounding.step();
+}
+
+TEST(StampRounding, IsThatOfRoundedStampsAlone) {
+  EXPECT_EQ(roundingOf(200.0, 1000000, 30000), 1e-3);
+  EXPECT_EQ(roundingOf(330.0, 100000, 30000), 1e-4);
+  EXPECT_EQ(roundingOf(1000.0, 10000, 30000), 0.0) << "fine stamps";
+  EXPECT_EQ(roundingOf(1000.0, 1000000, 0), 0.0) << "a controller that samples by its own clock is right";
 }
 
 }  // namespace

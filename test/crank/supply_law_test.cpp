@@ -1,6 +1,7 @@
 // The supply's law, against a pump of constant flow that feeds a motor through a hose: own equations, in small steps.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "hammer_loads/crank/crank_filter.h"
@@ -49,25 +50,27 @@ TEST(SupplyLaw, IsLearnedFromTheHose) {
   EXPECT_LT(soft.stiffness, 20.0);
 }
 
-TEST(SupplyLaw, NothingLeadsBeforeATurnWasSeen) {
-  LearnedSupply supply(100.0);
-  supply.learn(-0.3);
-  EXPECT_EQ(supply.law().stiffness, 30.0);
-  EXPECT_EQ(supply.law().lead(1.0, 0.1), 0.0);
-  supply.endTurn({1, CrankAngle::fromAngle(3.0)});
-  supply.pass(0.2);
-  EXPECT_EQ(supply.law().lead(1.0, 0.1), 0.0) << "the turn's begin was not seen";
-  supply.endTurn({2, CrankAngle::fromAngle(3.0)});
-  EXPECT_NEAR(supply.law().lead(1.0, 0.1), 1.0 - 0.5 * kTwoPi, 1e-12);
-  supply.restart();
-  EXPECT_EQ(supply.law().lead(1.0, 0.1), 0.0);
+/// After ten thousand innovations, each `memory` times the one before and noise, of variance 4.
+double factorAfter(double memory, double jitter) {
+  SupplyRoughness supply;
+  std::mt19937 random(3);
+  std::normal_distribution<> normal;
+  double innovation = 0.0;
+  for (int i = 0; i < 10000; ++i) {
+    innovation = memory * innovation + 2.0 * std::sqrt(1.0 - memory * memory) * normal(random);
+    supply.learn(innovation, 4.0, jitter);
+  }
+  return supply.factor();
 }
 
-TEST(SupplyLaw, NeverPushesTheOtherWay) {
-  LearnedSupply supply(100.0);
-  EXPECT_EQ(supply.learn(0.5), 0.0);
-  EXPECT_EQ(supply.learn(-2.0), 1.0);
-  EXPECT_EQ(supply.law().stiffness, 100.0);
+TEST(SupplyRoughness, IsRougherWhereInnovationsKeepTheirSign) {
+  EXPECT_GT(factorAfter(0.3, 0.8), 2.0);
+  EXPECT_LT(factorAfter(-0.3, 0.8), 0.5);
+}
+
+TEST(SupplyRoughness, IsTheGivenOneWhileStampsAreExact) {
+  EXPECT_EQ(factorAfter(0.3, 0.0), 1.0);
+  EXPECT_EQ(factorAfter(-0.3, 0.0), 1.0);
 }
 
 }  // namespace
