@@ -1,19 +1,98 @@
-/// Every way from crank states to loads, and its errors against the reference.
+/// Every way from crank states to loads, the states on which it is judged, and its errors against the reference.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <limits>
-#include <memory>
+#include <string>
+#include <vector>
 
-#include "hammer/hard_cases.h"
 #include "hammer_loads/hammer/batch.h"
 #include "support/mo100.h"
 #include "support/newton_euler.h"
 #include "support/printed_formulas.h"
 
 namespace hammer_loads::test {
+
+/// Angles of one machine under one speed, acceleration and gravity.
+struct HardCase {
+  std::string name;
+  HammerParameters hammer;     ///< as given, the rod not corrected
+  double speed{};              ///< [rad/s]
+  double acceleration{};       ///< [rad/s2]
+  Gravity gravity;             ///< [m/s2]
+  std::vector<double> angles;  ///< in (0, 2 pi) [rad]; meant is exactly the number stored
+};
+
+inline const Gravity kCaseGravity{kStandardGravity * std::sin(0.3), kStandardGravity * -std::cos(0.3)};
+
+/// Offsets 1e-first to 1e-last; side: +1 after, -1 before the blow.
+inline std::vector<double> besideTheBlow(double side, int first, int last, std::initializer_list<double> digits) {
+  std::vector<double> angles;
+  for (int decade = first; decade <= last; ++decade) {
+    for (const double digit : digits) {
+      const double offset = digit * std::pow(10.0, -decade);
+      angles.push_back(side > 0.0 ? offset : kTwoPi - offset);
+    }
+  }
+  return angles;
+}
+
+inline HammerParameters scaled(HammerParameters p, double k) {
+  for (double* length :
+       {&p.lengths.crank, &p.lengths.rod, &p.lengths.rocker, &p.lengths.pivot_distance, &p.rocker_com_distance,
+        &p.striking_distance, &p.crank_com_along, &p.crank_com_across, &p.rod_com_along, &p.rod_com_across}) {
+    *length *= k;
+  }
+  for (double* inertia :
+       {&p.rocker_inertia_about_pivot, &p.crank_inertia_about_com, &p.rod_inertia_about_com, &p.drive_inertia}) {
+    *inertia *= k * k;
+  }
+  return p;
+}
+
+/// Lengths as a file in single precision keeps them: the change-point condition is missed by some 1e-8 of the crank.
+inline HammerParameters rounded(HammerParameters p) {
+  for (double* length : {&p.lengths.crank, &p.lengths.rod, &p.lengths.rocker, &p.lengths.pivot_distance})
+    *length = static_cast<double>(static_cast<float>(*length));
+  return p;
+}
+
+/// Angles of a whole turn, evenly spaced, none at the blow.
+inline std::vector<double> turnAngles(std::size_t count) {
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < count; ++i)
+    angles.push_back(kTwoPi * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
+  return angles;
+}
+
+/// The first is the regular turn, four are offsets of 1, 2.7 and 6.1 times 1e-1 to 1e-12 rad before and after the blow,
+/// the others have both, coarser. P0's 31.416 rad/s and a hull pitched by 0.3 rad where nothing else is said.
+inline std::vector<HardCase> hardCases(const HammerParameters& hammer) {
+  const auto beside = [&](const char* name, double side, int first, int last) {
+    return HardCase{name, hammer, kPaperSpeed, 0.0, kCaseGravity, besideTheBlow(side, first, last, {1.0, 2.7, 6.1})};
+  };
+  std::vector<double> everywhere = turnAngles(48);
+  for (const double side : {-1.0, 1.0}) {
+    const std::vector<double> near_blow = besideTheBlow(side, 1, 12, {2.7});
+    everywhere.insert(everywhere.end(), near_blow.begin(), near_blow.end());
+  }
+  return {{"regular turn", hammer, kPaperSpeed, 0.0, kCaseGravity, turnAngles(96)},
+          beside("before the blow, to 1e-6 rad", -1.0, 1, 6),
+          beside("before, to 1e-12 rad", -1.0, 7, 12),
+          beside("after the blow, to 1e-6 rad", 1.0, 1, 6),
+          beside("after, to 1e-12 rad", 1.0, 7, 12),
+          {"lengths rounded", rounded(hammer), kPaperSpeed, 0.0, kCaseGravity, everywhere},
+          {"lengths x 1e-3", scaled(hammer, 1e-3), kPaperSpeed, 0.0, kCaseGravity, everywhere},
+          {"lengths x 1e3", scaled(hammer, 1e3), kPaperSpeed, 0.0, kCaseGravity, everywhere},
+          {"speed 0", hammer, 0.0, 0.0, kCaseGravity, everywhere},
+          {"speed 1e-6 rad/s", hammer, 1e-6, 0.0, {}, everywhere},
+          {"speed 1e3 rad/s", hammer, 1e3, 0.0, kCaseGravity, everywhere},
+          {"acceleration 1e5 rad/s2", hammer, kPaperSpeed, 1e5, kCaseGravity, everywhere}};
+}
 
 /// Worst over states and loads; infinite where a load is no number.
 struct Error {
@@ -23,7 +102,6 @@ struct Error {
 
 /// Which loads a way gives.
 enum class Parts {
-  kForceZ,   ///< of the hull wrench
   kWrench,   ///< hull wrench
   kPins,     ///< hull wrench, four pin forces, drive torque
   kPrinted,  ///< the same without drive torque
@@ -78,10 +156,6 @@ inline Error errorOf(const std::vector<LinkLoads>& computed, const ExactCase& ex
     worst.of_peak = std::max(worst.of_peak, e.of_peak);
     worst.relative = std::max(worst.relative, e.relative);
   };
-  if (parts == Parts::kForceZ) {
-    add([](const LinkLoads& l) { return l.wrench.force_z; }, [](const Reference& r) { return r.hull_force.y; }, false);
-    return worst;
-  }
   add(
       [](const LinkLoads& l) {
         return PinForce{l.wrench.force_x, l.wrench.force_z};
@@ -105,111 +179,70 @@ inline Error errorOf(const std::vector<LinkLoads>& computed, const ExactCase& ex
 inline const NearBlow kNearBlow(0.01);
 
 struct LoadWay {
-  std::string group, name;
+  std::string name;
   Level level{};
   Parts parts{};
   std::function<std::vector<LinkLoads>(const HardCase&)> loads;  ///< of all states of a case
 };
 
-/// A way that takes one state after the other: make(hard case) gives what computes the loads of an angle of it.
-template <typename Make>
-LoadWay oneByOne(const char* group, const char* name, Level level, Parts parts, const Make& make) {
-  return {group, name, level, parts, [make](const HardCase& hard_case) {
-            const auto compute = make(hard_case);
+inline LoadWay printed(const char* name, Positions positions) {
+  return {name, Level::kRocker, Parts::kPrinted, [positions](const HardCase& c) {
+            const PrintedFormulas formulas(c.hammer, positions);
             std::vector<LinkLoads> loads;
-            for (std::size_t i = 0; i < hard_case.angles.size(); ++i) loads.push_back(compute(i));
+            for (const double angle : c.angles) loads.push_back(formulas(angle, c.speed, c.acceleration, c.gravity));
             return loads;
           }};
 }
 
-inline LoadWay printed(const char* name, Positions positions) {
-  return oneByOne("printed", name, Level::kRocker, Parts::kPrinted, [positions](const HardCase& c) {
-    return [formulas = PrintedFormulas(c.hammer, positions), c](std::size_t i) {
-      return formulas(c.angles[i], c.speed, c.acceleration, c.gravity);
-    };
-  });
-}
-
-/// Mechanism, model and states of a case as the calls want them.
-struct Prepared {
-  Prepared(const HardCase& c, Level level)
-      : mechanism(mechanismOf(c.hammer)), model(mechanism, level), gravity(c.gravity) {
-    for (const double angle : c.angles) cranks.push_back({CrankAngle::fromAngle(angle), c.speed, c.acceleration});
-  }
-  Prepared(const Prepared&) = delete;
-  Prepared& operator=(const Prepared&) = delete;
-  Mechanism mechanism;
-  HullModel model;
-  Gravity gravity;
-  std::vector<CrankMotion> cranks;
-};
-
-inline LoadWay scalarWrench(const char* name, Level level) {
-  return oneByOne("scalar", name, level, level == Level::kPulse ? Parts::kForceZ : Parts::kWrench,
-                  [level](const HardCase& c) {
-                    return [p = std::make_shared<const Prepared>(c, level)](std::size_t i) {
-                      return LinkLoads{hullWrench(p->model, p->cranks[i], p->gravity), {}};
-                    };
-                  });
-}
-
-inline LoadWay scalarPins(const char* name, Level level) {
-  return oneByOne("scalar", name, level, Parts::kPins, [level](const HardCase& c) {
-    return [p = std::make_shared<const Prepared>(c, level), level](std::size_t i) {
-      return linkLoads(p->mechanism, level, p->cranks[i], p->gravity, kNearBlow);
-    };
-  });
-}
-
-/// Arrays of a case for the batch calls.
-struct BatchCase {
-  BatchCase(const HardCase& c, Level level)
-      : prepared(c, level),
-        angles(c.angles),
-        speeds(c.angles.size(), c.speed),
-        accelerations(c.angles.size(), c.acceleration) {
-    for (std::vector<double>& column : out) column.resize(angles.size());
-  }
-  void compute(bool with_pins) {
-    const CrankStates states{angles.data(), speeds.data(), accelerations.data(), angles.size()};
-    const auto at = [this](std::size_t column) { return out[column].data(); };
-    const WrenchArrays wrenches{at(0), at(1), at(2)};
-    if (!with_pins) return hullWrenches(prepared.model, states, prepared.gravity, wrenches);
-    const PinArrays pins{at(3), at(4), at(5), at(6), at(7), at(8), at(9), at(10), at(11)};
-    linkLoads(prepared.model, states, prepared.gravity, wrenches, pins);
-  }
-  LinkLoads result(std::size_t i) const {
-    const auto& o = out;
-    return {{o[0][i], o[1][i], o[2][i]},
-            {{o[3][i], o[4][i]}, {o[5][i], o[6][i]}, {o[7][i], o[8][i]}, {o[9][i], o[10][i]}, o[11][i], false}};
-  }
-  Prepared prepared;
-  std::vector<double> angles, speeds, accelerations;
-  std::array<std::vector<double>, 12> out;
-};
-
-inline LoadWay batch(const char* name, Level level, bool with_pins) {
-  return {"batch", name, level, with_pins ? Parts::kPins : Parts::kWrench, [=](const HardCase& c) {
-            BatchCase arrays(c, level);
-            arrays.compute(with_pins);
+inline LoadWay scalar(const char* name, Level level, Parts parts) {
+  return {name, level, parts, [=](const HardCase& c) {
+            const Mechanism mechanism = mechanismOf(c.hammer);
+            const HullModel model(mechanism, level);
             std::vector<LinkLoads> loads;
-            for (std::size_t i = 0; i < c.angles.size(); ++i) loads.push_back(arrays.result(i));
+            for (const double angle : c.angles) {
+              const CrankMotion crank{CrankAngle::fromAngle(angle), c.speed, c.acceleration};
+              loads.push_back(parts == Parts::kPins ? linkLoads(mechanism, level, crank, c.gravity, kNearBlow)
+                                                    : LinkLoads{hullWrench(model, crank, c.gravity), {}});
+            }
+            return loads;
+          }};
+}
+
+inline LoadWay batch(const char* name, Level level, Parts parts) {
+  return {name, level, parts, [=](const HardCase& c) {
+            const std::size_t count = c.angles.size();
+            const std::vector<double> speeds(count, c.speed), accelerations(count, c.acceleration);
+            std::array<std::vector<double>, 12> o;
+            for (std::vector<double>& column : o) column.resize(count);
+            const auto at = [&o](std::size_t column) { return o[column].data(); };
+            const CrankStates states{c.angles.data(), speeds.data(), accelerations.data(), count};
+            const WrenchArrays wrenches{at(0), at(1), at(2)};
+            const Mechanism mechanism = mechanismOf(c.hammer);
+            const HullModel model(mechanism, level);
+            if (parts == Parts::kPins)
+              linkLoads(model, states, c.gravity, wrenches,
+                        {at(3), at(4), at(5), at(6), at(7), at(8), at(9), at(10), at(11)});
+            else
+              hullWrenches(model, states, c.gravity, wrenches);
+            std::vector<LinkLoads> loads;
+            for (std::size_t i = 0; i < count; ++i)
+              loads.push_back(
+                  {{o[0][i], o[1][i], o[2][i]},
+                   {{o[3][i], o[4][i]}, {o[5][i], o[6][i]}, {o[7][i], o[8][i]}, {o[9][i], o[10][i]}, o[11][i], false}});
             return loads;
           }};
 }
 
 inline std::vector<LoadWay> loadWays() {
-  return {printed("P0 with inverse trigonometry", Positions::kInverseTrigonometry),
-          printed("P0 with sines and cosines", Positions::kTrigonometry),
-          scalarWrench("pulse", Level::kPulse),
-          scalarWrench("rocker", Level::kRocker),
-          scalarWrench("linkage", Level::kLinkage),
-          scalarPins("rocker with pins", Level::kRocker),
-          scalarPins("linkage with pins", Level::kLinkage),
-          batch("rocker", Level::kRocker, false),
-          batch("linkage", Level::kLinkage, false),
-          batch("rocker with pins", Level::kRocker, true),
-          batch("linkage with pins", Level::kLinkage, true)};
+  std::vector<LoadWay> ways{printed("P0 with inverse trigonometry", Positions::kInverseTrigonometry),
+                            printed("P0 with sines and cosines", Positions::kTrigonometry)};
+  for (const Level level : {Level::kRocker, Level::kLinkage}) {
+    ways.push_back(scalar("scalar wrench", level, Parts::kWrench));
+    ways.push_back(scalar("scalar pins", level, Parts::kPins));
+    ways.push_back(batch("batch of wrenches", level, Parts::kWrench));
+    ways.push_back(batch("batch of pins", level, Parts::kPins));
+  }
+  return ways;
 }
 
 }  // namespace hammer_loads::test

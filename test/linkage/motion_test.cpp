@@ -99,17 +99,5 @@ TEST(Motion, HasThePapersRatiosAtTheBlow) {
   }
 }
 
-TEST(Motion, BranchContinuesSmoothlyPastTheBlow) {
-  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
-  for (Side side : {Side::kBeforeBlow, Side::kAfterBlow}) {
-    const Motion here = motion(mechanism.linkage(), {0.0, side});
-    for (double offset : {-1e-3, -1e-6, 1e-6, 1e-3}) {
-      const Motion there = motion(mechanism.linkage(), {offset, side});
-      EXPECT_NEAR(there.sin_psi, here.u * offset, 20.0 * offset * offset);
-      EXPECT_NEAR(there.u, here.u, 20.0 * std::abs(offset));
-    }
-  }
-}
-
 }  // namespace
 }  // namespace hammer_loads

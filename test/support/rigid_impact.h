@@ -3,7 +3,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <complex>
 
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/linkage/mechanism.h"
@@ -111,34 +110,6 @@ inline double transferAtBlow(const HammerParameters& p, bool after) {
   const double root = std::sqrt(b * b - a * c);
   const double first = (-b + root) / a, second = (-b - root) / a;
   return after ? std::max(first, second) : std::min(first, second);
-}
-
-/// Momentum (x, z) [N s] and angular momentum about D about +y [N m s] of crank, rod and rocker at the blow.
-/// psi_rate [rad/s]; massless: crank and rod.
-inline Eigen::Vector3d momentumAtBlow(const HammerParameters& p, double crank_rate, double psi_rate, bool massless) {
-  using Complex = std::complex<double>;
-  const Complex i(0.0, 1.0), d(p.lengths.pivot_distance, 0.0);
-  const double rod_rate = (p.lengths.rocker * psi_rate - p.lengths.crank * crank_rate) / p.lengths.rod;
-  struct Link {
-    double mass, inertia, rate;
-    Complex place, velocity;
-  };
-  const Complex crank(p.crank_com_along, p.crank_com_across), rod(p.rod_com_along, p.rod_com_across);
-  const Complex rocker = std::polar(p.rocker_com_distance, p.rocker_com_angle);
-  const double own = p.rocker_inertia_about_pivot - p.rocker_mass * std::norm(rocker), some = massless ? 0.0 : 1.0;
-  const Link links[] = {
-      {some * p.crank_mass, some * p.crank_inertia_about_com, crank_rate, crank, i * crank_rate * crank},
-      {some * p.rod_mass, some * p.rod_inertia_about_com, rod_rate, p.lengths.crank + rod,
-       i * (crank_rate * p.lengths.crank + rod_rate * rod)},
-      {p.rocker_mass, own, psi_rate, d + rocker, i * psi_rate * rocker}};
-  Complex momentum;
-  double about_d = 0.0;
-  for (const Link& link : links) {
-    momentum += link.mass * link.velocity;
-    about_d += link.inertia * link.rate + link.mass * (std::conj(link.place - d) * link.velocity).imag();
-  }
-  const Complex turned = momentum * std::polar(1.0, -p.rocker_com_angle);  // hull x = -xi, z = eta of the turned axes
-  return {-turned.real(), turned.imag(), about_d};
 }
 
 }  // namespace hammer_loads::test
