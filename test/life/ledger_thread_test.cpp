@@ -69,16 +69,6 @@ bool comesTrue(const std::function<bool()>& condition) {
   return true;
 }
 
-TEST(LedgerThread, WritesWhatPiecesWouldGive) {
-  const LedgerFile file;
-  const Contents expected = pieceByPiece(file.path("direct.sqlite"));
-  LedgerThread thread(file.path());
-  work(thread);
-  EXPECT_EQ(thread.close(), Problem());
-  EXPECT_EQ(thread.state().waiting, 0U);
-  expectTheSame(contentsOf(file.path()), expected);
-}
-
 /// Thirty thousand kinds of cycles each, half a megabyte.
 TEST(LedgerThread, PiecesThatWaitForTheDiskAreAddedUp) {
   const LedgerFile file;
