@@ -4,11 +4,60 @@
 
 #include <algorithm>
 
+#include "boom/booms.h"
 #include "hammer_loads/pipeline/boom_warnings.h"
-#include "pipeline/standing_boom.h"
+#include "hammer_loads/util/constants.h"
+#include "support/constants.h"
 
 namespace hammer_loads::test {
 namespace {
+
+constexpr double kStrikingDistance = 0.1975;
+const std::vector<double> kWorking{0.2, -0.35, 1.20, -0.85};
+
+PipelineSettings modelled(BoomModel model) {
+  PipelineSettings s;
+  s.boom = model;
+  s.joint_max_age = 0.2;
+  s.gravity = kGravity;
+  s.boom_acceleration = BoomAcceleration::kDifference;
+  return s;
+}
+
+/// A step without blows under a steady load.
+WrenchHistory steadyStep(double duration, const HullWrench& w) {
+  WrenchHistory step;
+  step.count = 1;
+  step.pieces[0].duration = duration;
+  step.pieces[0].from = step.pieces[0].to = step.pieces[0].mean = w;
+  return step;
+}
+
+HalfSinePulse pulseOf(double length) {
+  HalfSinePulse pulse;
+  pulse.amplitude = 8e3;
+  pulse.frequency = kPi / length;
+  return pulse;
+}
+
+/// A boom that stands at the working pose; a sample every millisecond.
+class Follower {
+ public:
+  explicit Follower(BoomModel model, Boom boom = shippedBoom())
+      : follower(std::move(boom), modelled(model), kStrikingDistance) {}
+
+  const BoomState& sample(const HullWrench& w, const WrenchHistory& step, int ms = 1) {
+    now += ms * kMs;
+    follower.jointStates(now, kFour, kWorking, {});
+    return follower.sample({now, w}, step);
+  }
+  const BoomState& sample(const HullWrench& w) { return sample(w, steadyStep(1e-3, w)); }
+
+  BoomFollower follower;
+  StampNs now{};
+};
+
+constexpr HullWrench kLoad{-900.0, 7000.0, 300.0};
 
 /// A load that is no number, in one step: the vibration begins anew, its loads are withheld until what was wrong would
 /// have died out, and are then those of a follower that knew nothing of it.
@@ -33,30 +82,6 @@ TEST(BoomFollower, ResetsAVibrationThatRunsAwayAndWithholdsItForAWhile) {
   EXPECT_NEAR((torque - other.follower.state().loads.total).norm(), 0.0, 1e-3 * torque.norm());
 }
 
-TEST(BoomFollower, RigidLoadsAreThoseOfTheInterpolatedPose) {
-  Follower rigid(BoomModel::kRigid);
-  rigid.follower.jointStates(0, kFour, {0.2, -0.36, 1.18, -0.85}, {0.0, 0.2, 0.3, -0.2});
-  rigid.follower.jointStates(20 * kMs, kFour, {0.2, -0.32, 1.22, -0.87}, {0.0, 0.4, 0.1, -0.1});
-  const BoomState& state = rigid.follower.sample({5 * kMs, kLoad}, {});
-  ASSERT_FALSE(state.fault);
-  EXPECT_EQ(state.stamp, 5 * kMs);
-
-  Boom boom = shippedBoom();
-  boom.move({joints({0.2, -0.35, 1.19, -0.855}), joints({0.0, 0.25, 0.25, -0.175}), joints({0.0, 10.0, -10.0, 5.0})},
-            {0.0, 0.0, -kGravity});
-  BoomLoads expected;
-  boom.loads({{kLoad.force_x, 0.0, kLoad.force_z}, {0.0, kLoad.torque_y, 0.0}}, true, expected);
-  EXPECT_TRUE(state.loads.hammer.isApprox(expected.hammer, 1e-14));
-  EXPECT_TRUE(state.loads.weight.isApprox(expected.weight, 1e-14));
-  EXPECT_TRUE(state.loads.motion.isApprox(expected.motion, 1e-12));
-  EXPECT_TRUE(state.loads.vibration.isZero(0.0));
-  EXPECT_NEAR(state.loads.cylinder[0].force / expected.cylinder[0].force, 1.0, 1e-12);
-  const double pitch = -0.35 + 1.19 - 0.855;
-  EXPECT_NEAR(rigid.follower.boom().gravityAtTip().x(), kGravity * std::sin(pitch), 1e-14 * kGravity);
-  EXPECT_NEAR(rigid.follower.boom().gravityAtTip().z(), -kGravity * std::cos(pitch), 1e-14 * kGravity);
-  EXPECT_FALSE(state.choice.compliant);
-}
-
 TEST(BoomFollower, ALoadThatStaysIsCarriedAsOnARigidBoom) {
   Follower rigid(BoomModel::kRigid), compliant(BoomModel::kCompliant);
   rigid.sample(kLoad);
@@ -72,17 +97,6 @@ TEST(BoomFollower, ALoadThatStaysIsCarriedAsOnARigidBoom) {
   EXPECT_NEAR(deflection, kLoad.force_z / state.reduced.stiffness, 0.5 * deflection);
 }
 
-TEST(BoomFollower, AShortStepGivesItsMeanAsMomentumToTheReducedMass) {
-  Follower compliant(BoomModel::kCompliant);
-  compliant.sample({});
-  WrenchHistory step = steadyStep(1e-5, {});
-  step.pieces[0].mean.force_z = 8000.0;  // a bump: nothing at the ends
-  const BoomState& state = compliant.sample({}, step);
-  const double speed = 8000.0 * 1e-5 / state.reduced.mass;
-  // Within the step the boom hardly moves: (omega h)^2 and zeta omega h are below 2e-3.
-  EXPECT_NEAR(state.tip.velocity.z(), speed, 2e-3 * speed);
-}
-
 TEST(BoomFollower, ABlowBetweenPiecesIsAnImpulse) {
   Follower compliant(BoomModel::kCompliant);
   compliant.sample({});
@@ -95,18 +109,6 @@ TEST(BoomFollower, ABlowBetweenPiecesIsAnImpulse) {
   EXPECT_NEAR(state.tip.velocity.z(), 60.0 / state.reduced.mass, 1e-6 * 60.0 / state.reduced.mass);
   // The energy is that of the reduced mass.
   EXPECT_NEAR(compliant.follower.boom().vibration().energy(), 0.5 * 60.0 * 60.0 / state.reduced.mass, 1e-3);
-}
-
-TEST(BoomFollower, RestsAfterAGap) {
-  Follower compliant(BoomModel::kCompliant);
-  compliant.sample(kLoad);
-  compliant.sample(kLoad);
-  ASSERT_GT(compliant.follower.state().tip.velocity.norm(), 1e-4);
-  compliant.sample(kLoad, {});
-  EXPECT_TRUE(compliant.follower.state().tip.velocity.isZero(0.0));
-  EXPECT_TRUE(compliant.follower.state().loads.vibration.isZero(0.0));
-  compliant.sample(kLoad);
-  EXPECT_GT(compliant.follower.state().tip.velocity.norm(), 1e-4);
 }
 
 /// As on a computer that is behind: the state is there when the reason is asked for, and was not at the sample.
@@ -125,24 +127,6 @@ TEST(BoomFollower, NamesJointStatesThatComeLaterThanTheSample) {
   EXPECT_EQ(
       joints->text,
       "boom joints: no loads for 1 samples: swing_joint: its states come later than the crank samples of their time");
-}
-
-TEST(BoomFollower, NamesTheJointThatIsNotKnownAndGoesOnWhenItIs) {
-  Follower compliant(BoomModel::kCompliant);
-  EXPECT_TRUE(compliant.follower.sample({0, kLoad}, {}).fault);
-  compliant.sample(kLoad);
-  ASSERT_FALSE(compliant.sample(kLoad).fault);
-  compliant.now += 100 * kMs;
-  compliant.follower.jointStates(compliant.now, {"swing_joint", "boom_joint", "hammer_joint"}, {0.2, -0.35, -0.85}, {});
-  compliant.now += 150 * kMs;
-  const BoomState& state = compliant.follower.sample({compliant.now, kLoad}, steadyStep(1e-3, kLoad));
-  ASSERT_TRUE(state.fault);
-  EXPECT_EQ(state.fault->kind, JointFault::Kind::kStale);
-  EXPECT_EQ(compliant.follower.joints().name(state.fault->joint), "arm_joint");
-  EXPECT_EQ(compliant.follower.faults(), 2U);
-  // The step that ends at the first good sample is not known as a whole.
-  ASSERT_FALSE(compliant.sample(kLoad).fault);
-  EXPECT_TRUE(compliant.follower.state().tip.velocity.isZero(0.0));
 }
 
 TEST(BoomFollower, StatesTheHullsLoadAtALink) {
@@ -196,6 +180,103 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanHoldDownForceAtTheTool) {
   bare.sample({});
   bare.follower.turnEnded(std::nullopt, 3000.0);
   EXPECT_EQ(bare.follower.firstToGive(), "rear edge");
+}
+
+Boom boomWithoutFile() { return std::move(*Boom::make(shippedUrdf()).value); }
+
+TEST(BoomFollower, AutoIsCompliantUntilALongPulseShowsThatRigidSuffices) {
+  Follower automatic(BoomModel::kAuto);
+  automatic.sample(kLoad);
+  EXPECT_TRUE(automatic.sample(kLoad).choice.compliant);
+  EXPECT_FALSE(automatic.follower.state().choice.judged);
+  const double slowest = 1.0 / automatic.follower.state().frequency[0];
+
+  automatic.follower.turnEnded(pulseOf(100.0 * slowest), 300.0);
+  EXPECT_FALSE(automatic.sample(kLoad).choice.compliant);
+  EXPECT_TRUE(automatic.follower.state().loads.vibration.isZero(0.0));
+  BoomChoice choice = automatic.follower.state().choice;
+  EXPECT_TRUE(choice.judged);
+  EXPECT_LT(choice.rigid_error, choice.rigid_tolerance);
+  EXPECT_EQ(choice.rigid_tolerance, 0.05);
+  EXPECT_NEAR(choice.pulse_length, 100.0 * slowest, 1e-9);
+  EXPECT_NEAR(choice.lowest_frequency, 1.0 / slowest, 1e-9);
+
+  // What the hammer does: 18 ms.
+  automatic.follower.turnEnded(pulseOf(0.018), 300.0);
+  choice = automatic.sample(kLoad).choice;
+  EXPECT_TRUE(choice.compliant);
+  EXPECT_GT(choice.rigid_error, 0.5);
+  // The vibration went on meanwhile, as in a boom that is always compliant.
+  Follower always(BoomModel::kCompliant);
+  for (int i = 0; i < 4; ++i) always.sample(kLoad);
+  const JointVector went_on = automatic.follower.state().loads.vibration,
+                    went = always.follower.state().loads.vibration;
+  EXPECT_LT((went_on - went).norm(), 1e-4 * went.norm()) << "but for levers that the vibration itself changes";
+  // A turn without a pulse tells nothing new.
+  automatic.follower.turnEnded(std::nullopt, 300.0);
+  EXPECT_TRUE(automatic.sample(kLoad).choice.compliant);
+}
+
+TEST(BoomFollower, TakesABoomWithoutCylindersAsRigid) {
+  Follower automatic(BoomModel::kAuto, boomWithoutFile());
+  automatic.sample(kLoad);
+  automatic.follower.turnEnded(pulseOf(0.018), 300.0);
+  const BoomState& state = automatic.sample(kLoad);
+  ASSERT_FALSE(state.fault);
+  EXPECT_FALSE(state.choice.compliant);
+  EXPECT_FALSE(state.choice.judged);
+  EXPECT_FALSE(state.hold_down);
+  EXPECT_TRUE(std::isinf(state.reduced.mass));
+  EXPECT_EQ(state.frequency.size(), 0);
+  Follower rigid(BoomModel::kRigid);
+  rigid.sample(kLoad);
+  EXPECT_EQ(rigid.follower.state().loads.total, state.loads.total);
+}
+
+TEST(BoomFollower, TakesTheBoomAsRigidAtAZeroMomentArm) {
+  BoomParameters parameters = shippedBoomParameters();
+  // The arm's cylinder, in line with its joint at the working pose.
+  CylinderParameters& arm = parameters.cylinders[1];
+  arm.base_x = 2.60 - 1.3, arm.base_z = 0.0;
+  arm.rod_x = 0.4 * std::cos(1.20), arm.rod_z = 0.4 * std::sin(1.20);
+  arm.closed_length = 1.0, arm.stroke = 0.99;
+  const Checked<Boom> made = Boom::make(shippedUrdf(), parameters);
+  ASSERT_TRUE(made.value) << made.problems.front();
+  Follower compliant(BoomModel::kCompliant, *made.value);
+  compliant.sample(kLoad);
+  const BoomState& state = compliant.sample(kLoad);
+  ASSERT_FALSE(state.fault);
+  EXPECT_TRUE(state.zero_moment_arm);
+  EXPECT_FALSE(state.choice.compliant);
+  EXPECT_TRUE(state.loads.cylinder[1].zero_moment_arm);
+  EXPECT_TRUE(state.loads.total.allFinite());
+  Follower rigid(BoomModel::kRigid, *made.value);
+  rigid.sample(kLoad);
+  EXPECT_EQ(state.loads.total, rigid.follower.state().loads.total);
+}
+
+/// A force within the error of the boom's weight is no contact with rock; a multiple of that error is.
+TEST(MeasuredRock, ShowsAboveTheErrorOfTheBoomsWeight) {
+  const Boom shipped = shippedBoom();
+  const double least = 0.05 * kGravity * massFrom(shipped.chain(), shipped.pose(), 1).mass;
+  for (const double part : {0.5, 2.0}) {
+    Follower measured(BoomModel::kCompliant);
+    BoomFollower& follower = measured.follower;
+    for (int i = 1; i < 5000; ++i) {
+      const BoomState& state = measured.sample({});
+      ASSERT_FALSE(state.fault);
+      const Boom& boom = follower.boom();
+      const JointVector torque = state.loads.weight + boom.hammerTorque({{0.0, 0.0, part * least},
+                                                                         {0.0, kStrikingDistance * part * least, 0.0}});
+      for (std::size_t c = 0; c < boom.cylinders().size(); ++c) {
+        const double push = -torque[boom.cylinders()[c].joint()] / boom.cylinderPosition(c).arm;
+        follower.pressure(measured.now, c, Chamber::kRod, 0.0);
+        follower.pressure(measured.now, c, Chamber::kBore, push / boom.cylinders()[c].boreArea());
+      }
+    }
+    EXPECT_TRUE(follower.contactKnown());
+    EXPECT_EQ(follower.boom().vibration().contact() > 0.0, part > 1.0);
+  }
 }
 
 }  // namespace

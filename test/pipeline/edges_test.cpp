@@ -13,7 +13,6 @@ namespace {
 using test::session;
 using test::settingsWith;
 
-using test::kCrank;
 const std::vector<std::string> kJoints{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
 
 Pipeline pipelineOf(const Settings& settings) { return Pipeline(settings.mechanism, settings.pipeline, settings.boom); }
@@ -65,16 +64,6 @@ TEST_P(RefusedSamples, ChangeNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(UnderEveryHullMotion, RefusedSamples, testing::Values("fixed", "imu", "model"));
 
-TEST(Stamps, AreRefusedBeyondEveryClockAndTheLastGoodOneIsNot) {
-  const Settings settings = settingsWith("boom: none\n", false);
-  Pipeline pipeline = pipelineOf(settings);
-  EXPECT_FALSE(pipeline.crankSample(kLastStamp - 1000000, {1.0, 0.0}).refusal);
-  EXPECT_FALSE(pipeline.crankSample(kLastStamp, {1.0, 0.0}).refusal);
-  for (const StampNs stamp : {kLastStamp + 1, std::numeric_limits<StampNs>::max(), StampNs{-1}})
-    EXPECT_EQ(pipeline.crankSample(stamp, {1.0, 0.0}).refusal, Refusal::kBadStamp) << stamp;
-  EXPECT_EQ(pipeline.counts().refusedFor(Refusal::kBadStamp), 3U);
-}
-
 TEST(BoomInDegrees, IsWithheldUntilItIsOver) {
   const Settings settings = settingsWith("boom: auto\n");
   const auto each = [](Pipeline& pipeline, const auto& r, auto& wrenches) {
@@ -105,6 +94,42 @@ TEST(Missing, CrankJointPitchJointsAndImuAreNamed) {
   for (const Warning& warning : warningsOf(pipeline)) keys += std::string(warning.key) + ";";
   EXPECT_EQ(keys, "pitch joints;imu;");
 }
+
+using test::kSessionEnd;
+using test::Player;
+using test::settingsWith;
+
+/// The whole session: before it works the crank falls back on the tool.
+class EncoderZero : public testing::TestWithParam<double> {};
+
+TEST_P(EncoderZero, NoMeanAndNoVibrationIsAKick) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = kSessionEnd;
+  machine.crank.zero = GetParam();
+  const simulation::Session session = simulation::recordSession(machine);
+  double peak = 0.0, stops = 0.0;
+  for (const simulation::CrankTruth& t : session.truth) {
+    peak = std::max(peak, t.load.force_z);
+    if (t.time < 2.0) stops += t.speed == 0.0;
+  }
+  EXPECT_GT(stops, 100.0) << "it rests on the tool before it works";
+  Player right(settingsWith("boom: compliant\n")), off(settingsWith("output: mean\nboom: compliant\n"), true, session);
+  double torque = 0.0, off_torque = 0.0, force = 0.0;
+  const auto largest = [](const SampleResult& result) { return result.boom->loads.vibration.cwiseAbs().maxCoeff(); };
+  right.playTo(kSessionEnd, [&](double, const SampleResult& result) {
+    if (!result.refusal && !result.boom->fault) torque = std::max(torque, largest(result));
+  });
+  off.playTo(kSessionEnd, [&](double, const SampleResult& result) {
+    if (result.refusal) return;
+    for (const WrenchOutput& output : result.outputs)
+      force = std::max(force, std::hypot(output.wrench.force_x, output.wrench.force_z));
+    if (!result.boom->fault) off_torque = std::max(off_torque, largest(result));
+  });
+  EXPECT_LT(force, 1.6 * peak);
+  EXPECT_LT(off_torque, 1.5 * torque);
+}
+
+INSTANTIATE_TEST_SUITE_P(Off, EncoderZero, testing::Values(-0.01, -0.001, 0.001));
 
 }  // namespace
 }  // namespace hammer_loads

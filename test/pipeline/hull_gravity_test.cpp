@@ -117,14 +117,6 @@ TEST(HullGravity, SignsAndOffsetStandForADescription) {
   EXPECT_NEAR(by_keys.gravity().z, by_description.gravity().z, 1e-12);
 }
 
-TEST(HullGravity, JointsBesideThePitchAreAtZeroUntilTheyAreReceived) {
-  const Settings settings = strangersSettings(kStrangersJoints + "pitch_offset_rad: 0.25\n", strangersUrdf(false));
-  HullGravity gravity(settings.pipeline, std::nullopt);
-  gravity.joints({"j_lift", "j_stick", "j_tool"}, {0.1, 0.2, 0.3});
-  EXPECT_NEAR(gravity.gravity().x, kG * std::cos(0.08) * std::sin(-0.6 - 0.1 + 1.9 - 0.2 + 0.3 + 0.25), 1e-12);
-  EXPECT_TRUE(gravity.pitch().known());
-}
-
 TEST(HullGravity, SignsThatContradictTheDescriptionAreRefused) {
   const test::TemporaryFile good(kStrangersJoints + "pitch_signs: [-1, -1, 1]\n"),
       bad(kStrangersJoints + "pitch_signs: [-1, 1, 1]\n");

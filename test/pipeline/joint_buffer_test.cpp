@@ -14,7 +14,6 @@ namespace {
 
 using test::kMs;
 using Names = std::vector<std::string>;
-using Values = std::vector<double>;
 
 PipelineSettings accelerated(BoomAcceleration acceleration = BoomAcceleration::kDifference) {
   PipelineSettings s;
@@ -97,13 +96,6 @@ TEST_F(Joints, GrowStaleEachByItself) {
   EXPECT_NEAR(at(900 * kMs).position[2], 1.0 + 6.0 / 7.0, 1e-15);
 }
 
-TEST_F(Joints, AreTheFirstBeforeTheFirstState) {
-  buffer_.update(1000 * kMs, kFour, {0.1, 0.2, 1.3, 0.0}, {});
-  EXPECT_EQ(at(900 * kMs).position[2], 1.3);
-  JointMotion motion;
-  EXPECT_TRUE(buffer_.at(799 * kMs, motion));
-}
-
 TEST_F(Joints, DifferencesFollowAParabolaExactlyWithoutVelocities) {
   const double a = 0.6, v = -0.3;
   const auto position = [&](double t) { return 1.0 + v * t + 0.5 * a * t * t; };
@@ -125,16 +117,6 @@ TEST_F(Joints, DifferencesFollowAParabolaExactlyWithoutVelocities) {
   ASSERT_FALSE(first.at(10 * kMs, motion));
   EXPECT_NEAR(motion.velocity[2], 10.0, 1e-13);
   EXPECT_TRUE(motion.acceleration.isZero(0.0));  // one velocity has no difference
-}
-
-TEST_F(Joints, AccelerationMayBeNeglected) {
-  JointBuffer plain(boom_.chain(), accelerated(BoomAcceleration::kNone));
-  plain.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 0.0, 0.0});
-  plain.update(10 * kMs, kFour, {0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 1.0, 0.0});
-  JointMotion motion;
-  ASSERT_FALSE(plain.at(10 * kMs, motion));
-  EXPECT_EQ(motion.velocity[2], 1.0);
-  EXPECT_TRUE(motion.acceleration.isZero(0.0));
 }
 
 TEST_F(Joints, BadValuesAreRefusedAndCounted) {
@@ -165,13 +147,6 @@ TEST_F(Joints, AcceptAJumpFromTheSecondReadingOn) {
   EXPECT_EQ(at(80 * kMs).position[2], 0.01);
   EXPECT_EQ(buffer_.refusals().jumps, 2U);
   EXPECT_TRUE(buffer_.update(1080 * kMs, {"arm_joint"}, {2.0}, {})) << "2 rad in a second";
-}
-
-TEST_F(Joints, TheFirstOfADuplicateCounts) {
-  EXPECT_TRUE(buffer_.update(0, {"arm_joint", "swing_joint", "arm_joint", "boom_joint", "hammer_joint"},
-                             {1.0, 0.0, 2.0, 0.0, 0.0}, {}));
-  EXPECT_EQ(at(0).position[2], 1.0);
-  EXPECT_EQ(buffer_.refusals().out_of_order, 1U);
 }
 
 TEST_F(Joints, RefuseALateStateAndAcceptTimeRunningBack) {

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
+#include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/imu_trust.h"
 #include "hammer_loads/pipeline/pressure_trust.h"
@@ -13,19 +15,6 @@ namespace {
 
 using test::kMs;
 constexpr double kReadingStep = 1e-3;  // [s] between readings
-
-TEST(HullImuJump, IsRefused) {
-  HullImuSettings settings;
-  settings.max_age = 0.02;
-  const auto second = [&](double force, double rate) {
-    HullImu imu(settings);
-    imu.update(kMs, {{0.0, 0.0, 9.8}, {0.0, 0.0, 0.0}});
-    return imu.update(2 * kMs, {{0.0, 0.0, 9.8 + force}, {0.0, rate, 0.0}});
-  };
-  EXPECT_FALSE(second(20.0, 0.3));
-  EXPECT_EQ(second(1000.0, 0.0), ImuRefusal::kJump);
-  EXPECT_EQ(second(0.0, 30.0), ImuRefusal::kJump);
-}
 
 /// An IMU on a hull at rest, where the weight is 10 m/s2. noise: readings alternate by it [m/s2].
 class ImuOfAHull {
@@ -54,13 +43,6 @@ TEST(ImuTrust, RejectsAWrongMeanUntilItIsRight) {
   EXPECT_TRUE(imu.isLost());
 }
 
-TEST(ImuTrust, RejectsAFrozenUnit) {
-  ImuOfAHull imu;
-  imu.run(2.0, 0.0);
-  imu.run(1.0, 0.0, 0.0, 0.0);
-  EXPECT_TRUE(imu.isLost());
-}
-
 /// Pressures that disagree with a weight of 10 N on an arm of 1 m.
 TEST(PressureTrust, RejectsAWrongMeanUntilItIsRight) {
   PressureTrust trust;
@@ -83,6 +65,43 @@ TEST(PressureTrust, TriesDelayedPressuresAgainLater) {
   EXPECT_TRUE(trust.isLate());
   for (int i = 0; i < 2000 && trust.isLate(); ++i) trust.followDelay(0.0, 0.0, 0.1);
   EXPECT_FALSE(trust.isLate());
+}
+
+using test::kMs;
+
+TEST(CylinderPressures, NeedBothChambers) {
+  CylinderPressures pressures(0.02);
+  EXPECT_TRUE(pressures.update(kMs, 1, Chamber::kBore, 5e6));
+  EXPECT_FALSE(pressures.at(1, kMs));
+  EXPECT_TRUE(pressures.update(kMs, 1, Chamber::kRod, 1e6));
+  ASSERT_TRUE(pressures.at(1, kMs));
+  EXPECT_EQ(pressures.at(1, kMs)->bore, 5e6);
+  EXPECT_FALSE(pressures.at(0, kMs)) << "another cylinder";
+  EXPECT_FALSE(pressures.at(1, 30 * kMs)) << "too old";
+}
+
+TEST(CylinderPressures, LieOnTheLineThroughTheLastTwo) {
+  CylinderPressures pressures(0.02);
+  for (const StampNs t : {kMs, 3 * kMs}) {
+    pressures.update(t, 0, Chamber::kBore, 1e6 * static_cast<double>(t / kMs));
+    pressures.update(t, 0, Chamber::kRod, 2e6);
+  }
+  EXPECT_NEAR(pressures.at(0, 2 * kMs)->bore, 2e6, 1e-6);
+  EXPECT_NEAR(pressures.at(0, 4 * kMs)->bore, 4e6, 1e-6);
+  EXPECT_NEAR(pressures.at(0, 9 * kMs)->bore, 5e6, 1e-6) << "one interval beyond at most";
+}
+
+TEST(CylinderPressures, RefuseWhatCannotBeAndGoOn) {
+  CylinderPressures pressures(0.02);
+  EXPECT_TRUE(pressures.update(10 * kMs, 0, Chamber::kBore, 5e6));
+  EXPECT_FALSE(pressures.update(11 * kMs, 0, Chamber::kBore, std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_FALSE(pressures.update(11 * kMs, 0, Chamber::kBore, 1e9));
+  EXPECT_FALSE(pressures.update(9 * kMs, 0, Chamber::kBore, 5e6)) << "late";
+  EXPECT_EQ(pressures.refused(), 3U);
+  EXPECT_TRUE(pressures.update(12 * kMs, 0, Chamber::kBore, 6e6));
+  EXPECT_FALSE(pressures.update(1 * kMs, 0, Chamber::kBore, 5e6));
+  EXPECT_TRUE(pressures.update(2 * kMs, 0, Chamber::kBore, 5e6)) << "time that runs back is believed the second time";
+  EXPECT_EQ(pressures.accepted(), 3U);
 }
 
 }  // namespace
