@@ -6,6 +6,7 @@ namespace hammer_loads {
 namespace {
 
 using accuracy::BoomErrors;
+constexpr double kFrom = 4.0, kTo = 8.0;  ///< [s]: what is judged without pressures
 
 /// Hammer and level as the truth has them: what is off is the hull's motion.
 BoomErrors byPressuresAlone(const simulation::MachineSettings& machine, const char* name) {
@@ -14,12 +15,11 @@ BoomErrors byPressuresAlone(const simulation::MachineSettings& machine, const ch
 }
 
 TEST(HullByBoom, DeviationsIncludeTheUncertaintyOfItsVibration) {
-  for (const test::Pose& pose : {test::Pose{-0.45, 1.00, -0.50}, test::Pose{-0.70, 1.55, -0.75}}) {
-    for (const double oil : {0.8, 1.2}) {
-      const BoomErrors e = byPressuresAlone(test::machineOnBoom(oil, 100.0, pose), "free");
-      EXPECT_GT(e.leastWrenchCovered(), 0.88) << oil << ' ' << pose[0];
-      EXPECT_LT(e.force_z.rms(), 0.02);
-    }
+  for (const auto& [oil, pose] :
+       {std::pair(0.8, test::Pose{-0.45, 1.00, -0.50}), std::pair(1.2, test::Pose{-0.70, 1.55, -0.75})}) {
+    const BoomErrors e = byPressuresAlone(test::machineOnBoom(oil, 100.0, pose), "free");
+    EXPECT_GT(e.leastWrenchCovered(), 0.88) << oil;
+    EXPECT_LT(e.force_z.rms(), 0.02);
   }
 }
 
@@ -47,9 +47,11 @@ std::array<double, 2> coveredWithoutSensors(const std::string& keys, double oil)
   const Settings settings = test::withExactHammer(test::settingsWith("boom: compliant\nlevel: rocker\n" + keys));
   std::array<double, 2> covered{};
   for (const test::Pose& pose : kPoses) {
-    const simulation::Session session = simulation::recordSession(test::machineOnBoom(oil, 100.0, pose));
+    simulation::MachineSettings machine = test::machineOnBoom(oil, 100.0, pose);
+    machine.duration = kTo;
+    const simulation::Session session = simulation::recordSession(machine);
     const BoomErrors e =
-        accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, {}, 4.0, 8.0);
+        accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, {}, kFrom, kTo);
     EXPECT_GT(e.rmsForce(), 0.01) << "nothing to doubt";
     for (std::size_t i = 0; i < 2; ++i) covered[i] += e.part(e.wrench_within[i]) / kPoses.size();
   }
@@ -76,14 +78,15 @@ TEST(HullByBoom, DeviationsHoldForOilThatIsGiven) {
 /// Rock shakes a hull at 25 to 60 Hz, which 100 readings a second do not follow; what the hull's mass is they do not
 /// show either, and no force of several times the peak is made of it.
 TEST(HullByBoom, DeviationsHoldForAnImuThatIsReadTooRarelyOnRock) {
-  for (const double oil : {0.85, 1.0, 1.2}) {
+  for (const double oil : {0.85, 1.2}) {
     for (const double rate : {100.0, 200.0}) {
       simulation::MachineSettings machine = test::machineOnBoom(oil, 100.0, {-0.35, 1.2, -0.9});
       machine.on_boom.rock = {1.5e7 + 2e7 * oil, 3.0, 4e3};
       machine.on_boom.imu.rate = rate;
+      machine.duration = kTo;
       const Settings settings = test::withExactHammer(test::settingsWith("level: rocker\nhull_motion: imu\n"));
       const BoomErrors e = accuracy::boomErrors(simulation::recordSession(machine), settings.mechanism,
-                                                settings.pipeline, *settings.boom, {true, false}, 4.0, 8.0);
+                                                settings.pipeline, *settings.boom, {true, false}, kFrom, kTo);
       EXPECT_LT(e.worstForce(), 0.5) << rate;
       EXPECT_GT(e.leastWrenchCovered(), 0.85) << rate;
     }

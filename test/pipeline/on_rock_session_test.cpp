@@ -95,8 +95,8 @@ TEST_P(OnRock, AnImuAloneShowsThatTheRocksForceIsNotKnown) {
 }
 
 INSTANTIATE_TEST_SUITE_P(PressForces, OnRock,
-                         testing::Values(Rock{0.0, 3e7}, Rock{1500.0, 1e8, 1.0, 11}, Rock{4000.0, 3e7},
-                                         Rock{4000.0, 1e7, 0.7, 12}, Rock{12000.0, 3e7, 1.4, 13}));
+                         testing::Values(Rock{0.0, 3e7}, Rock{1500.0, 1e8, 1.0, 11}, Rock{4000.0, 1e7, 0.7, 12},
+                                         Rock{12000.0, 3e7, 1.4, 13}));
 
 /// Readings every 5 ms, landings of 10 ms: the change between readings is the vibration's.
 TEST(OnRockSession, PressuresAt200HzAreEnough) {

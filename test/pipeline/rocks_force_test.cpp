@@ -25,7 +25,7 @@ simulation::MachineSettings drawnOnRock(unsigned seed) {
 /// seems to, that is the pressures'. Without that three of these had 91 to 94 % of the force wrong, and the flag of a
 /// hold-down force that is lost was right in 21 to 26 % of the samples.
 TEST(RocksForce, IsNoneBetweenLandings) {
-  for (unsigned seed = 1; seed <= 4; ++seed) {
+  for (unsigned seed = 1; seed <= 2; ++seed) {
     simulation::MachineSettings m = drawnOnRock(seed);
     m.on_boom.seals.friction = 0.01;
     m.on_boom.bending_frequency = 30.0;
@@ -48,7 +48,8 @@ TEST(RocksForce, IsNoneBetweenLandings) {
 TEST(RocksForce, DoesNotGrowOnABoomAtRest) {
   simulation::MachineSettings m = test::machineOnBoom(0.758, 50.0, {-0.654, 0.772, 0.036});
   m.on_boom.rock = {1.77e7, 3.0, 3550.0};
-  for (unsigned seed = 4; seed <= 7; ++seed) {
+  m.duration = 3.0;
+  for (unsigned seed = 4; seed <= 5; ++seed) {
     m.seed = seed;
     const simulation::Session session = simulation::recordSession(m);
     const Settings settings = test::withExactHammer(test::settingsWith(std::string("boom: compliant\n") + kByBoth));

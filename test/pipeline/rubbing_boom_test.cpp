@@ -1,6 +1,8 @@
 // Cylinders whose seals rub: torques by measured pressures, and how far they are said to be off.
+#include <map>
 #include <random>
 
+#include "hammer_loads/pipeline/warnings.h"
 #include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {
@@ -9,11 +11,14 @@ namespace {
 using accuracy::BoomErrors;
 using test::errorsOf;
 
-simulation::Session rubbingSession(double friction) {
+const simulation::Session& rubbingSession(double friction) {
+  static std::map<double, simulation::Session> recorded;
+  const auto [at, is_new] = recorded.try_emplace(friction);
+  if (!is_new) return at->second;
   simulation::MachineSettings m = test::machineOnBoom(1.0, 100.0);
   m.on_boom.seals.friction = friction;
   m.on_boom.seals.presliding = 5e-5;
-  return simulation::recordSession(m);
+  return at->second = simulation::recordSession(m);
 }
 
 std::string knownFriction(double friction, double deviation) {
@@ -26,7 +31,7 @@ std::string knownFriction(double friction, double deviation) {
 
 /// Seals of an unknown machine: what is usual covers them, what is said to be exact does not.
 TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
-  const simulation::Session session = rubbingSession(0.02);
+  const simulation::Session& session = rubbingSession(0.02);
   for (const bool imu : {false, true}) {
     const accuracy::SensorsOnBoom sensors{imu, true};
     const BoomErrors usual = errorsOf("usual seals", session, "boom_stiffness: identified\n", sensors);
@@ -60,11 +65,11 @@ TEST(RubbingBoom, DefaultDeviationsCoverAConstantFriction) {
 TEST(RubbingBoom, FrictionOfOnePercentOfThePushIsIdentified) {
   std::mt19937 random(1);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 4; ++i) {
     simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0, test::drawnPose(between));
     m.seed = 50 + static_cast<std::uint64_t>(i);
     m.on_boom.seals.constant = 0.01, m.on_boom.seals.presliding = i % 3 == 0 ? 0.0 : 3e-5 * (i % 3);
-    if (i < 3) m.on_boom.rock = {3e7, 3.0, 4000.0};
+    if (i < 2) m.on_boom.rock = {3e7, 3.0, 4000.0};
     const simulation::Session session = simulation::recordSession(m);
     for (const bool imu : {false, true}) {
       const BoomErrors e = errorsOf("1 % of the push", session, "boom_stiffness: identified\n", {imu, true});
@@ -78,8 +83,8 @@ TEST(RubbingBoom, FrictionOfOnePercentOfThePushIsIdentified) {
 /// Friction acts on the boom and not on its pressures, which seem up to 1.1 ms late by it. It is identified, also where
 /// it exceeds the default deviation of 3 %; pressures alone then show a part of it as damping.
 TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
-  for (const double friction : {0.0, 0.03, 0.05, 0.08}) {
-    const simulation::Session session = rubbingSession(friction);
+  for (const double friction : {0.0, 0.05, 0.08}) {
+    const simulation::Session& session = rubbingSession(friction);
     for (const bool imu : {false, true}) {
       const BoomErrors e = errorsOf("seals", session, "boom_stiffness: identified\n", {imu, true});
       EXPECT_FALSE(e.warnedOfPressures() || e.warned_of_imu_stamps || e.warned_of_rock) << friction << imu;
@@ -124,7 +129,7 @@ TEST(LaggingPressures, ALagThatIsFoundIsNoReasonForDeviationsAsOfOneThatIsNot) {
 
 /// What weighing found of the sensors is taken off wherever they are used.
 TEST(RubbingBoom, ZerosAndOffsetsOfTheBoomFileAreTakenOff) {
-  const simulation::Session right = rubbingSession(0.0);
+  const simulation::Session& right = rubbingSession(0.0);
   simulation::Session wrong = right;
   constexpr double kZero = 0.02, kOffset = 3e5;  // [rad], [Pa]
   for (simulation::JointReading& reading : wrong.joints)
@@ -141,6 +146,54 @@ TEST(RubbingBoom, ZerosAndOffsetsOfTheBoomFileAreTakenOff) {
   EXPECT_NEAR(told.worstTorque(), as_right.worstTorque(), 1e-4);
   EXPECT_NEAR(told.rmsForce(), as_right.rmsForce(), 1e-4);
   EXPECT_GT(not_told.worstTorque(), as_right.worstTorque() + 0.01);
+}
+
+// Machines drawn at random whose one flaw is that their seals rub: nothing else may be named.
+
+using simulation::MachineSettings;
+
+/// Pose, oil, seals of 0.5 to 2 % of the force; every second one presses its hull on rock.
+MachineSettings rubbingMachine(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  const test::Pose pose = test::drawnPose(between);
+  MachineSettings m = test::machineOnBoom(between(0.75, 1.3), 50.0, pose);
+  m.seed = 900 + seed;
+  m.on_boom.seals.friction = between(0.005, 0.02);
+  if (seed % 2 == 0) m.on_boom.rock = {between(1e7, 6e7), 3.0, between(3e3, 6e3)};
+  return m;
+}
+
+constexpr double kSettled = 6.0;  ///< [s]: the machine works from 2 s on, the oil is sought until then
+
+/// What is said of boom, rock, IMU and pressures at any time once the oil is found, without repetition.
+std::string namesOf(const MachineSettings& machine, const simulation::Session& session, bool imu, bool pressures) {
+  const Settings settings = test::withExactHammer(test::settingsWith(
+      std::string("boom: compliant\nboom_stiffness: identified\nhull_motion: ") + (imu ? "imu\n" : "model\n")));
+  test::Player player(settings, true, session);
+  player.imu_speaks = imu, player.pressures_speak = pressures;
+  std::string names;
+  double next = 0.0;
+  player.playTo(machine.duration, [&](double time, const SampleResult&) {
+    if (time < std::max(next, kSettled)) return;
+    next = time + 0.5;
+    for (const Warning& warning : warningsOf(player.pipeline)) {
+      const std::string key = warning.key;
+      if (key != "eccentricity" && names.find(key) == std::string::npos) names += key + "; ";
+    }
+  });
+  return names;
+}
+
+TEST(FalseNames, SealsThatRubAreNoLateStampNoRockAndNoExchange) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const MachineSettings machine = rubbingMachine(seed);
+    const simulation::Session session = simulation::recordSession(machine);
+    const bool on_rock = machine.on_boom.rock.stiffness > 0.0;
+    EXPECT_EQ(namesOf(machine, session, false, true), "") << seed;
+    EXPECT_EQ(namesOf(machine, session, true, true), "") << seed;
+    EXPECT_EQ(namesOf(machine, session, true, false), on_rock ? "rock; " : "") << seed;
+  }
 }
 
 }  // namespace
