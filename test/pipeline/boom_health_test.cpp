@@ -1,7 +1,6 @@
 // What a boom's vibration says of its oil at each turn's end, against the machine's own; from one day to another.
 #include "hammer_loads/pipeline/boom_health.h"
 
-
 #include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {

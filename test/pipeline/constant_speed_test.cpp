@@ -16,7 +16,7 @@ constexpr int kSteadyCounts = 4096;
 constexpr double kSteadyJitter = 3e-5, kSteadySpeedNoise = 0.15;  // [s], [rad/s]
 
 struct SteadyPlayed {
-  std::size_t samples{}, published{}, uncertain{};
+  std::size_t samples{}, published{};
   Eigen::Vector3d published_peak{Eigen::Vector3d::Zero()}, true_peak{published_peak};
   double pulse{};                                ///< largest amplitude [N]
   double least_energy{1e9}, most_energy_part{};  ///< [J]; of what the rocker had [-]

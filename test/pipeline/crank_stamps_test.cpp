@@ -40,6 +40,33 @@ const simulation::BlowTruth* blowNear(double time, const simulation::Session& se
   return found == session.blows.end() ? nullptr : &*found;
 }
 
+/// Of the samples that were taken from an instant on.
+struct Instants {
+  std::size_t samples{}, accepted{};
+  std::vector<double> errors;  ///< of the accepted samples' stamps [s]
+  std::vector<TurnEnd> turns;
+  bool steady{};
+  double worst() const { return errors.empty() ? 0.0 : *std::max_element(errors.begin(), errors.end()); }
+};
+
+Instants instantsOf(const simulation::Session& session, const simulation::MachineSettings& machine,
+                    const Settings& settings, double from = 3.0) {
+  test::Player player(settings, false, session);
+  Instants found;
+  std::size_t i = 0;
+  player.playTo(8.0, [&](double, const SampleResult& result) {
+    const double instant = session.taken[i++];
+    if (instant < from) return;
+    ++found.samples;
+    if (result.refusal) return;
+    ++found.accepted;
+    found.errors.push_back(std::abs(secondsOf(result.stamp, machine) - instant));
+    found.turns.insert(found.turns.end(), result.ends.begin(), result.ends.begin() + result.turn_ends);
+  });
+  found.steady = player.pipeline.crank().stamps().isSteady();
+  return found;
+}
+
 /// Messages of bursts or of whole milliseconds, some of them twice, without speeds: a reading that a crank that turns
 /// cannot give again is no new one, and one at rest teaches no line of stamps.
 TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
@@ -51,20 +78,9 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
       machine.crank.burst = 3;
     else
       machine.crank.stamp_step = 1e-3;
-    const simulation::Session session = simulation::recordSession(machine);
-    test::Player player(test::settingsWith("{}"), false, session);
-    std::size_t i = 0, taken = 0, samples = 0;
-    double worst = 0.0;
-    player.playTo(8.0, [&](double time, const SampleResult& result) {
-      const double instant = session.taken[i++];
-      if (time < 3.0) return;
-      ++samples;
-      if (result.refusal) return;
-      ++taken;
-      worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
-    });
-    EXPECT_LT(worst, 1.1e-3) << bursts << " [s]";
-    EXPECT_GT(static_cast<double>(taken), 0.95 * static_cast<double>(samples)) << bursts;
+    const Instants found = instantsOf(simulation::recordSession(machine), machine, test::settingsWith("{}"));
+    EXPECT_LT(found.worst(), 1.1e-3) << bursts << " [s]";
+    EXPECT_GT(static_cast<double>(found.accepted), 0.95 * static_cast<double>(found.samples)) << bursts;
   }
 }
 
@@ -73,32 +89,24 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
 TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
   const Settings settings = test::settingsWith("{}");
   for (const double rate : {200.0, 500.0, 1000.0}) {
-    for (const std::uint64_t seed : {1u, 2u}) {
-      SCOPED_TRACE(testing::Message() << rate << " Hz, " << seed);
-      simulation::MachineSettings machine = eightSecondsOf(settings);
-      machine.seed = seed;
-      machine.crank.rate = rate;
-      machine.crank.burst = 3;
-      machine.crank.loss_share = 0.01;
-      const simulation::Session session = simulation::recordSession(machine);
-      test::Player player(settings, false, session);
-      std::size_t i = 0, taken = 0, late = 0, blows = 0;
-      player.playTo(8.0, [&](double time, const SampleResult& result) {
-        const double instant = session.taken[i++];
-        if (time < 3.0 || result.refusal) return;
-        ++taken;
-        late += std::abs(secondsOf(result.stamp, machine) - instant) > 0.5 / rate;
-        for (std::size_t k = 0; k < result.turn_ends; ++k) {
-          const double blow = secondsOf(result.ends[k].stamp, machine);
-          const simulation::BlowTruth* truth = blowNear(blow, session);
-          if (!truth || blow < 3.0) continue;
-          ++blows;
-          EXPECT_NEAR(result.ends[k].blow.energy / truth->strike.energy, 1.0, 0.05) << blow;
-        }
-      });
-      EXPECT_LT(static_cast<double>(late), 0.002 * static_cast<double>(taken));  // until the next sample shows it
-      EXPECT_GT(blows, 15u);
+    SCOPED_TRACE(testing::Message() << rate << " Hz");
+    simulation::MachineSettings machine = eightSecondsOf(settings);
+    machine.seed = 1;
+    machine.crank.rate = rate;
+    machine.crank.burst = 3;
+    machine.crank.loss_share = 0.01;
+    const simulation::Session session = simulation::recordSession(machine);
+    const Instants found = instantsOf(session, machine, settings);
+    const auto late = std::count_if(found.errors.begin(), found.errors.end(), [&](double e) { return e > 0.5 / rate; });
+    EXPECT_LT(static_cast<double>(late), 0.002 * static_cast<double>(found.accepted));  // until the next shows it
+    std::size_t blows = 0;
+    for (const TurnEnd& end : found.turns) {
+      const simulation::BlowTruth* truth = blowNear(secondsOf(end.stamp, machine), session);
+      if (!truth || secondsOf(end.stamp, machine) < 3.0) continue;
+      ++blows;
+      EXPECT_NEAR(end.blow.energy / truth->strike.energy, 1.0, 0.05) << secondsOf(end.stamp, machine);
     }
+    EXPECT_GT(blows, 15u);
   }
 }
 
@@ -114,19 +122,9 @@ TEST(CrankLosses, DifferFromLateStamps) {
       machine.crank.loss_share = 0.004;
       machine.crank.driver = {0.0, 0.01, 2e-2};
       machine.crank.drop_outs.push_back({5.0, 5.1});
-      const simulation::Session session = simulation::recordSession(machine);
-      test::Player player(settings, false, session);
-      std::size_t i = 0;
-      double worst = 0.0;
-      int blows = 0;
-      player.playTo(8.0, [&](double, const SampleResult& result) {
-        const double instant = session.taken[i++];
-        if (instant < 3.0 || result.refusal) return;
-        worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
-        blows += static_cast<int>(result.turn_ends);
-      });
-      EXPECT_LT(worst, 0.5 / rate) << " [s]";
-      EXPECT_GE(blows, 20);
+      const Instants found = instantsOf(simulation::recordSession(machine), machine, settings);
+      EXPECT_LT(found.worst(), 0.5 / rate) << " [s]";
+      EXPECT_GE(found.turns.size(), 20U);
     }
   }
 }
@@ -182,17 +180,9 @@ TEST(CrankLateStamps, AreRefittedThoughInOrder) {
   simulation::MachineSettings machine = eightSeconds();
   machine.crank.rate = 200.0;
   machine.crank.driver = {0.0, 0.01, 4e-3};
-  const simulation::Session session = simulation::recordSession(machine);
-  test::Player player(test::settingsWith("{}"), false, session);
-  std::size_t i = 0;
-  double worst = 0.0;
-  player.playTo(8.0, [&](double, const SampleResult& result) {
-    const double instant = session.taken[i++];
-    if (instant < 5.0 || result.refusal) return;
-    worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
-  });
-  EXPECT_TRUE(player.pipeline.crank().stamps().isSteady());
-  EXPECT_LT(worst, 5e-4) << " [s]";
+  const Instants found = instantsOf(simulation::recordSession(machine), machine, test::settingsWith("{}"), 5.0);
+  EXPECT_TRUE(found.steady);
+  EXPECT_LT(found.worst(), 5e-4) << " [s]";
 }
 
 /// Where samples are taken at equal intervals a reading ahead shows lost ones, but a rod that rings moves a crank by as
@@ -206,19 +196,12 @@ TEST(CrankOnARodThatGives, LosesNoSamplesToItsVibration) {
     machine.crank.burst = bursts ? 3 : 1;
     machine.crank.stamp_noise = bursts ? 0.0 : 5e-4;
     const simulation::Session session = simulation::recordSession(machine);
-    test::Player player(settings, false, session);
-    std::size_t i = 0;
-    double worst = 0.0;
-    player.playTo(8.0, [&](double time, const SampleResult& result) {
-      const double instant = session.taken[i++];
-      if (time < 3.0 || result.refusal) return;
-      worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
-      for (std::size_t k = 0; k < result.turn_ends; ++k) {
-        const double blow = secondsOf(result.ends[k].stamp, machine);
-        EXPECT_TRUE(blowNear(blow, session)) << blow;
-      }
-    });
-    EXPECT_LT(worst, bursts ? 5e-4 : 3e-3) << " [s]";
+    const Instants found = instantsOf(session, machine, settings);
+    for (const TurnEnd& end : found.turns) {
+      const double blow = secondsOf(end.stamp, machine);
+      EXPECT_TRUE(blowNear(blow, session)) << blow;
+    }
+    EXPECT_LT(found.worst(), bursts ? 5e-4 : 3e-3) << " [s]";
   }
 }
 

@@ -256,30 +256,6 @@ TEST(CrankTrust, TheFirstStrokeWithoutAToolIsFollowedOnTheRightBranch) {
   }
 }
 
-/// A hard and lively rock: much is withheld after each blow, and what the path has there was never published.
-TEST(CrankTrust, ThePeakOfATurnIsOneThatWasPublished) {
-  simulation::MachineSettings machine = elasticMachine(1e9, 0.2);
-  machine.strike.rock_stiffness = 2e9;
-  machine.strike.rock_strength = 1e6;
-  machine.strike.rock_damping = 0.0;
-  const simulation::Session session = simulation::recordSession(machine);
-  std::size_t pulses = 0, withheld = 0;
-  double highest = 0.0, highest_pulse = 0.0;
-  test::Player player(test::settingsWith("{}"), false, session);
-  player.playTo(1e9, [&](double time, const SampleResult& result) {
-    if (!result.refusal) highest = std::max(highest, result.wrench.force_z);
-    withheld += result.refusal && time > 3.0;
-    for (std::size_t i = 0; i < result.turn_ends; ++i) {
-      if (!result.ends[i].pulse) continue;
-      ++pulses;
-      highest_pulse = std::max(highest_pulse, result.ends[i].pulse->amplitude);
-    }
-  });
-  EXPECT_GT(pulses, 15U);
-  EXPECT_GT(withheld, 50U) << "what there is to withhold";
-  EXPECT_LT(highest_pulse, 1.02 * highest);
-}
-
 TEST(CrankTrust, AZeroGivenInDegreesIsNamed) {
   const simulation::Session session = workingSession();
   const double degrees = 140.0;
@@ -287,40 +263,6 @@ TEST(CrankTrust, AZeroGivenInDegreesIsNamed) {
       play(session, "crank_zero_rad: 140.0\n", [=](CrankReading& r) { r.angle += degrees * kTwoPi / 360.0; });
   const std::string text = textOfWarning(played, "zero off");
   EXPECT_NE(text.find("140 degrees"), std::string::npos) << text;
-}
-
-TEST(CrankTrust, ACrankThatFallsBackOnItsToolIsNotBackward) {
-  CrankTrust trust{CrankSensor{}};
-  double angle = 0.0;
-  const auto turn = [&](double by) {
-    for (int i = 0; i < 100; ++i) trust.follow(angle += 0.01 * by, 1.0, 1e-3);
-  };
-  turn(20.0);
-  EXPECT_TRUE(trust.hasRunUp());
-  turn(-3.0);
-  EXPECT_FALSE(trust.turnsBackward());
-  turn(-0.5);
-  EXPECT_TRUE(trust.turnsBackward());
-  turn(3.0);
-  EXPECT_TRUE(trust.turnsBackward()) << "until half a turn forward";
-  turn(0.5);
-  EXPECT_FALSE(trust.turnsBackward());
-}
-
-TEST(CrankTrust, TwoHalfTurnsInARowContradictOneEndsIt) {
-  StrikeConsistency consistency;
-  const auto halfTurn = [&](double ratio) {
-    for (int i = 0; i < 20; ++i) consistency.add(ratio);
-    consistency.endHalfTurn();
-    return consistency.mean();
-  };
-  EXPECT_TRUE(std::isnan(consistency.mean()));
-  EXPECT_TRUE(std::isnan(halfTurn(1.0)));
-  EXPECT_EQ(halfTurn(9.0), 1.0);
-  EXPECT_EQ(halfTurn(8.0), 8.0);
-  EXPECT_EQ(halfTurn(0.5), 0.5);
-  consistency.endHalfTurn();
-  EXPECT_EQ(consistency.mean(), 0.5) << "no sample, no half turn";
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // A machine that is not the one of its drawing: deviations hold what the drawing does not say.
 #include <gtest/gtest.h>
 
-
 #include "hammer_loads/bench/drawing_table.h"
 #include "support/held_hull.h"
 #include "support/mo100.h"

@@ -90,27 +90,6 @@ TEST(HullImu, ReportsThatItIsStale) {
   EXPECT_TRUE(imu.at(31 * kMs));
 }
 
-/// Weight and tilt at once: hull pitch p about +y, unit mounted askew.
-TEST(HullImu, ReadsGravityByPitchAtRest) {
-  for (const double pitch : {-1.0, 0.0, 0.7}) {
-    const HullImuSettings mounting = test::imuMounting();
-    const HullMotion right{{9.8 * std::sin(pitch), -9.8 * std::cos(pitch)}};
-    HullImu imu(mounting);
-    for (StampNs t : {0 * kMs, 1 * kMs}) imu.update(t, test::readingOf(right, mounting));
-    EXPECT_NEAR(imu.at(kMs)->gravity.x, right.gravity.x, 1e-14);
-    EXPECT_NEAR(imu.at(kMs)->gravity.z, right.gravity.z, 1e-14);
-    EXPECT_FALSE(std::abs(imu.at(kMs)->rate) > 0.0);
-  }
-}
-
-TEST(HullImu, RollPitchYawTurnAboutFixedAxes) {
-  const Eigen::Matrix3d r = rotationOf(0.3, -0.5, 1.1);
-  EXPECT_NEAR((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-15);
-  EXPECT_NEAR(r(2, 0), std::sin(0.5), 1e-15);
-  EXPECT_NEAR(std::atan2(r(1, 0), r(0, 0)), 1.1, 1e-15);
-  EXPECT_NEAR(std::atan2(r(2, 1), r(2, 2)), 0.3, 1e-15);
-}
-
 TEST(HullImu, FollowsTheLineBetweenReadingsAndOneIntervalBeyond) {
   HullImu imu(atD());
   imu.update(0, {{0.0, 0.0, 10.0}, {0.0, 0.1, 0.0}});

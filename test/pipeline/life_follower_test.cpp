@@ -10,7 +10,6 @@
 #include <tuple>
 #include <utility>
 
-#include "hammer_loads/pipeline/step_wrenches.h"
 #include "hammer_loads/settings/channel_names.h"
 #include "pipeline/life_session.h"
 #include "support/counting_new.h"
@@ -19,43 +18,8 @@ namespace hammer_loads {
 namespace {
 
 using test::kNothing;
-using test::kPeak;
 using test::run;
 using test::sessionAt;
-
-TEST(StepWrenches, NoInstantOfAStepIsBeyondThem) {
-  for (const double rate : {50.0, 1000.0}) {
-    const simulation::Session session = sessionAt(rate);
-    test::Player player(test::settingsWith("{}"), true, session);
-    const Pipeline& pipeline = player.pipeline;
-    double beyond = 0.0;
-    std::size_t blows = 0;
-    player.playTo(1e9, [&](double time_of_session, const SampleResult& result) {
-      const CrankStep& step = pipeline.crank().step();
-      if (time_of_session < test::kSessionWorks || result.refusal || !step.known()) return;
-      const DriveReaction drive = driveReaction(pipeline.model(), step.driveInertia());
-      const StepLoad load{pipeline.model(), drive, result.hull.motion};
-      std::vector<double> times{0.0}, forces{load.at(step.at(0.0)).force_z};
-      forEachStepExtreme(
-          load, step,
-          [&](const StepPlace& place, const CrankEstimate& crank) {
-            EXPECT_GE(place.time, times.back());
-            times.push_back(place.time);
-            forces.push_back(load.at(crank).force_z);
-          },
-          [&](double) { ++blows; });
-      EXPECT_LE(times.back(), step.length());
-      forces.push_back(result.wrench.force_z);
-      const auto [least, greatest] = std::minmax_element(forces.begin(), forces.end());
-      for (int i = 1; i < 50; ++i) {
-        const double force = load.at(step.at(step.length() * i / 50.0)).force_z;
-        beyond = std::max({beyond, force - *greatest, *least - force});
-      }
-    });
-    EXPECT_GT(blows, 8U);
-    EXPECT_LT(beyond, 3e-4 * kPeak) << rate;  // the cubic's extreme is some 1 % of 1.25 ms off
-  }
-}
 
 /// Speeds through a low-pass, stamps that jitter but keep their order: a filter that trusts both is led astray, and
 /// what lies between two of its samples may be of neither.
@@ -80,7 +44,7 @@ simulation::Session disturbed(double lag, double jitter, unsigned seed) {
 }
 
 TEST(LoadCycles, NothingIsCountedFarBeyondWhatIsPublished) {
-  for (const auto& [lag, jitter, seed] : {std::tuple{0.01, 1e-3, 1U}, {0.01, 1e-3, 2U}, {5e-3, 3e-4, 3U}}) {
+  for (const auto& [lag, jitter, seed] : {std::tuple{0.01, 1e-3, 1U}, {5e-3, 3e-4, 3U}}) {
     std::array<double, kHullChannels> least, greatest, values;
     least.fill(0.0);
     greatest.fill(0.0);

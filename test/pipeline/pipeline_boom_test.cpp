@@ -2,13 +2,9 @@
 /// it when joint states or crank samples fail.
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <cstdio>
-
 #include "support/constants.h"
 #include "support/counting_new.h"
 #include "support/session_player.h"
-#include "support/wall_clock.h"
 
 namespace hammer_loads {
 namespace {
@@ -56,46 +52,6 @@ TEST(PipelineWithBoom, AllocatesNothingPerSample) {
     EXPECT_TRUE(player.pipeline.boom()->state().choice.judged) << motion;
     EXPECT_TRUE(std::isfinite(sum)) << motion;
   }
-}
-
-/// Time per sample at work [us]: least and mean over batches of some two turns, whose verdicts are part of the cost.
-struct Cost {
-  double least{1e9}, mean{};
-};
-
-Cost costOf(const Settings& settings, bool with_boom) {
-  constexpr double kBatch = 0.5;
-  Cost cost;
-  int batches = 0;
-  for (int run = 0; run < 4; ++run) {
-    Player player(settings, with_boom);
-    double sum = 0.0;
-    const Everything everything{player.pipeline, sum};
-    player.playTo(kSessionWorks, everything);
-    for (double end = kSessionWorks + kBatch; end <= kSessionEnd; end += kBatch, ++batches) {
-      const std::uint64_t before = player.pipeline.counts().accepted;
-      const auto start = std::chrono::steady_clock::now();
-      player.playTo(end, everything);
-      const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - start;
-      const double each = spent.count() / static_cast<double>(player.pipeline.counts().accepted - before);
-      cost.least = std::min(cost.least, each);
-      cost.mean += each;
-    }
-    EXPECT_TRUE(std::isfinite(sum));
-  }
-  cost.mean /= batches;
-  return cost;
-}
-
-TEST(PipelineWithBoom, CostsAFewMicrosecondsASample) {
-  const Settings settings = settingsWith("boom: compliant\nhull_motion: model\n");
-  const Cost with = costOf(settings, true), without = costOf(settings, false);
-  std::printf("us per sample, least and mean: without boom %.2f %.2f, with everything %.2f %.2f\n", without.least,
-              without.mean, with.least, with.mean);
-  RecordProperty("with_boom_least_us", format("%.2f", with.least));
-  RecordProperty("without_boom_least_us", format("%.2f", without.least));
-  // Some 3 us on an idle core: the bound leaves room for one that is shared.
-  test::expectTimeWithin(with.least, 15.0, "[us] a sample with everything");
 }
 
 /// The description's hull mass includes the moving links: what they weigh must not load the joints twice.

@@ -69,7 +69,7 @@ void everywhere(const std::function<void(double)>& at) {
 TEST(SensorFault, CausesNoLargeErrorForAnAngleThatStandsStillWhileTheSpeedGoesOn) {
   for (const double rate : {1000.0, 200.0}) {
     const Session session = record(rate);
-    for (const double length : {0.003, 0.01, 0.03, 0.1}) {
+    for (const double length : {0.003, 0.02, 0.1}) {
       everywhere([&](double begin) {
         std::optional<double> held;
         const Result result = play(session, [&](double time, CrankSample& sample) {
@@ -88,7 +88,7 @@ TEST(SensorFault, CausesNoLargeErrorForAnAngleThatStandsStillWhileTheSpeedGoesOn
 TEST(SensorFault, LosesOneSampleToAnAngleFarOff) {
   const Session session = record(1000.0);
   for (const bool with_speed : {true, false}) {
-    for (const double off : {0.03, 0.05, 0.1, 0.3, -0.03, -0.05, -0.1, -0.3}) {
+    for (const double off : {0.03, 0.1, -0.05, -0.3}) {
       everywhere([&](double begin) {
         bool done = false;
         const Result result = play(session, [&](double time, CrankSample& sample) {

@@ -81,25 +81,6 @@ TEST(SensorWarnings, MachinesWithoutAFlawRaiseNone) {
   }
 }
 
-TEST(SensorWarnings, AZeroThatIsOffIsNamedWithItsSizeAndPartOfTheDeviations) {
-  for (const double off : {0.7, -0.7}) {
-    simulation::MachineSettings s = upright(longMachineAt(500.0, 40));
-    s.crank.zero = off * kDegree;
-    const Heard heard = hear(s);
-    ASSERT_EQ(heard.keys, "zero;") << off;
-    const std::string& text = heard.warnings.front().text;
-    const double named = std::stod(text.substr(text.find("came at ") + 8));
-    EXPECT_NEAR(named, s.crank.zero, 0.25 * kDegree) << text;
-    EXPECT_GT(heard.covered, 0.88);  // without it less than half
-  }
-}
-
-TEST(SensorWarnings, AnEccentricEncoderIsNamed) {
-  simulation::MachineSettings s = upright(longMachineAt(500.0, 41));
-  s.crank.eccentricity[0] = {1.2 * kDegree, 0.7};
-  EXPECT_EQ(hear(s).keys, "eccentricity;");
-}
-
 TEST(SensorWarnings, JitterAndStampsThatRepeatAreNamed) {
   simulation::MachineSettings s = upright(longMachineAt(500.0, 42));
   s.crank.stamp_noise = 3e-4;
