@@ -16,7 +16,8 @@ target_compile_definitions(bench_test PRIVATE HAMMER_LOADS_ACCURACY="$<TARGET_FI
 add_dependencies(bench_test accuracy)
 
 # What measures time or takes millions of steps.
-foreach(test property/random_machines property/garbage_machines grapple/speed grapple/branch_property hammer/batch)
+foreach(test property/random_machines property/garbage_machines grapple/speed grapple/branch_property hammer/batch
+             pipeline/unknown_force)
   set(source ${CMAKE_CURRENT_LIST_DIR}/${test}_test.cpp)
   set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS -O3)
   set_property(SOURCE ${source} PROPERTY SKIP_PRECOMPILE_HEADERS ON)  # with those of another optimisation GCC 10 fails

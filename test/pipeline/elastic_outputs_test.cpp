@@ -6,10 +6,9 @@
 
 #include "hammer_loads/bench/figure_errors.h"
 #include "hammer_loads/bench/scene_table.h"
-#include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
-#include "pipeline/machine_with_rod.h"
+#include "pipeline/shipped_machine.h"
 
 namespace hammer_loads {
 namespace {
@@ -26,13 +25,14 @@ TEST(ElasticOutputs, MeansContainTheVibration) {
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
     const accuracy::ElasticKind kind{"", test::machineOfOutputs(rod, ++seed)};
     SCOPED_TRACE(rod.stiffness);
-    const accuracy::SceneRow elastic = accuracy::sceneRow(test::shippedDrawing(), kind, Level::kElastic);
-    for (const auto& component : elastic.slow) {
+    for (const auto& component : accuracy::sceneRow(test::shippedDrawing(), kind, Level::kElastic).slow) {
       EXPECT_LT(component.rms, 0.004);
       EXPECT_GT(component.covered, 0.88);
     }
-    EXPECT_GT(accuracy::sceneRow(test::shippedDrawing(), kind, Level::kLinkage).slow[1].rms, 0.012);
   }
+  const accuracy::ElasticKind kind{"", test::machineOfOutputs({6e8, 0.35, 0.0}, 811)};
+  EXPECT_GT(accuracy::sceneRow(test::shippedDrawing(), kind, Level::kLinkage).slow[1].rms, 0.012)
+      << "the flaw is there";
 }
 
 struct SumOfMeans {
@@ -42,11 +42,7 @@ struct SumOfMeans {
 };
 
 SumOfMeans sumOfMeans(const simulation::Session& session, double rate) {
-  PipelineSettings settings = test::shippedDrawing().pipeline;
-  settings.level = Level::kElastic;
-  settings.output = OutputKind::kMean;
-  settings.output_rate = rate;
-  accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+  accuracy::SessionPlayer player = test::shippedPlayer(session, Level::kElastic, OutputKind::kMean, rate);
   const StampNs first = session.crank.front().stamp;
   SumOfMeans sum;
   player.playTo(12.0, [&](double, const SampleResult& result) {
@@ -80,10 +76,7 @@ TEST(ElasticOutputs, TakeTheRodAsASpringBetweenSamplesToo) {
   const simulation::MachineSettings machine = test::machineOfOutputs({8e8, 0.3, 0.0}, 831);
   const simulation::Session session = simulation::recordSession(machine);
   const auto ringErrors = [&](Level level) {
-    PipelineSettings settings = test::shippedDrawing().pipeline;
-    settings.level = level;
-    settings.output_rate = 2300.0;
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player = test::shippedPlayer(session, level, OutputKind::kInstantaneous, 2300.0);
     std::vector<WrenchOutput> outputs;
     std::vector<double> times;
     player.playTo(10.0, [&](double, const SampleResult& result) {
@@ -123,9 +116,7 @@ TEST(ElasticOutputs, PinForcesContainTheVibration) {
     double size{};  ///< of the ring's force, squares [N2]
   };
   const auto errorsOf = [&](Level level) {
-    PipelineSettings settings = test::shippedDrawing().pipeline;
-    settings.level = level;
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player = test::shippedPlayer(session, level);
     Errors errors;
     std::size_t sample = 0;
     player.playTo(10.0, [&](double time, const SampleResult& result) {
@@ -153,9 +144,7 @@ TEST(ElasticOutputs, PinForcesContainTheVibration) {
 TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
   const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.3, 0.0}, 861));
   const auto errorOf = [&](Level level) {
-    PipelineSettings settings = test::shippedDrawing().pipeline;
-    settings.level = level;
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player = test::shippedPlayer(session, level);
     accuracy::FigureErrors speed;
     std::size_t sample = 0;
     player.playTo(10.0, [&](double time, const SampleResult& result) {
@@ -172,9 +161,7 @@ TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
 
 accuracy::FigureErrors peaksOf(const simulation::MachineSettings& machine, Level level, double& largest) {
   const simulation::Session session = simulation::recordSession(machine);
-  PipelineSettings settings = test::shippedDrawing().pipeline;
-  settings.level = level;
-  accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+  accuracy::SessionPlayer player = test::shippedPlayer(session, level);
   accuracy::FigureErrors peak;
   player.playTo(11.0, [&](double time, const SampleResult& result) {
     for (std::size_t i = 0; i < result.turn_ends && time > 4.0; ++i) {
@@ -230,9 +217,7 @@ TEST(ElasticOutputs, ABlowThatNothingExplainsHasAnyRestitution) {
     machine.strike.retainer_stiffness = 5e7, machine.strike.retainer_damping = 0.1;
     machine.strike.no_tool_from = 5.0, machine.strike.no_tool_to = 9.0;
     const simulation::Session session = simulation::recordSession(machine);
-    PipelineSettings settings = test::shippedDrawing().pipeline;
-    settings.level = Level::kElastic;
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player = test::shippedPlayer(session, Level::kElastic);
     accuracy::FigureErrors restitution, impulse;
     player.playTo(12.0, [&](double time, const SampleResult& result) {
       for (std::size_t i = 0; i < result.turn_ends && time > 5.2; ++i) {

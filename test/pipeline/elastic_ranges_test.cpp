@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "hammer_loads/bench/elastic_table.h"
-#include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/life/damage.h"
 #include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/pipeline/life_follower.h"
-#include "pipeline/machine_with_rod.h"
+#include "pipeline/shipped_machine.h"
 #include "support/counting_new.h"
 
 namespace hammer_loads {
@@ -27,9 +26,7 @@ TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
     simulation::MachineSettings machine = test::machineOfOutputs(rod, ++seed);
     machine.crank.rate = 200.0;
     const simulation::Session session = simulation::recordSession(machine);
-    PipelineSettings settings = test::shippedDrawing().pipeline;
-    settings.level = Level::kElastic;
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player = test::shippedPlayer(session, Level::kElastic);
     life::LifeSettings counted;
     counted.channels = {{"hull_wrench/force_z", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
     counted.period = 1;
@@ -70,9 +67,7 @@ TEST(ElasticRanges, ALoadInFrontOfABlowIsMoreCertainThanThoseBehindIt) {
   const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.25, 0.0}, 890));
   for (const Level level : {Level::kLinkage, Level::kElastic}) {
     SCOPED_TRACE(nameOf(level));
-    PipelineSettings settings = test::shippedDrawing().pipeline;
-    settings.level = level;
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player = test::shippedPlayer(session, level);
     LifeFollower follower(player.pipeline, {});
     std::vector<std::pair<StampNs, double>> samples;  // own deviations of Fx [N]
     int turns = 0;
@@ -112,17 +107,6 @@ TEST(ElasticRanges, ImpactsInWornPinsAreCountedByTheirSizeNotByTheirMoment) {
     mean += life.error / static_cast<double>(std::size(kSeeds));
   }
   EXPECT_LT(std::abs(mean), 0.2);
-}
-
-TEST(ElasticRanges, AVibrationOfUnknownPhaseHasItsCrestAtAnExtreme) {
-  SampleResult sample;
-  sample.deviation.wrench = {5.0, 50.0, 0.5};
-  sample.rod_ring = {3.0, 30.0, 0.4};
-  EXPECT_NEAR(sample.ofExtreme().ring.force_z, 30.0 * std::sqrt(2.0), 1e-12);
-  EXPECT_NEAR(sample.ofExtreme().deviation.force_z, std::hypot(40.0, 30.0 * std::sqrt(2.0)), 1e-12);
-  sample.rod_followed = true;
-  EXPECT_EQ(sample.ofExtreme().ring.force_z, 30.0);
-  EXPECT_EQ(sample.ofExtreme().deviation.force_z, 50.0);
 }
 
 /// Of a level without the spring an extreme is that of a ring whose phase is not known: its crest.

@@ -4,9 +4,8 @@
 #include <algorithm>
 
 #include "hammer_loads/bench/elastic_table.h"
-#include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/bench/session_run.h"
-#include "pipeline/machine_with_rod.h"
+#include "pipeline/shipped_machine.h"
 #include "support/counting_new.h"
 #include "support/csv.h"
 #include "support/mo100.h"
@@ -18,8 +17,9 @@ accuracy::ElasticErrors rodErrors(const simulation::MachineSettings& machine, Le
   return accuracy::elasticErrors(test::shippedDrawing(), {"", machine}, level);
 }
 
-/// Issue: 0.40 of the truth, the whole turn 3.5 %. The rigid level shows that the flaw is there.
+/// Issue: 0.40 of the truth, the whole turn 3.5 %. The rigid level shows once that the flaw is there.
 TEST(ElasticSession, PublishesTheVibrationAfterTheBlow) {
+  EXPECT_GT(rodErrors(test::machineWithRod({6e8, 0.35, 0.0}, 701), Level::kLinkage).after.rms[1], 0.6);
   std::uint64_t seed = 700;
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
@@ -29,7 +29,6 @@ TEST(ElasticSession, PublishesTheVibrationAfterTheBlow) {
     EXPECT_LT(e.after.rms[1], 0.25);
     EXPECT_GT(e.after.covered[1], 0.85);
     EXPECT_LT(e.whole.rms[1], 0.035);
-    EXPECT_GT(rodErrors(machine, Level::kLinkage).after.rms[1], 0.6);
   }
 }
 
@@ -130,12 +129,10 @@ TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
   simulation::MachineSettings machine = test::machineWithRod({8e8, 0.3, 0.0}, 730);
   machine.duration = 6.0;
   const simulation::Session session = simulation::recordSession(machine);
-  PipelineSettings pipeline = test::shippedDrawing().pipeline;
-  pipeline.level = Level::kElastic;
   const auto play = [&] {
     std::vector<double> forces;
     forces.reserve(session.crank.size());
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, pipeline, {}, session);
+    accuracy::SessionPlayer player = test::shippedPlayer(session, Level::kElastic);
     bool ran = false;
     std::size_t allocated = 0, before = test::allocations;
     player.playTo(100.0, [&](double, const SampleResult& r) {
