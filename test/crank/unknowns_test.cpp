@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <functional>
 
 #include "hammer_loads/crank/crank_filter.h"
@@ -93,17 +92,6 @@ TEST(Unknowns, ConsideredLatencyIsInTheDeviation) {
                of_exact = std::sqrt(exact.filter.uncertainty(1.0).covariance()(0, 0));
   EXPECT_NEAR(std::sqrt(square(of_said) - square(of_exact)), error, 0.1 * error);
   EXPECT_EQ(said.filter.state().speed, exact.filter.state().speed);  // considered, not corrected
-}
-
-TEST(Unknowns, ObservedOnesComeFirstAndAreNamedInAWarning) {
-  for (std::size_t i = 0; i < kUnknowns.size(); ++i) {
-    const Unknown& u = kUnknowns[i];
-    EXPECT_EQ(u.use == Unknown::Use::kSeen, static_cast<int>(i) < ConstantErrors::kPlace) << u.name;
-    EXPECT_EQ(u.use == Unknown::Use::kSeen, u.warning != nullptr) << u.name;
-    EXPECT_GE(u.prior, 0.0);
-    EXPECT_TRUE(u.warning == nullptr || u.warning(0.02, 0.01).find(u.key) != std::string::npos) << u.name;
-    EXPECT_TRUE(u.use == Unknown::Use::kConsidered || u.prior > 0.0) << u.name;
-  }
 }
 
 }  // namespace

@@ -60,19 +60,6 @@ TEST(EquivalentLoad, HasAValueForNoCyclesAndForExtremeOnes) {
   EXPECT_NEAR(equivalentLoad({{1e-200, 0.0, 1.0}}, 10.0, 1.0, kNone).value / 1e-200, 1.0, 1e-14);
 }
 
-TEST(EquivalentLoad, DeviationIsTheDerivativeWithRespectToAllRanges) {
-  const double h = 1e-6, deviation = 0.3;
-  std::vector<RangeMean> more = kFigure6, less = kFigure6;
-  for (RangeMean& c : more) c.range += h;
-  for (RangeMean& c : less) c.range -= h;
-  for (const double slope : {3.0, 10.0}) {
-    const double slope_of_value =
-        (equivalentLoad(more, slope, 3.0, kNone).value - equivalentLoad(less, slope, 3.0, kNone).value) / (2.0 * h);
-    EXPECT_NEAR(equivalentLoad(kFigure6, slope, 3.0, {deviation, 0.0, kNaN}).deviation, deviation * slope_of_value,
-                1e-8);
-  }
-}
-
 Series twoSines() {
   const int n = 200000;
   Series series(n);
@@ -141,18 +128,22 @@ TEST(Damage, TwoSlopesMeetAtTheKnee) {
   EXPECT_EQ(SnCurve::make(kNaN, -1.0, 0.0, -1.0).problems.size(), 4U);
 }
 
-TEST(Damage, DeviationIsTheDerivativeWithRespectToAllRanges) {
+TEST(Damage, DeviationIsTheDerivativeWithRespectToAllRangesAsThatOfTheEquivalentLoad) {
   const SnCurve curve = SnCurve::make(5.0, 1e7, 3.0, 5.0).value.value();
   const double h = 1e-6, deviation = 0.2;
   const std::vector<RangeMean> cycles{{3, -20, 4}, {4, 0, 7}, {6, 7, 2}, {8, 1, 1}, {9, 40, 3}};
-  for (const std::optional<FkmMeanStress>& mean : {std::optional<FkmMeanStress>{}, std::optional(FkmMeanStress{0.3})}) {
+  const auto expectDerivative = [&](const auto& figureOf) {
     std::vector<RangeMean> more = cycles, less = cycles;
     for (RangeMean& c : more) c.range += h;
     for (RangeMean& c : less) c.range -= h;
-    const double derivative =
-        (damage(more, curve, mean, kNone).value - damage(less, curve, mean, kNone).value) / (2.0 * h);
-    EXPECT_NEAR(damage(cycles, curve, mean, {deviation, 0.0, kNaN}).deviation / (deviation * derivative), 1.0, 1e-8);
-  }
+    const double derivative = (figureOf(more, kNone).value - figureOf(less, kNone).value) / (2.0 * h);
+    EXPECT_NEAR(figureOf(cycles, {deviation, 0.0, kNaN}).deviation / (deviation * derivative), 1.0, 1e-8);
+  };
+  using Cycles = std::vector<RangeMean>;
+  for (const auto& mean : {std::optional<FkmMeanStress>{}, std::optional(FkmMeanStress{0.3})})
+    expectDerivative([&](const Cycles& c, const RangeDeviation& of) { return damage(c, curve, mean, of); });
+  for (const double slope : {3.0, 10.0})
+    expectDerivative([&](const Cycles& c, const RangeDeviation& of) { return equivalentLoad(c, slope, 3.0, of); });
 }
 
 TEST(Damage, APartOfAllRangesIsTheSamePartOfTheEquivalentAndSlopesTimesThatOfTheDamage) {

@@ -139,31 +139,5 @@ TEST(LifeRecorder, TimeIsThatBetweenSamplesWithoutGaps) {
   EXPECT_EQ(duration, 6U * kSecond);
 }
 
-TEST(LifeRecorder, PiecesOfOneRunGiveItsCount) {
-  LifeRecorder whole = LifeRecorder::make(settings(), kInputs).value.value();
-  LifeRecorder pieces = LifeRecorder::make(settings(), kInputs).value.value();
-  std::mt19937 random(2);
-  std::normal_distribution<double> load(0.0, 300.0);
-  std::optional<LifePiece> sum;
-  for (int i = 0; i < 20000; ++i) {
-    const double values[] = {load(random), load(random), load(random)}, deviations[] = {1.0, 0.01 * i, 2.0};
-    for (LifeRecorder* recorder : {&whole, &pieces}) recorder->sample(i, values, deviations);
-    if (random() % 300 != 0) continue;
-    pieces.turn();
-    whole.turn();
-    const LifePiece piece = pieces.take();
-    if (sum) {
-      sum->advance(piece);
-    } else {
-      sum = piece;
-    }
-  }
-  sum->advance(pieces.take());
-  const LifePiece all = whole.take();
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(textOf(sum->counts[i]), textOf(all.counts[i]));
-  EXPECT_EQ(sum->duration, all.duration);
-  EXPECT_EQ(sum->turns, all.turns);
-}
-
 }  // namespace
 }  // namespace hammer_loads::life

@@ -67,12 +67,10 @@ TEST(BendingLinks, AreInTheDeviationsOfAnImuAlone) {
   double worst = 0.0;
   const std::array<test::Pose, 2> poses{{{-0.45, 1.00, -0.50}, {-0.70, 1.55, -0.75}}};
   for (const test::Pose& pose : poses) {
-    for (const double frequency : {14.0, 19.0}) {
-      const BoomErrors e = byImuAlone(1.2, pose, frequency);
-      EXPECT_GT(e.covered(), 0.88) << pose[0] << ' ' << frequency;
-      EXPECT_GT(e.sectionsCovered(), 0.75) << pose[0] << ' ' << frequency;
-      worst = std::max(worst, e.worstTorque());
-    }
+    const BoomErrors e = byImuAlone(1.2, pose, 14.0);
+    EXPECT_GT(e.covered(), 0.88) << pose[0];
+    EXPECT_GT(e.sectionsCovered(), 0.75) << pose[0];
+    worst = std::max(worst, e.worstTorque());
     const BoomErrors rigid = byImuAlone(1.2, pose, 0.0);
     EXPECT_LT(rigid.worstTorque(), 0.02);
     EXPECT_GT(rigid.covered(), 0.95);

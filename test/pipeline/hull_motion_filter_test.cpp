@@ -102,8 +102,7 @@ TEST(HullMotionFilter, APlaceThatIsOffIsInTheDeviation) {
     return mean;
   };
   EXPECT_LT(meanCover(0.0), 0.75);
-  EXPECT_LT(meanCover(0.008), 0.9) << "three to five deviations off";
-  EXPECT_GT(meanCover(0.03), 0.95) << "one";
+  EXPECT_GT(meanCover(0.03), 0.95) << "one deviation off";
 }
 
 /// Until a blow has shown how the hull yields: learned from a run-up alone it is half of what it is, 4.7 to 5.9 % of

@@ -63,7 +63,7 @@ Result play(const Session& session, const Fault& fault) {
 
 /// Every place of the turn in steps that no period of the machine divides.
 void everywhere(const std::function<void(double)>& at) {
-  for (double begin = kFrom; begin < kFrom + kTurn; begin += 0.0103) at(begin);
+  for (double begin = kFrom; begin < kFrom + kTurn; begin += 0.0203) at(begin);
 }
 
 TEST(SensorFault, CausesNoLargeErrorForAnAngleThatStandsStillWhileTheSpeedGoesOn) {

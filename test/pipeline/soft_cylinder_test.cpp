@@ -90,7 +90,7 @@ TEST(SoftCylinder, IsNamedByWhatTheBoomFileAllowsFor) {
 TEST(SoftCylinder, HasTheUncertaintyOfDampingBesideTheOil) {
   const std::array<double, 3> oil{1.0, 1.0, 2.2};
   int within = 0, all = 0;
-  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+  for (const unsigned seed : {1U, 2U}) {
     for (const double friction : {0.0, 0.05}) {
       simulation::MachineSettings machine = drawnMachine(seed, oil);
       machine.on_boom.seals.friction = friction;

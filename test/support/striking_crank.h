@@ -30,11 +30,9 @@ class StrikingCrank {
   double angle() const { return offset_ + (turns_ * kTwoPi); }  ///< unwound [rad]
   double speed() const { return speed_; }
   double acceleration() const { return rate(offset_, speed_); }
-  CrankAngle crankAngle() const { return {offset_, before_ ? Side::kBeforeBlow : Side::kAfterBlow}; }
   int blows() const { return blows_; }
   double time() const { return time_; }
   double blowTime() const { return blow_time_; }
-  double speedBefore() const { return speed_before_; }
 
  private:
   double ratio(double offset) const {
@@ -54,7 +52,6 @@ class StrikingCrank {
     offset_ += dt * mid;
     time_ += dt;
     if (before_ && !struck_ && next.contact && was < -next.early && offset_ >= -next.early) {
-      speed_before_ = speed_;
       speed_ *= next.factor;
       blow_time_ = time_;
       struck_ = true;
@@ -74,7 +71,7 @@ class StrikingCrank {
 
   const CrankRocker* linkage_;
   double rocker_, drive_;
-  double offset_{0.5}, speed_{20.0}, time_{}, blow_time_{}, speed_before_{};
+  double offset_{0.5}, speed_{20.0}, time_{}, blow_time_{};
   int turns_{}, blows_{}, misses_{};
   int coming_{-1};
   Blow next_;
