@@ -229,9 +229,9 @@ TEST(InputAttack, SurvivesAnyAnglesOfTheBoom) {
       const std::uint64_t accepted = victim.accepted();
       ASSERT_GT(accepted, 900u);
       victim.boom(attack.names, attack.angles);
+      EXPECT_TRUE(std::isfinite(victim.pipeline().hull().pitch().pitch()));
       victim.work(kAttack, kSoundFrom, [&](const CrankReading& r) { victim.good(r); });
       EXPECT_GT(victim.accepted(), accepted + 90u) << "the crank goes on";
-      EXPECT_TRUE(std::isfinite(victim.pipeline().hull().pitch().pitch()));
       victim.forgetErrors();
       victim.work(kSoundFrom, kUntil);
       EXPECT_TRUE(victim.finite());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/bench/session_errors.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
@@ -45,34 +46,20 @@ SensorJudged judgeSensor(const simulation::MachineSettings& machine, CrankStamps
   settings.pipeline.crank_stamps = stamps;
   const simulation::Session session = simulation::recordSession(machine);
   Pipeline pipeline(settings.mechanism, settings.pipeline);
-  std::vector<HullWrench> found, deviations;
+  std::vector<accuracy::WrenchAt> found, right;
   std::vector<double> times;
   for (const simulation::CrankReading& reading : session.crank) {
     const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     const double time = 1e-9 * static_cast<double>(result.stamp - machine.start_stamp);
     if (!result.isPublished() || time < from) continue;
     times.push_back(time);
-    found.push_back(result.outputs.front().wrench);
-    deviations.push_back(result.outputs.front().deviation.wrench);
+    const HullWrench &w = result.outputs.front().wrench, &d = result.outputs.front().deviation.wrench;
+    found.push_back({time, w.force_x, w.force_z, w.torque_y, d.force_x, d.force_z, d.torque_y});
   }
-  const std::vector<simulation::CrankTruth> truth = simulation::truthAt(machine, times);
-  SensorJudged judged;
-  Eigen::Array3d square = Eigen::Array3d::Zero(), peak = square, covered = square;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const simulation::CrankTruth& t = truth[i];
-    const Eigen::Array3d is{t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
-    const Eigen::Array3d error = Eigen::Array3d(found[i].force_x, found[i].force_z, found[i].torque_y) - is;
-    const HullWrench& d = deviations[i];
-    peak = peak.max(is.abs());
-    square += error.square();
-    covered += (error.abs() <= 2.0 * Eigen::Array3d(d.force_x, d.force_z, d.torque_y)).cast<double>();
-  }
-  const auto count = static_cast<double>(truth.size());
-  const Eigen::Array3d rms = (square / count).sqrt() / peak;
-  judged.x = rms[0], judged.z = rms[1], judged.torque = rms[2];
-  judged.covered = covered.minCoeff() / count;
-  judged.warnings = warningsOf(pipeline);
-  return judged;
+  for (const simulation::CrankTruth& t : simulation::truthAt(machine, times))
+    right.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y});
+  const accuracy::SessionErrors e = accuracy::sessionErrors(found, right, {}, {}, {from, kInfinity, {}});
+  return {e.rms_x, e.rms_z, e.rms_torque, std::min({e.covered_x, e.covered_z, e.covered_torque}), warningsOf(pipeline)};
 }
 
 double namedAfter(const std::string& text, const std::string& words) {
