@@ -79,7 +79,6 @@ TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {
   const BoomErrors imu = errorsOf("imu", session, kIdentified, {true, false});
   EXPECT_NEAR(imu.frequency / frequency, 1.0, 0.03);
   expectAsTheTruth(imu, "imu");
-  expectAsTheTruth(errorsOf("hull by imu", session, kByImu, {true, false}), "hull by imu");
   const BoomErrors pressures = errorsOf("pressures", session, kIdentified, {false, true});
   EXPECT_NEAR(pressures.frequency / frequency, 1.0, 0.03);
   expectAsTheTruth(pressures, "pressures");
@@ -178,8 +177,7 @@ TEST_P(HardPose, ReadingsShowTheMotion) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OnBoomSession, HardPose,
-                         testing::Values(OilAtPose{1.0, {-0.44, 1.92, -1.07}}, OilAtPose{0.7, {-0.10, 1.77, -1.75}},
-                                         OilAtPose{1.4, {-0.32, 1.16, -0.79}}, OilAtPose{1.4, {-0.51, 0.52, 0.05}},
+                         testing::Values(OilAtPose{1.0, {-0.44, 1.92, -1.07}}, OilAtPose{1.4, {-0.51, 0.52, 0.05}},
                                          OilAtPose{1.4, {0.12, 1.85, -1.84}}));
 
 /// Its own acceleration hides the vibration from all sensors but pressures: then nothing is learned from them.

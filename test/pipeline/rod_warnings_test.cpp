@@ -46,7 +46,7 @@ bool names(const std::string& text, const char* what) { return text.find(what) !
 
 TEST(RodWarnings, ACorrectSensorIsNotBlamedForAnElasticRod) {
   std::mt19937_64 random(4301);
-  for (std::uint64_t i = 0; i < 8; ++i) {
+  for (std::uint64_t i = 0; i < 6; ++i) {
     const simulation::MachineSettings machine = drawnMachine(random, 4300 + i);
     const std::string text = heardOf(machine, i % 2 == 0 ? Level::kLinkage : Level::kElastic);
     SCOPED_TRACE(testing::Message() << machine.rod.stiffness << " N/m, " << machine.rod.damping_ratio << ", "
@@ -88,7 +88,7 @@ TEST(RodWarnings, ReportsNoCauseThatHasPassed) {
 TEST(RodWarnings, ACorrectSensorIsNotBlamedForCoarseOrRareReadings) {
   std::mt19937_64 random(4302);
   int lost_most = 0;
-  for (std::uint64_t i = 0; i < 6; ++i) {
+  for (std::uint64_t i = 0; i < 4; ++i) {
     simulation::MachineSettings machine = drawnMachine(random, 4330 + i);
     const double rates[] = {1000.0, 500.0, 200.0};
     machine.crank.rate = rates[i % 3];

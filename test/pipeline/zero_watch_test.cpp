@@ -173,7 +173,7 @@ TEST(ZeroWatch, PublishesNothingThatIsImpossibleByItsDeviationFromTheStartOn) {
                  elastic = test::settingsWith("level: elastic\n" + kUnknownZero);
   constexpr std::uint64_t kFirst = 990000;
   std::size_t wrong = 0;
-  for (std::uint64_t seed = kFirst; seed < kFirst + 16; ++seed) {
+  for (std::uint64_t seed = kFirst; seed < kFirst + 12; ++seed) {
     const DrawnMachine drawn = drawMachine(rigid, seed, 10.0 * kDegree, 5.0);
     const simulation::Session session = simulation::recordSession(drawn.machine);
     const ZeroPlayed played = playZero(drawn.elastic ? elastic : rigid, session,
