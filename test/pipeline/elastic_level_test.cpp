@@ -70,12 +70,7 @@ struct FarFromBlow {
 };
 
 /// From 60 deg behind the blow to 60 deg before the next, after 3 s. Wrong: by more than 2 kN and four deviations.
-FarFromBlow farFromBlow(std::uint64_t seed) {
-  simulation::MachineSettings machine = test::machineWithRod({6e8, 0.6, 0.0}, seed);
-  machine.duration = 8.0;
-  machine.drive.stop_time = 20.0;
-  machine.blow.blank_share = 0.2;
-  machine.crank.rate = 2000.0;
+FarFromBlow farFromBlow(const simulation::MachineSettings& machine) {
   const simulation::Session session = simulation::recordSession(machine);
   FarFromBlow counted;
   std::size_t i = 0;
@@ -97,13 +92,28 @@ FarFromBlow farFromBlow(std::uint64_t seed) {
 TEST(BlankStrokes, OneThatIsMissedIsFoundByTheTorque) {
   int published = 0, withheld = 0;
   for (const std::uint64_t seed : {1, 2, 10, 11, 12, 14}) {
-    const FarFromBlow counted = farFromBlow(seed);
+    simulation::MachineSettings machine = test::machineWithRod({6e8, 0.6, 0.0}, seed);
+    machine.duration = 8.0;
+    machine.drive.stop_time = 20.0;
+    machine.blow.blank_share = 0.2;
+    machine.crank.rate = 2000.0;
+    const FarFromBlow counted = farFromBlow(machine);
     EXPECT_EQ(counted.wrong, 0) << seed;
     published += counted.published;
     withheld += counted.withheld;
   }
   EXPECT_GT(published, 30000);
   EXPECT_LT(20 * withheld, published);
+}
+
+/// A long ring looks like the torque of a stroke without tool: one stroke of 50 is taken for that, by up to 5 kN. Its
+/// deviation leaves the question open.
+TEST(BlankStrokes, ARodThatRingsLongLeavesTheBranchOpen) {
+  simulation::MachineSettings machine = test::machineWithRod({5e8, 0.15, 0.0}, 4002);
+  machine.crank.counts = 20000;
+  const FarFromBlow counted = farFromBlow(machine);
+  EXPECT_EQ(counted.wrong, 0);
+  EXPECT_GT(counted.published, 4800);
 }
 
 }  // namespace
