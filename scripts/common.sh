@@ -94,7 +94,7 @@ configure() {
   [ -e "$build_dir/CMakeCache.txt" ] || generator=(-G Ninja)
   log=$(mktemp)
   cmake -S "$root_dir" -B "$build_dir" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release \
-    -DHAMMER_LOADS_PRECOMPILE=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=30 \
+    -DHAMMER_LOADS_PRECOMPILE=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=100 \
     "${cmake_options[@]}" > "$log" 2>&1 || {
     cat "$log" >&2
     rm -f "$log"

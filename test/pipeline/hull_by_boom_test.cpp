@@ -6,7 +6,7 @@ namespace hammer_loads {
 namespace {
 
 using accuracy::BoomErrors;
-constexpr double kFrom = 4.0, kTo = 8.0;  ///< [s]: what is judged without pressures
+constexpr double kJudgedFrom = 4.0, kJudgedTo = 8.0;  ///< [s]: what is judged without pressures
 
 /// Hammer and level as the truth has them: what is off is the hull's motion.
 BoomErrors byPressuresAlone(const simulation::MachineSettings& machine, const char* name) {
@@ -48,10 +48,10 @@ std::array<double, 2> coveredWithoutSensors(const std::string& keys, double oil)
   std::array<double, 2> covered{};
   for (const test::Pose& pose : kPoses) {
     simulation::MachineSettings machine = test::machineOnBoom(oil, 100.0, pose);
-    machine.duration = kTo;
+    machine.duration = kJudgedTo;
     const simulation::Session session = simulation::recordSession(machine);
-    const BoomErrors e =
-        accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, {}, kFrom, kTo);
+    const BoomErrors e = accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, {},
+                                              kJudgedFrom, kJudgedTo);
     EXPECT_GT(e.rmsForce(), 0.01) << "nothing to doubt";
     for (std::size_t i = 0; i < 2; ++i) covered[i] += e.part(e.wrench_within[i]) / kPoses.size();
   }
@@ -83,10 +83,11 @@ TEST(HullByBoom, DeviationsHoldForAnImuThatIsReadTooRarelyOnRock) {
       simulation::MachineSettings machine = test::machineOnBoom(oil, 100.0, {-0.35, 1.2, -0.9});
       machine.on_boom.rock = {1.5e7 + 2e7 * oil, 3.0, 4e3};
       machine.on_boom.imu.rate = rate;
-      machine.duration = kTo;
+      machine.duration = kJudgedTo;
       const Settings settings = test::withExactHammer(test::settingsWith("level: rocker\nhull_motion: imu\n"));
-      const BoomErrors e = accuracy::boomErrors(simulation::recordSession(machine), settings.mechanism,
-                                                settings.pipeline, *settings.boom, {true, false}, kFrom, kTo);
+      const BoomErrors e =
+          accuracy::boomErrors(simulation::recordSession(machine), settings.mechanism, settings.pipeline,
+                               *settings.boom, {true, false}, kJudgedFrom, kJudgedTo);
       EXPECT_LT(e.worstForce(), 0.5) << rate;
       EXPECT_GT(e.leastWrenchCovered(), 0.85) << rate;
     }

@@ -101,8 +101,8 @@ class CrankFilter {
   bool readingShowsSide() const noexcept { return read_side_.has_value(); }
   /// One count of the angle sensor [rad], as far as known.
   double angleResolution() const noexcept { return encoder_.resolution(); }
-  /// Jc: identified inertia that turns with the crank, without the links [kg m2]; 0 for a crank that is held at constant
-  /// speed, whose holding torque is not known.
+  /// Jc: identified inertia that turns with the crank, without the links [kg m2]; 0 for a crank that is held at
+  /// constant speed, whose holding torque is not known.
   double driveInertia() const noexcept {
     return now_.state.drive_inertia < kHeld * first_guess_ ? now_.state.drive_inertia : 0.0;
   }

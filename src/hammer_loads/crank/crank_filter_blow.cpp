@@ -136,8 +136,8 @@ void CrankFilter::beginHypothesis(const CrankBelief& belief) noexcept {
     hypothesis_.begin(belief);
 }
 
-/// (9) The vibration of a rod may pass for the torque that shows a missed tool: the question then stays open to the next
-/// dead centre.
+/// (9) The vibration of a rod may pass for the torque that shows a missed tool: the question then stays open to the
+/// next dead centre.
 double CrankFilter::otherBranch() const noexcept {
   return std::max(hypothesis_.probability(), mirrored_ && rod_hides_branch_ ? kHiddenBranch : 0.0);
 }
