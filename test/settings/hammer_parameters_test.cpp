@@ -3,27 +3,28 @@
 #include <cmath>
 
 #include "hammer_loads/linkage/hammer_constants.h"
-#include "hammer_loads/settings/parameter_reader.h"
 #include "settings/hammer_yaml.h"
-#include "settings/temporary_file.h"
+#include "settings/load_support.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
 namespace {
 
-using Lines = std::vector<std::string>;
 using test::hammerYaml;
+using test::Lines;
 using test::TemporaryFile;
 
 Lines problemsWith(const std::map<std::string, std::string>& altered, const std::string& added = {}) {
-  const TemporaryFile file(hammerYaml(altered) + added);
-  Lines problems = loadFiles(configDirectory(), {file.path()}).problems;
-  for (std::string& line : problems) {  // the file's name is another one in every run
-    const std::size_t place = line.find(" (" + file.path());
-    if (place != std::string::npos) line.erase(place);
-  }
-  return problems;
+  return test::problemsOf(hammerYaml(altered) + added);
 }
+
+/// The shipped hammer and what is added.
+Checked<Settings> loadedWith(const std::string& added) {
+  const TemporaryFile file(hammerYaml() + added);
+  return loadFiles(configDirectory(), {file.path()});
+}
+
+HammerParameters parametersWith(const std::string& added) { return loadedWith(added).value->mechanism.parameters(); }
 
 bool beginsWith(const std::string& text, const std::string& beginning) { return text.rfind(beginning, 0) == 0; }
 
@@ -64,10 +65,6 @@ INSTANTIATE_TEST_SUITE_P(Hammer, EveryHammerKey, testing::ValuesIn(hammerKeys())
                          [](const testing::TestParamInfo<std::string>& key) { return key.param; });
 
 TEST(HammerParameters, StrikingOffsetAndFrictionAreOptional) {
-  const auto parametersWith = [](const std::string& added) {
-    const TemporaryFile file(hammerYaml() + added);
-    return loadFiles(configDirectory(), {file.path()}).value->mechanism.parameters();
-  };
   const HammerParameters absent = parametersWith("");
   EXPECT_EQ(absent.striking_offset, 0.0);
   EXPECT_EQ(absent.striking_friction, 0.0);
@@ -86,10 +83,7 @@ TEST(HammerParameters, StrikingOffsetAndFrictionAreOptional) {
 }
 
 TEST(HammerParameters, DeviationsNotGivenAreTheUsualOnesWithANote) {
-  const TemporaryFile none(hammerYaml()), exact(hammerYaml() + "rocker_mass_std_kg: 0.0\n"),
-      impossible(hammerYaml() + "rocker_mass_std_kg: 50.0\n");
-  const Checked<Settings> usual = loadFiles(configDirectory(), {none.path()});
-  const Checked<Settings> given = loadFiles(configDirectory(), {exact.path()});
+  const Checked<Settings> usual = loadedWith(""), given = loadedWith("rocker_mass_std_kg: 0.0\n");
   ASSERT_TRUE(usual.value && given.value);
   constexpr std::size_t kLength = 0, kMass = 6;  // in the file's order
   const HammerParameters& read = usual.value->mechanism.parameters();
@@ -98,15 +92,13 @@ TEST(HammerParameters, DeviationsNotGivenAreTheUsualOnesWithANote) {
   EXPECT_NE(usual.notes[0].find("rocker_mass_std_kg"), std::string::npos);
   EXPECT_EQ(given.value->mechanism.parameters().deviations[kMass], 0.0);
   EXPECT_EQ(given.notes[0].find("rocker_mass_std_kg"), std::string::npos);
-  const Lines problems = loadFiles(configDirectory(), {impossible.path()}).problems;
+  const Lines problems = problemsWith({}, "rocker_mass_std_kg: 50.0\n");
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_TRUE(beginsWith(problems[0], "rocker_mass_std_kg: 50 kg, no hammer")) << problems[0];
 }
 
 TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
-  const TemporaryFile without(hammerYaml()), with(hammerYaml() + "drive_reaction_ratio: -0.2\n");
-  const Checked<Settings> absent = loadFiles(configDirectory(), {without.path()});
-  const Checked<Settings> given = loadFiles(configDirectory(), {with.path()});
+  const Checked<Settings> absent = loadedWith(""), given = loadedWith("drive_reaction_ratio: -0.2\n");
   ASSERT_TRUE(absent.value && given.value);
   EXPECT_EQ(absent.value->mechanism.parameters().drive_reaction_ratio, 1.0);
   ASSERT_EQ(absent.notes.size(), 2U);
@@ -117,13 +109,11 @@ TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
 }
 
 TEST(HammerParameters, TheRodsSpringIsOptional) {
-  const TemporaryFile without(hammerYaml()), with(hammerYaml() +
-                                                  "rod_stiffness_N_m: 1e9\nrod_damping_ratio: 0.3\npin_play_m: 0.0002\n"
-                                                  "pin_friction_radius_m: 0.0005\nlevel: elastic\n");
-  const Checked<Settings> absent = loadFiles(configDirectory(), {without.path()});
-  const Checked<Settings> given = loadFiles(configDirectory(), {with.path()});
-  ASSERT_TRUE(absent.value && given.value);
-  EXPECT_EQ(absent.value->mechanism.parameters().rod.stiffness, 0.0);
+  const Checked<Settings> given = loadedWith(
+      "rod_stiffness_N_m: 1e9\nrod_damping_ratio: 0.3\npin_play_m: 0.0002\npin_friction_radius_m: 0.0005\n"
+      "level: elastic\n");
+  ASSERT_TRUE(given.value);
+  EXPECT_EQ(parametersWith("").rod.stiffness, 0.0);
   const RodSpring& rod = given.value->mechanism.parameters().rod;
   EXPECT_EQ(rod.stiffness, 1e9);
   EXPECT_EQ(rod.damping_ratio, 0.3);
@@ -139,19 +129,15 @@ TEST(HammerParameters, TheRodsSpringIsOptional) {
 }
 
 TEST(HammerParameters, TakesTheRodAsUncertainUnlessTheFileStatesIt) {
-  const auto parametersOf = [](const std::string& more) {
-    const TemporaryFile file(hammerYaml() + more);
-    return loadFiles(configDirectory(), {file.path()}).value->mechanism.parameters();
-  };
-  const HammerParameters usual = parametersOf("");
+  const HammerParameters usual = parametersWith("");
   EXPECT_TRUE(priorOf(usual.rod, usual.rod_std).gives);
   const HammerParameters weighed =
-      parametersOf("rod_stiffness_std_N_m: 1e8\nrod_damping_ratio_std: 0.1\npin_play_std_m: 5e-5\n");
+      parametersWith("rod_stiffness_std_N_m: 1e8\nrod_damping_ratio_std: 0.1\npin_play_std_m: 5e-5\n");
   EXPECT_EQ(weighed.rod_std.stiffness, 1e8);
   EXPECT_EQ(weighed.rod_std.damping_ratio, 0.1);
   EXPECT_EQ(weighed.rod_std.play, 5e-5);
-  EXPECT_EQ(parametersOf("pin_friction_radius_std_m: 2e-4\n").rod_std.friction_radius, 2e-4);
-  const HammerParameters rigid = parametersOf("rod_stiffness_std_N_m: 0\npin_play_std_m: 0\n");
+  EXPECT_EQ(parametersWith("pin_friction_radius_std_m: 2e-4\n").rod_std.friction_radius, 2e-4);
+  const HammerParameters rigid = parametersWith("rod_stiffness_std_N_m: 0\npin_play_std_m: 0\n");
   EXPECT_FALSE(priorOf(rigid.rod, rigid.rod_std).gives);
   EXPECT_EQ(problemsWith({}, "rod_stiffness_std_N_m: -1\n").size(), 1U);
 }

@@ -23,8 +23,6 @@ TEST(Load, AcceptsGoodAndRefusesBadPipelineAndLogKeys) {
        "hull_motion: model, must be unmeasured, fixed or imu without a boom file: its cylinders' oil is the spring"},
       {"output: mean", "output: median", "output: median, must be one of instantaneous, mean"},
       {"output_rate_Hz: 50", "output_rate_Hz: -1", "output_rate_Hz: -1 Hz, must be 0 or a number in [0.001, 10000.0]"},
-      {"output_rate_Hz: 0.001", "output_rate_Hz: 1e-12",
-       "output_rate_Hz: 1e-12 Hz, must be 0 or a number in [0.001, 10000.0]"},
       {"output_rate_Hz: 1e4", "output_rate_Hz: 1e5",
        "output_rate_Hz: 1e5 Hz, must be 0 or a number in [0.001, 10000.0]"},
       {"torque_std_part: 1", "torque_std_part: 2", "torque_std_part: 2, must be a number in [0.0, 1.0]"},
@@ -52,8 +50,6 @@ TEST(Load, AcceptsGoodAndRefusesBadPipelineAndLogKeys) {
       {"tf_max_wait_s: 1", "tf_max_wait_s: .inf", "tf_max_wait_s: .inf s, must be a number in [0.001, 60.0]"},
       {"boom_wrench_links: [arm_link, left/gauge_2]", "boom_wrench_links: [arm-link]",
        "boom_wrench_links: arm-link, must be names of a letter first, then letters, digits, _ and /"},
-      {"boom_wrench_links: []", "boom_wrench_links: [/arm_link]",
-       "boom_wrench_links: /arm_link, must be names of a letter first, then letters, digits, _ and /"},
       {"log_enabled: true", "log_enabled: \"true\"", "log_enabled: \"true\", must be true or false"},
       {"log_outputs: per_turn", "log_outputs: per_sample",
        "log_outputs: per_sample, must be one of all, wrench, per_turn, none"},
@@ -63,6 +59,11 @@ TEST(Load, AcceptsGoodAndRefusesBadPipelineAndLogKeys) {
       {"log_prefix: p", "log_prefix: p/q", "log_prefix: \"p/q\", must be a file name's beginning, without /"},
       {"log_total_mb: 0", "log_total_mb: -1", "log_total_mb: -1 MB, must be an integer in [0, 1000000000]"},
       {"log_queue_mb: 1", "log_queue_mb: 1.5", "log_queue_mb: 1.5 MB, must be an integer in [1, 1000000000]"},
+      {"gravity_m_s2: 100", "gravity_m_s2: 1e999", "gravity_m_s2: 1e999 m/s2, must be a number in [0.0, 100.0]"},
+      {"gravity_m_s2: 9", "gravity_m_s2:", "gravity_m_s2: (empty) m/s2, must be a number in [0.0, 100.0]"},
+      {"pitch_joints: []", "pitch_joints: [a, \"\"]", "pitch_joints: (a list), must be a list of different names"},
+      {"log_prefix: p", "log_prefix: 5", "log_prefix: 5, must be a text, not empty"},
+      {"stale_after_s: 1", "\"two\\nlines\": 1", "two lines: unknown key"},
       {"stale_after_s: 1", "stale_after: 1", "stale_after: unknown key, perhaps stale_after_s was meant"}};
   for (const BadPair& pair : pairs) {
     EXPECT_EQ(problemsOf(pair.good), Lines{}) << pair.good;

@@ -22,18 +22,6 @@ TEST(Load, ShippedFilesOfOneKindEachLoadOverThemselves) {
   }
 }
 
-TEST(Load, MergedKeysLeaveWhatWasReadBeforeAsItIs) {
-  std::vector<std::string> problems;
-  const ParameterMap over = *parameterMap(YAML::Load("level: rocker"), "over", problems);
-  const ParameterMap before = *parameterMap(YAML::Load("{level: linkage, output: mean}"), "before", problems);
-  ParameterMap base = before;
-  merge(over, base);
-  EXPECT_EQ(base.at("level").value.Scalar(), "rocker");
-  EXPECT_EQ(base.at("level").origin, over.at("level").origin);
-  EXPECT_EQ(base.at("output").value.Scalar(), "mean");
-  EXPECT_EQ(before.at("level").value.Scalar(), "linkage");
-}
-
 TEST(Load, LaterFilesReplaceEarlierOnes) {
   const TemporaryFile first("gravity_m_s2: 1.0\nstale_after_s: 0.5\n"), second("gravity_m_s2: 2.0\n");
   const Checked<Settings> settings = loadShippedWith({first.path(), second.path()});
@@ -119,6 +107,8 @@ TEST(Load, RefusesUnreadableFilesAndNamesEach) {
   EXPECT_EQ(loadShippedWith({missing, testing::TempDir()}).problems,
             (Lines{missing + ": cannot be read: No such file or directory",
                    testing::TempDir() + ": is a directory, must be a YAML file"}));
+  const std::string longest(4095, 'x');  // a legal path, and the message must name it
+  EXPECT_EQ(loadShippedWith({longest}).problems.at(0).rfind(longest + ": cannot be read: ", 0), 0U);
   const Lines no_config = loadFiles(testing::TempDir() + "nowhere", {}).problems;
   ASSERT_EQ(no_config.size(), 4U);
   EXPECT_NE(no_config[0].find("nowhere/pipeline.yaml: cannot be read"), std::string::npos) << no_config[0];
