@@ -73,7 +73,7 @@ class DenseBranch {
   std::vector<Angles> nodes_;
 };
 
-double apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * kPi)); }
+using test::apart;
 
 TEST(RandomGrapples, ColdAndWarmStayOnTheBranchWhateverTheJump) {
   test::Random random(41);

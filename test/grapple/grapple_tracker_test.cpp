@@ -2,53 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "grapple/grapples.h"
-#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 GrappleTracker trackerOf(const GrappleParameters& p) { return GrappleTracker(test::grappleOf(p)); }
-
-TEST(GrappleTracker, BadSamplesAreRefusedCountedAndForgotten) {
-  struct Bad {
-    SliderMotion sample;
-    SliderRefusal refusal;
-  };
-  GrappleTracker tracker = trackerOf(test::claimsParameters());
-  EXPECT_FALSE(tracker.hasMotion());
-  std::uint64_t accepted = 0, refused = 0;
-  for (const Bad& bad :
-       {Bad{{kNan, 0.0, 0.0}, SliderRefusal::kNotFinite}, Bad{{0.3, kInfinity, 0.0}, SliderRefusal::kNotFinite},
-        Bad{{0.3, 0.0, kNan}, SliderRefusal::kNotFinite}, Bad{{0.74, 0.1, 0.0}, SliderRefusal::kAcrossFold},
-        Bad{{0.88, 0.1, 0.0}, SliderRefusal::kAcrossFold}, Bad{{0.9, 0.1, 0.0}, SliderRefusal::kOutOfReach},
-        Bad{{-0.3, 0.1, 0.0}, SliderRefusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, SliderRefusal::kAcrossDeadCentre},
-        Bad{{0.7, 0.1, 0.0}, SliderRefusal::kOutsideStroke}, Bad{{0.0, 0.1, 0.0}, SliderRefusal::kOutsideStroke}}) {
-    // Good: accepted, and the channel is proven.
-    const double good = 0.3 + 0.01 * static_cast<double>(accepted);
-    ASSERT_EQ(tracker.update({good, 0.2, 0.0}), SliderRefusal::kNone);
-    EXPECT_EQ(tracker.count(SliderRefusal::kNone), ++accepted);
-    const GrappleMotion before = tracker.motion();
-    EXPECT_EQ(before.slider, good);
-    // Bad: refused, its counter alone rises, and everything else stays.
-    const std::uint64_t count = tracker.count(bad.refusal);
-    EXPECT_EQ(tracker.update(bad.sample), bad.refusal);
-    EXPECT_EQ(tracker.count(bad.refusal), count + 1);
-    EXPECT_EQ(tracker.refused(), ++refused);
-    EXPECT_EQ(tracker.motion().p.re, before.p.re);
-    EXPECT_EQ(tracker.motion().theta2, before.theta2);
-    EXPECT_EQ(tracker.slider().position, good);
-    // Good again: the same branch.
-    ASSERT_EQ(tracker.update({0.332, 0.2, 0.0}), SliderRefusal::kNone);
-    ++accepted;
-    EXPECT_NEAR(tracker.motion().p.re, 0.802384681896094, 1e-12);
-  }
-  EXPECT_EQ(tracker.count(SliderRefusal::kNotFound), 0u);
-}
 
 TEST(GrappleTracker, ABadFirstSampleLeavesItEmpty) {
   GrappleTracker tracker = trackerOf(test::claimsParameters());

@@ -71,6 +71,26 @@ inline GrappleParameters randomLinkage(Random& random) {
   return p;
 }
 
+/// Six modes at theta1 = 0.4 rad.
+inline GrappleParameters sixModeLinkage() {
+  GrappleParameters p;
+  p.o1 = {1.3, -1.3};
+  p.o1a = 0.9;
+  p.ab = 1.7;
+  p.ac = 1.9;
+  p.bac = -1.4;
+  p.bd = 2.3;
+  p.bp = 1.0;
+  p.ce = 2.3;
+  p.od = 1.7;
+  p.oe = 2.0;
+  p.doe = 1.4;
+  return p;
+}
+
+/// Between two angles [rad], whole turns aside.
+inline double apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * kPi)); }
+
 /// A random linkage in one of its poses at a random slider position, with the shortest of strokes there. About one draw
 /// in ten assembles.
 inline std::optional<Grapple> randomGrapple(Random& random) {

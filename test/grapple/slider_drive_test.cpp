@@ -57,23 +57,5 @@ TEST(SliderDrive, EqualsTheLawOfCosinesToHundredDigits) {
   EXPECT_LT(worst_second, 1e-13);
 }
 
-TEST(SliderDrive, ReachEndsInTheDeadCentres) {
-  const SliderDrive drive(test::claimsParameters());
-  const auto upper = drive.reachAround(0.3);
-  ASSERT_TRUE(upper);
-  EXPECT_NEAR(upper->low, -0.27, 1e-15);  // |O1G| = gh - o1h
-  EXPECT_NEAR(upper->high, 0.89, 1e-15);  // |O1G| = gh + o1h
-  EXPECT_TRUE(drive.at(-0.2699999));
-  // The root of the distance: 1e-12 m from the dead centre theta1 is some 1e-6 rad from its value there.
-  EXPECT_NEAR(drive.theta1(-0.27 + 1e-12) * 180.0 / kPi, -147.2958, 2e-4);
-  EXPECT_FALSE(drive.at(-0.2701));
-  EXPECT_FALSE(drive.at(0.8901));
-  EXPECT_FALSE(drive.reachAround(-0.9));
-  const auto lower = drive.reachAround(-2.0);  // G below O1: another interval
-  ASSERT_TRUE(lower);
-  EXPECT_NEAR(lower->low, -0.94 - 1.83, 1e-15);
-  EXPECT_NEAR(lower->high, -0.94 - 0.67, 1e-15);
-}
-
 }  // namespace
 }  // namespace hammer_loads

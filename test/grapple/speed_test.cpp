@@ -64,18 +64,7 @@ TEST(Speed, StaysBelowItsBoundInAColdEnumeration) {
     const double slider = sliders[static_cast<std::size_t>(i * 37) % sliders.size()];
     if (const auto m = grapple.at(slider)) sum += m->p.re;
   });
-  GrappleParameters six;
-  six.o1 = {1.3, -1.3};
-  six.o1a = 0.9;
-  six.ab = 1.7;
-  six.ac = 1.9;
-  six.bac = -1.4;
-  six.bd = 2.3;
-  six.bp = 1.0;
-  six.ce = 2.3;
-  six.od = 1.7;
-  six.oe = 2.0;
-  six.doe = 1.4;
+  const GrappleParameters six = test::sixModeLinkage();
   const LeverGroup group(six);
   const double six_modes = medianTime(
       100, 100, [&](int i) { sum += enumerateBranches(group, six.o1 + six.o1a * direction(0.4 + 1e-6 * i)).count; });
