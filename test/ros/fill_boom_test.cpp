@@ -12,19 +12,12 @@ constexpr StampNs kStamp = 12345678901;
 constexpr HullWrench kLoad{-900.0, 7000.0, 300.0};
 const Names kFour{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
 
-PipelineSettings settings(BoomModel model) {
+PipelineSettings settings() {
   PipelineSettings s;
-  s.boom = model;
+  s.boom = BoomModel::kAuto;
   s.joint_max_age = 0.2;
   s.gravity = test::kGravity;
   return s;
-}
-
-HalfSinePulse pulse() {
-  HalfSinePulse p;
-  p.amplitude = 8e3;
-  p.frequency = 3.14159265358979323846 / 0.018;
-  return p;
 }
 
 template <typename Part>
@@ -44,28 +37,28 @@ class Messages : public testing::Test {
     ASSERT_FALSE(follower_.sample({stamp, kLoad}, step).fault);
   }
   const std::vector<double> position_{0.2, -0.35, 1.20, -0.85};
-  BoomFollower follower_{test::shippedBoom(), settings(BoomModel::kAuto), 0.1975};
-  const JointLoads& jointLoads() {
-    fillJointLoads(follower_.state(), joint_loads_);
-    return joint_loads_;
+  BoomFollower follower_{test::shippedBoom(), settings(), 0.1975};
+  JointLoads jointLoads() {
+    JointLoads loads;
+    prepareJointLoads(follower_.boom(), loads);
+    fillJointLoads(follower_.state(), loads);
+    return loads;
   }
-  const BoomVibration& vibration() {
-    fillVibration(follower_, vibration_);
-    return vibration_;
+  BoomVibration vibration() {
+    BoomVibration vibration;
+    prepareVibration(follower_.boom(), vibration);
+    fillVibration(follower_, vibration);
+    return vibration;
   }
   void SetUp() override {
-    prepareJointLoads(follower_.boom(), joint_loads_);
-    prepareVibration(follower_.boom(), vibration_);
+    sample(kStamp - 1000000);
+    sample(kStamp);
   }
-  JointLoads joint_loads_;
-  BoomVibration vibration_;
 };
 
 TEST_F(Messages, HoldTheStateInItsOrder) {
-  sample(kStamp - 1000000);
-  sample(kStamp);
   const BoomState& state = follower_.state();
-  const JointLoads& loads = jointLoads();
+  const JointLoads loads = jointLoads();
   EXPECT_EQ(loads.header.stamp.toNSec(), static_cast<std::uint64_t>(kStamp));
   EXPECT_EQ(loads.header.frame_id, "base_link");
   EXPECT_EQ(namesOf(loads.joint), kFour);
@@ -86,8 +79,6 @@ TEST_F(Messages, HoldTheStateInItsOrder) {
 }
 
 TEST_F(Messages, HoldTheSectionLoads) {
-  sample(kStamp - 1000000);
-  sample(kStamp);
   const BoomState& state = follower_.state();
   SectionLoads sections;
   prepareSections(follower_.boom(), sections);
@@ -114,8 +105,6 @@ TEST_F(Messages, HoldTheSectionLoads) {
 }
 
 TEST_F(Messages, StateTheVibrationAndTheReason) {
-  sample(kStamp - 1000000);
-  sample(kStamp);
   const BoomVibration before = vibration();
   EXPECT_TRUE(before.compliant);
   EXPECT_TRUE(std::isnan(before.rigid_error) && std::isnan(before.pulse_length));
@@ -123,10 +112,13 @@ TEST_F(Messages, StateTheVibrationAndTheReason) {
   EXPECT_EQ(before.hold_down_limit, "");
   EXPECT_EQ(before.header.frame_id, "hammer_hull");
 
-  follower_.turnEnded(pulse(), 300.0);
+  HalfSinePulse pulse;
+  pulse.amplitude = 8e3;
+  pulse.frequency = 3.14159265358979323846 / 0.018;
+  follower_.turnEnded(pulse, 300.0);
   sample(kStamp + 1000000);
   const BoomState& state = follower_.state();
-  const BoomVibration& after = vibration();
+  const BoomVibration after = vibration();
   EXPECT_EQ(after.displacement.z, state.tip.displacement[2]);
   EXPECT_EQ(after.rotation.y, state.tip.displacement[4]);
   EXPECT_EQ(after.acceleration.x, state.tip.acceleration[0]);

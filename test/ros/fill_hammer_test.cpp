@@ -5,34 +5,19 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint16_t kInconsistent = HullLoads::FLAG_INCONSISTENT, kImpossible = Blow::FLAG_IMPOSSIBLE;
-
-TEST(FillHammer, FlagsOfHullLoadsAreThoseOfThisSample) {
-  HullLoads message;
+TEST(FillHammer, FlagsAreThoseOfThisSampleAndThisBlow) {
+  HullLoads loads;
+  Blow blow;
   SampleResult result;
   result.pitch_known = true;
-  const WrenchOutput output{};
-  fillHullLoads(result, output, message);
-  EXPECT_EQ(message.flags, 0);
-  result.inconsistent = true;
-  fillHullLoads(result, output, message);
-  EXPECT_EQ(message.flags, kInconsistent);
-  result.inconsistent = false;
-  fillHullLoads(result, output, message);
-  EXPECT_EQ(message.flags, 0) << "the message is used again";
-}
-
-TEST(FillHammer, FlagsOfABlowAreItsOwn) {
-  Blow message;
   TurnEnd end;
-  fillBlow(end, message);
-  EXPECT_EQ(message.flags, 0);
-  end.blow.impossible = true;
-  fillBlow(end, message);
-  EXPECT_EQ(message.flags, kImpossible);
-  end.blow.impossible = false;
-  fillBlow(end, message);
-  EXPECT_EQ(message.flags, 0) << "the message is used again";
+  for (const bool flagged : {false, true, false}) {  // the messages are used again
+    result.inconsistent = end.blow.impossible = flagged;
+    fillHullLoads(result, WrenchOutput{}, loads);
+    fillBlow(end, blow);
+    EXPECT_EQ(loads.flags, flagged ? std::uint16_t{HullLoads::FLAG_INCONSISTENT} : 0);
+    EXPECT_EQ(blow.flags, flagged ? std::uint16_t{Blow::FLAG_IMPOSSIBLE} : 0);
+  }
 }
 
 }  // namespace

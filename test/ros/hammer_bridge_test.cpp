@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "hammer_loads/settings/channel_names.h"
 #include "support/counting_new.h"
 #include "support/session_player.h"
 
@@ -51,19 +50,14 @@ struct SentMessages {
   }
 };
 
-/// With drop-outs, at this rate.
-simulation::Session sessionAt(double rate) {
+/// A session with drop-outs at this rate; after(time) is called after each sample.
+template <typename After>
+void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = 8.0;
   machine.crank.rate = rate;
   machine.crank.drop_outs = {{4.0, 4.4}, {6.0, 6.1}};
-  return simulation::recordSession(machine);
-}
-
-/// A session at this rate; after(time) is called after each sample.
-template <typename After>
-void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
-  const simulation::Session session = sessionAt(rate);
+  const simulation::Session session = simulation::recordSession(machine);
   SentMessages m;
   std::size_t joint = 0;
   for (const auto& r : session.crank) {
@@ -79,7 +73,7 @@ void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
     m.crank.position[0] = r.angle;
     if (speeds) m.crank.velocity = {*r.speed};
     bridge.crank(m.crank, m.crank.header.stamp);
-    after(1e-9 * static_cast<double>(r.stamp - simulation::workingMo100().start_stamp));
+    after(1e-9 * static_cast<double>(r.stamp - machine.start_stamp));
   }
 }
 
@@ -155,17 +149,13 @@ TEST(WhoListens, WantsTheTurnsAloneGetsTheSameAndNoSampleIsComputed) {
 /// Says which pieces came.
 class Notes final : public life::PieceSink {
  public:
-  void begin(const life::LedgerMachine&, const life::RunId& run) override {
-    runs.push_back(run.name);
-    parameters.push_back(run.parameters);
-  }
+  void begin(const life::LedgerMachine&, const life::RunId&) override {}
   void refuse(const std::string&) override {}
   void add(const life::LifePiece& piece) override { pieces.push_back(piece); }
   void end(const life::LifePiece& last) override {
     pieces.push_back(last);
     ++ended;
   }
-  std::vector<std::string> runs, parameters;
   std::vector<life::LifePiece> pieces;
   std::size_t ended{};
 };
@@ -196,28 +186,6 @@ TEST(LoadCycles, ComeEachPeriodOfStampsAndAtTheEnd) {
   EXPECT_EQ(counts.back().since, counts[0].since);
 }
 
-TEST(LoadCycles, ARunsNameIsThatOfItsInputs) {
-  std::vector<std::string> names, parameters;
-  for (const char* with : {"{}", "life_period_s: 1.0\ncrank_zero_rad: 0.001\n", "bulk_modulus_Pa: 1.1e+9\n"}) {
-    HammerBridge bridge(test::settingsWith(with));
-    Notes notes;
-    bridge.keepPieces(notes);
-    play(bridge, 50.0, true, kNothing);
-    bridge.reset();
-    play(bridge, 50.0, true, kNothing);
-    ASSERT_EQ(notes.runs.size(), 2U);
-    EXPECT_EQ(notes.runs[0], notes.runs[1]) << "the same messages";
-    EXPECT_EQ(notes.ended, 1U);
-    EXPECT_EQ(notes.parameters[0], notes.parameters[1]);
-    names.push_back(notes.runs[0]);
-    parameters.push_back(notes.parameters[0]);
-  }
-  EXPECT_EQ(names[0], names[1]) << "the same machine";
-  EXPECT_NE(parameters[0], parameters[1]) << "of its sensors";
-  EXPECT_NE(names[0], names[2]);
-  EXPECT_EQ(parameters[0], parameters[2]);
-}
-
 TEST(LoadCycles, NameTheirKeyBeyondTheFullScale) {
   HammerBridge bridge(test::settingsWith("hull_z_full_scale_greatest: 3000.0\n"));
   play(bridge, 1000.0, true, kNothing);
@@ -226,53 +194,6 @@ TEST(LoadCycles, NameTheirKeyBeyondTheFullScale) {
   EXPECT_NE(warnings[0].text.find("hull_wrench/force_z ("), std::string::npos) << warnings[0].text;
   EXPECT_NE(warnings[0].text.find("hull_z_full_scale_greatest"), std::string::npos) << warnings[0].text;
   EXPECT_EQ(warnings[0].text.find("least"), std::string::npos) << warnings[0].text;
-}
-
-TEST(Reference, ShowsGainAndOffsetOfASimulatedLoadCell) {
-  constexpr double kGain = 1.05, kOffset = 150.0;
-  const simulation::Session session = sessionAt(1000.0);
-  HammerBridge bridge(test::settingsWith("boom: rigid\n"));
-  geometry_msgs::WrenchStamped cell;
-  std::size_t next = 0;
-  double mean = 0.0;
-  play(bridge, 1000.0, true, [&](double time) {
-    for (; next < session.truth.size() && session.truth[next].time <= time; ++next) {
-      const simulation::CrankTruth& truth = session.truth[next];
-      mean += truth.load.force_z;
-      cell.header.stamp = timeOfNs(simulation::workingMo100().start_stamp + std::llround(1e9 * truth.time));
-      cell.wrench.force.x = kNaN;
-      cell.wrench.force.z = kGain * truth.load.force_z + kOffset;
-      cell.wrench.torque.y = truth.load.torque_y + truth.drive_reaction_y;
-      bridge.reference(cell, cell.header.stamp);
-    }
-  });
-  mean /= static_cast<double>(next);
-  const ReferenceFigures force = bridge.comparison().figures(1), torque = bridge.comparison().figures(2);
-  EXPECT_EQ(bridge.comparison().figures(0).samples, 0U);
-  EXPECT_GT(force.samples, 7000U);
-  EXPECT_NEAR(force.scale, 1.0 / kGain, 5e-3);
-  EXPECT_GT(force.correlation, 0.999);
-  EXPECT_NEAR(force.bias, -(kGain - 1.0) * mean - kOffset, 10.0);
-  EXPECT_NEAR(torque.scale, 1.0, 1e-2);
-  EXPECT_LT(torque.rms_error, 0.03 * torque.rms);
-}
-
-TEST(TurnLoadsMessage, ComesWithEachBlowAndNamesEveryChannel) {
-  const Settings settings = test::settingsWith("boom: rigid\n");
-  HammerBridge bridge(settings);
-  std::vector<TurnLoads> turns;
-  bridge.outputs().turn_loads.attach([&](const TurnLoads& turn, const ros::Time&) { turns.push_back(turn); });
-  play(bridge, 1000.0, true, kNothing);
-  ASSERT_GT(turns.size(), 20U);
-  EXPECT_EQ(turns.size(), bridge.outputs().blow.sent());
-  const TurnLoads& last = turns.back();
-  EXPECT_EQ(last.channel, channelNames(&*settings.boom));
-  EXPECT_EQ(last.channel.size(), 3U + 4U + settings.boom->cylinders().size() + 6U * settings.boom->sections().size());
-  ASSERT_EQ(last.minimum.size(), last.channel.size());
-  for (std::size_t i = 0; i < last.channel.size(); ++i) {
-    EXPECT_LE(last.minimum[i], last.mean[i]) << last.channel[i];
-    EXPECT_LE(last.mean[i], last.maximum[i]) << last.channel[i];
-  }
 }
 
 TEST(Stamps, AreCountedBeyondEveryClockAndTheNextGoodOneWorks) {

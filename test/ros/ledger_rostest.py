@@ -10,14 +10,14 @@ import sys
 import tempfile
 import unittest
 
-import rosbag
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from hammer_loads.msg import LoadCycles
 from sensor_msgs.msg import JointState
 
-from process_rostest import DATA, KNOWN_ZERO, NodeProcess, command, eventually
+from node_session import recorded
+from process_rostest import KNOWN_ZERO, NodeProcess, command, eventually
 
 # Commits are counted in runs.pieces: one for each period live, one for a run from its bags.
 TABLES = {'epochs': '*', 'channels': '*', 'runs': 'run, name, epoch, parameters, messages', 'days': '*',
@@ -28,18 +28,6 @@ def contents(path):
     with sqlite3.connect('file:%s?mode=ro' % path, uri=True) as ledger:
         return {table: sorted(ledger.execute('SELECT %s FROM %s' % (columns, table)).fetchall(), key=repr)
                 for table, columns in TABLES.items()}
-
-
-def session(begin, end):
-    """Messages of the recorded 1 kHz session between two times after its start [s], as (topic, message)."""
-    messages = []
-    with rosbag.Bag(os.path.join(DATA, 'mo100_1khz.bag')) as bag:
-        first = None
-        for topic, message, stamp in bag.read_messages():
-            first = first or stamp
-            if begin <= (stamp - first).to_sec() < end:
-                messages.append((topic, message))
-    return messages
 
 
 class LedgerTest(unittest.TestCase):
@@ -79,9 +67,9 @@ class LedgerTest(unittest.TestCase):
         crank = rospy.Publisher('/%s/crank' % name, JointState, queue_size=100000)
         joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=100000)
         self.assertTrue(eventually(lambda: crank.get_num_connections() > 0 and joints.get_num_connections() > 0))
-        messages = session(begin, end)
-        for topic, message in messages:
-            (crank if topic == '/hammer/crank' else joints).publish(message)
+        messages = recorded(begin, end)
+        for is_crank, message in messages:
+            (crank if is_crank else joints).publish(message)
         return messages[-1][1].header.stamp
 
     def feed(self, name, begin, end):
