@@ -168,16 +168,5 @@ TEST_F(LogTest, StopsAlsoWhileTooManyOrdersWait) {
   EXPECT_EQ(onTopic(readAll(), "/a").size(), 1u);
 }
 
-TEST_F(LogTest, TakesAnyRecordTime) {
-  {
-    BagLog log(settings_);
-    ASSERT_TRUE(log.start().empty());
-    log.write("/a", ros::Time(), wrench(0));
-    log.write("/a", ros::Time(std::numeric_limits<std::uint32_t>::max(), 999999999), wrench(1));
-    log.write("/a", ros::Time(5.0), wrench(2));
-  }
-  EXPECT_EQ(readAll().size(), 3u);
-}
-
 }  // namespace
 }  // namespace hammer_loads::test

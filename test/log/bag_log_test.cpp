@@ -77,31 +77,6 @@ TEST_F(LogTest, EverySplitStandsAlone) {
   EXPECT_EQ(next, kCount);
 }
 
-TEST_F(LogTest, DoesNotRepeatAForgottenMessage) {
-  {
-    BagLog log(settings_);
-    ASSERT_TRUE(log.start().empty());
-    log.forgetLatched(kRunInfo);  // nothing there
-    log.writeLatched(kRunInfo, at(0), text("old"));
-    log.writeLatched("/tf_static", at(0), text("arm"), "/publisher");
-    log.write("/wrench", at(0), wrench(0));
-    log.forgetLatched(kRunInfo);
-    log.split();
-    log.write("/wrench", at(1), wrench(1));
-    log.writeLatched(kRunInfo, at(1), text("new"));
-    log.split();
-    log.write("/wrench", at(2), wrench(2));
-  }
-  ASSERT_EQ(files().size(), 3u);
-  std::vector<std::string> infos;
-  for (const std::string& file : files()) {
-    const auto entries = readBag(file);
-    EXPECT_EQ(onTopic(entries, "/tf_static").size(), 1u) << file;
-    for (const Entry& entry : onTopic(entries, kRunInfo)) infos.push_back(entry.as<std_msgs::String>().data);
-  }
-  EXPECT_EQ(infos, (std::vector<std::string>{"old", "new", "new"}));
-}
-
 /// rosbag loads a plugin for every bag, which two threads must not do at once.
 TEST_F(LogTest, ManyLogsLiveInOneProcess) {
   constexpr std::size_t kSplits = 20;

@@ -73,7 +73,7 @@ inline bool sendUntilFull(BagLog& log) {
 
 /// One message of a bag.
 struct Entry {
-  std::string topic, datatype, md5sum, definition, caller;
+  std::string topic, caller;
   ros::Time time;
   bool latched{};
   std::vector<std::uint8_t> bytes;
@@ -86,9 +86,6 @@ struct Entry {
     ros::serialization::deserialize(stream, message);
     return message;
   }
-  bool operator==(const Entry& other) const {
-    return topic == other.topic && time == other.time && latched == other.latched && bytes == other.bytes;
-  }
 };
 
 /// Which wrench(i) it is.
@@ -99,9 +96,8 @@ inline std::vector<Entry> readBag(const std::string& path) {
   rosbag::Bag bag(path, rosbag::bagmode::Read);
   std::vector<Entry> entries;
   for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
-    Entry entry{
-        message.getTopic(),    message.getDataType(), message.getMD5Sum(),  message.getMessageDefinition(),
-        message.getCallerId(), message.getTime(),     message.isLatching(), std::vector<std::uint8_t>(message.size())};
+    Entry entry{message.getTopic(), message.getCallerId(), message.getTime(), message.isLatching(),
+                std::vector<std::uint8_t>(message.size())};
     ros::serialization::OStream stream(entry.bytes.data(), message.size());
     message.write(stream);
     entries.push_back(std::move(entry));
