@@ -80,17 +80,5 @@ TEST_F(GrappleBag, TopicAndPrefixCanBeGiven) {
   EXPECT_EQ(counts(path("out.bag")).at("/claw/jaw_edge/right_accel"), kSamples);
 }
 
-TEST_F(GrappleBag, BadParametersAreOneLineEachAndNothingIsWritten) {
-  const std::string in = writeBag("in.bag", "/joint_states");
-  const test::TemporaryFile bad("bd_length_m: -1\nslider_acceleration: guess\nno_such_key: 1\n");
-  const test::Outcome outcome = run(in + " " + path("out.bag") + " " + grapple_ + " --params " + bad.path());
-  EXPECT_EQ(outcome.exit_code, 1);
-  const auto lines = test::linesOf(outcome.err);
-  ASSERT_EQ(lines.size(), 3u) << outcome.err;
-  for (const char* key : {"bd_length_m", "slider_acceleration", "no_such_key"})
-    EXPECT_NE(outcome.err.find(key), std::string::npos) << key;
-  EXPECT_EQ(names().size(), 1U) << "only the input";
-}
-
 }  // namespace
 }  // namespace hammer_loads

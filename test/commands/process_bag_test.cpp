@@ -28,13 +28,13 @@ ParameterMap parametersWithInertia(double factor) {
 
 double sinceStart(const ros::Time& time) { return (time - ros::Time(kSessionStart)).toSec(); }
 
-struct Truth {
+struct Loads {
   std::vector<WrenchAt> wrenches;
   std::vector<BlowAt> blows;
 };
 
-Truth truthOf(const std::string& session) {
-  Truth truth;
+Loads truthOf(const std::string& session) {
+  Loads truth;
   const test::Csv samples = test::dataCsv(session + "_truth.csv"), blows = test::dataCsv(session + "_blows.csv");
   constexpr double kDriveInertia = 0.6;  // [kg m2] of the session's machine, on the crank's shaft
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -56,13 +56,8 @@ std::vector<double> endsOfDropOuts(const std::vector<WrenchAt>& samples) {
   return ends;
 }
 
-struct Output {
-  std::vector<WrenchAt> wrenches;
-  std::vector<BlowAt> blows;
-};
-
-Output outputOf(const std::string& path) {
-  Output output;
+Loads outputOf(const std::string& path) {
+  Loads output;
   std::map<double, Pulse> pulses;
   rosbag::Bag bag(path);
   for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
@@ -102,8 +97,8 @@ TEST_P(RecordedSession, StaysWithinTheBounds) {
   ASSERT_EQ(processBag(
                 job, [](double) {}, report),
             std::vector<std::string>{});
-  const Truth truth = truthOf(session);
-  const Output output = outputOf(path("out.bag"));
+  const Loads truth = truthOf(session);
+  const Loads output = outputOf(path("out.bag"));
   EXPECT_EQ(output.wrenches.size() + report.crank.beside_blow + report.crank.uncertain, report.crank.accepted);
   const accuracy::Judged judged{3.0, truth.wrenches.back().time - 3.0, endsOfDropOuts(truth.wrenches)};
   const auto e = accuracy::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);

@@ -102,23 +102,11 @@ TEST_F(Tables, HoldTheAlarms) {
       run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite") + " --params " + limits.path()).exit_code,
       0);
   std::map<std::pair<std::string, std::uint64_t>, std::vector<Alarm>> alarms;  // by name and beginning
-  std::map<std::uint64_t, double> energies;                                    // by turn
-  std::vector<std::pair<std::uint64_t, Alarm>> raised;                         // by turn
   rosbag::Bag bag(path("out.bag"));
   for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
-    if (const auto b = item.instantiate<Blow>()) energies[b->turn] = b->energy;
     const auto message = item.instantiate<Alarms>();
     if (!message) continue;
-    for (const Alarm& alarm : message->alarm) {
-      alarms[{alarm.name, alarm.since.toNSec()}].push_back(alarm);
-      raised.emplace_back(message->turn, alarm);
-    }
-  }
-  for (const auto& [turn, alarm] : raised) {
-    const double energy = energies.at(turn);
-    if (std::isnan(energy)) continue;  // it keeps the alarm
-    if (alarm.name == "blow_energy_least") EXPECT_LT(energy, 980.0);
-    if (alarm.name == "blow_energy_greatest") EXPECT_GT(energy, 1020.0);
+    for (const Alarm& alarm : message->alarm) alarms[{alarm.name, alarm.since.toNSec()}].push_back(alarm);
   }
   ASSERT_GT(alarms.size(), 3U);
   EXPECT_EQ(number("out.sqlite", "SELECT count(*) FROM alarms"), static_cast<double>(alarms.size()));
@@ -208,24 +196,6 @@ TEST_F(Tables, TracesAreSamplesOfTheirTurn) {
     EXPECT_LE(number("out.sqlite", "SELECT max(force_z) / amplitude" + of_kind), 1.0 + 1e-9);
     EXPECT_GT(number("out.sqlite", "SELECT max(force_z) / amplitude" + of_kind), 0.5);
   }
-}
-
-/// The splits of a recording are one run; their hash is that of the bytes in their order.
-TEST_F(Tables, SeveralBagsAreOneRecording) {
-  const std::string a = path("a.bag"), b = path("b.bag");
-  {
-    rosbag::Bag first(a, rosbag::bagmode::Write), second(b, rosbag::bagmode::Write);
-    int i = 0;
-    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
-      (i++ < 2000 ? first : second).write(item.getTopic(), item.getTime(), item);
-    });
-  }
-  ASSERT_EQ(tables(kSession, "whole.sqlite").exit_code, 0);
-  ASSERT_EQ(tables(a + " " + b, "parts.sqlite").exit_code, 0);
-  const std::string sha = test::runCommand("sh -c 'cat $0 $1 | sha256sum'", a + " " + b).out.substr(0, 64);
-  EXPECT_EQ(ask("parts.sqlite", "SELECT input_sha256 FROM runs"), std::vector<std::string>{sha});
-  const std::string turns = "SELECT turn || ' ' || stamp_ns || ' ' || amplitude FROM turns";
-  EXPECT_EQ(ask("parts.sqlite", turns), ask("whole.sqlite", turns));
 }
 
 /// Each run_info of a node is a run with its own parameters.

