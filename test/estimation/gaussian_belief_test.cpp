@@ -86,7 +86,7 @@ TEST(GaussianBelief, EqualsTheLastStateOfBatchLeastSquares) {
     ASSERT_FALSE(exceeds(innovation, variance, gate::kRare));  // within it a fit is least squares
     fit.learn(innovation, variance, by_constant);
   }
-  const Machine::Batch batch = machine.batch(run.z, Eigen::Vector3d::Zero(), machine.prior);
+  const Machine::Batch batch = machine.batch(run.z, machine.prior);
   const Eigen::Matrix3d of_constants = fit.covarianceOfFirst<kC>();
   const Eigen::Vector3d p = of_constants * fit.score();
   EXPECT_TRUE(p.isApprox(batch.p(), 1e-8)) << p << '\n' << batch.p();

@@ -88,15 +88,14 @@ struct LinearMachine {
     Constants p() const { return mean.tail<C>(); }
     typename Belief::ConstantMatrix ofConstants() const { return covariance.bottomRightCorner<C, C>(); }
   };
-  /// All x and p by all z at once, normal equations. deviations of p: their prior; where it is `known`, next to none.
-  Batch batch(const std::vector<double>& z, const Constants& known, const Constants& deviations) const {
+  /// All x and p by all z at once, normal equations. deviations of p: their prior.
+  Batch batch(const std::vector<double>& z, const Constants& deviations) const {
     const Eigen::Index n = N * static_cast<Eigen::Index>(z.size() + 1) + C;
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
     information.topLeftCorner(N, N) = first.inverse();
     const Constants weight = deviations.cwiseAbs2().cwiseInverse();
     information.bottomRightCorner(C, C) = weight.asDiagonal();
-    score.tail(C) = weight.cwiseProduct(known);
     const Eigen::MatrixXd of_step = step_noise.inverse();
     for (std::size_t k = 0; k < z.size(); ++k) {
       const Eigen::Index at = N * static_cast<Eigen::Index>(k);

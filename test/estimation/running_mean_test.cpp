@@ -12,19 +12,6 @@
 namespace hammer_loads::test {
 namespace {
 
-TEST(RunningMean, IsThePlainMeanUntilItIsFull) {
-  RunningMean<> mean(10.0);
-  double sum = 0.0;
-  for (int i = 1; i <= 10; ++i) {
-    EXPECT_FALSE(mean.isFull());
-    mean.add(i * i);
-    sum += i * i;
-    EXPECT_DOUBLE_EQ(mean.mean(), sum / i);
-    EXPECT_EQ(mean.count(), i);
-  }
-  EXPECT_TRUE(mean.isFull());
-}
-
 /// Full, it forgets: a step is followed by 1 - (1 - 1/length)^n.
 TEST(RunningMean, FollowsAStepByItsLength) {
   RunningMean<> mean(50.0, 0.0, 50.0);

@@ -44,31 +44,9 @@ double& garbled(HammerParameters& p, Draw& draw) {
 
 /// One to three fields of a good machine become garbage; lengths at times keep the change-point condition.
 HammerParameters garbage(Draw& draw) {
-  using Limits = std::numeric_limits<double>;
-  const double kValues[] = {Limits::quiet_NaN(),
-                            Limits::infinity(),
-                            -Limits::infinity(),
-                            1e308,
-                            -1e308,
-                            1e300,
-                            1e200,
-                            1e155,
-                            1e100,
-                            1e30,
-                            1e12,
-                            1e-12,
-                            1e-30,
-                            1e-100,
-                            1e-160,
-                            1e-200,
-                            1e-300,
-                            5e-324,
-                            -5e-324,
-                            0.0,
-                            -0.0,
-                            1.0,
-                            -1.0,
-                            57.3};
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+  constexpr double kValues[] = {kNan,  kInf,   -kInf,  1e308,  -1e308, 1e300,  1e200,   1e155, 1e100, 1e30, 1e12, 1e-12,
+                                1e-30, 1e-100, 1e-160, 1e-200, 1e-300, 5e-324, -5e-324, 0.0,   -0.0,  1.0,  -1.0, 57.3};
   HammerParameters p = draw.parameters();
   const std::size_t changes = 1 + draw.index(3);
   for (std::size_t k = 0; k < changes; ++k) garbled(p, draw) = kValues[draw.index(std::size(kValues))];

@@ -49,14 +49,5 @@ TEST(TableWriter, WritesNullForWhatIsNotKnown) {
             Rows{"3|1700000000000000001|4"});
 }
 
-TEST(TableWriter, KeepsTheFirstProblem) {
-  const test::TemporaryFile file("");
-  TableWriter writer(file.path(), {{"turn", true, "-", {}}}, {{"turn", true, "-", {}}});
-  writer.add("no_such_table", 1);
-  writer.add("parameters", 1, "key", "value");
-  writer.finish();
-  EXPECT_EQ(writer.problem(), "no such table: no_such_table");
-}
-
 }  // namespace
 }  // namespace hammer_loads
