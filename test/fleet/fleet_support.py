@@ -75,8 +75,8 @@ class Merged:
         path.with_suffix(".json").write_text(json.dumps(outcome))
         return path.with_suffix(".json")
 
-    def merge(self, *outcomes, target="merged.sqlite", options=()):
-        done = subprocess.run([sys.executable, str(FLEET / "merge.py"), str(self.directory / target), *options],
+    def merge(self, *outcomes, target="merged.sqlite"):
+        done = subprocess.run([sys.executable, str(FLEET / "merge.py"), str(self.directory / target)],
                               input="".join(f"{path}\n" for path in outcomes), stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True)
         assert done.returncode == 0, done.stderr
@@ -85,8 +85,8 @@ class Merged:
     def ask(self, sql, target="merged.sqlite"):
         return execute(self.directory / target, sql)
 
-    def page(self, *options, target="merged.sqlite"):
+    def page(self, *options):
         out = self.directory / "page.html"
-        done = report_here(self.directory / target, "--html", out, "--force", *options)
+        done = report_here(self.path, "--html", out, "--force", *options)
         assert done.returncode == 0, done.stderr
         return Reader(out.read_text(encoding="utf-8"))

@@ -106,15 +106,6 @@ def test_other_files_are_refused(merged):
         assert path.read_bytes() == before
 
 
-def test_rows_of_turns_when_asked(merged):
-    a = merged.add("a")
-    merged.merge(a)
-    assert merged.ask("SELECT count(*) FROM sqlite_master WHERE name = 'turns'") == [(0,)]
-    merged.merge(a, target="rows.sqlite", options=["--rows", "turns"])
-    assert merged.ask("SELECT count(*) FROM turns", "rows.sqlite") == [(200,)]
-    assert "Over all revolutions" in merged.page(target="rows.sqlite").tables
-
-
 def test_a_page_of_the_merged_file_has_the_same_figures(merged):
     """The page of one bag has the figures of the bag's own page."""
     a = merged.add("a")
