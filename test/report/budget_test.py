@@ -1,22 +1,11 @@
 """Uncertainty budgets: of a recording by the command, combined over runs, on the page."""
 import json
-import math
 
 import pytest
 
 from support import DATA, needs_programs, page_of, report_here, with_budget
-from report.budget import budget_of
-from report.database import Database
-from report.subjects import subjects_of
 
 ROWS = [("blow/energy", 900.0, 20.0, "rocker_mass_kg", 0.64), ("blow/energy", 900.0, 20.0, "readings", 0.36)]
-
-
-def test_largest_source_comes_first_with_the_gain_of_halving_it(made):
-    figure, = budget_of(subjects_of(Database(with_budget(made(), ROWS)))[0])
-    assert [source for source, _ in figure.shares] == ["rocker_mass_kg", "readings"]
-    assert figure.halved == pytest.approx(math.sqrt(0.25 * 0.64 * 400.0 + 0.36 * 400.0))
-    assert (figure.unit, figure.value) == ("J", 900.0)
 
 
 def test_bars_of_the_page_are_as_long_as_the_shares(made):

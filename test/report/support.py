@@ -129,17 +129,12 @@ class Drawn:
                 for group in elements(self.tree, "g") if group.get("class") == kind
                 for path in elements(group, "path") for piece in self._points(path)]
 
-    def x_range(self):
-        """Least and greatest number of the axis."""
+    def range_of(self, axis):
+        """Least and greatest number of the axis "x" or "y"."""
+        ticks, length = (self.x, "width") if axis == "x" else (self.y, "height")
         frame = [point for path in elements(self.tree, "rect") for point in
-                 (float(path.get("x")), float(path.get("x")) + float(path.get("width")))]
-        return self._scaled(self.x, min(frame)), self._scaled(self.x, max(frame))
-
-    def y_range(self):
-        """Least and greatest number of the axis: its lines across are as long as that."""
-        frame = [point for path in elements(self.tree, "rect") for point in
-                 (float(path.get("y")), float(path.get("y")) + float(path.get("height")))]
-        return self._scaled(self.y, max(frame)), self._scaled(self.y, min(frame))
+                 (float(path.get(axis)), float(path.get(axis)) + float(path.get(length)))]
+        return sorted(self._scaled(ticks, place) for place in (min(frame), max(frame)))
 
     def classes(self, kind):
         """Classes of everything drawn of this kind, each once."""

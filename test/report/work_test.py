@@ -86,7 +86,7 @@ def test_std_of_the_measurement_where_it_is_known(measured):
     assert figures(page)["blow energy, median \u00b1 deviation"].endswith("\u00b1 7.0 J")
     picture = page.drawn("Restitution:")
     heights = [y for piece in picture.curves("band first") for _, y in piece]
-    low, high = picture.y_range()
+    low, high = picture.range_of("y")
     assert high - low >= 2 * 0.3
     assert max(heights) - min(heights) < 0.3 * (high - low)
 
@@ -104,7 +104,7 @@ def test_histograms_hold_every_blow(site, caption, sql):
 def test_starting_turns_do_not_stretch_a_histogram(made, site):
     page = page_of(made("odd", "UPDATE blows SET energy = 1.0 WHERE turn < 4", "UPDATE blows SET energy = 90000.0 WHERE turn = 10",
                         seconds=200.0))
-    assert page.drawn("Blow energy of").x_range() == page_of(site).drawn("Blow energy of").x_range()
+    assert page.drawn("Blow energy of").range_of("x") == page_of(site).drawn("Blow energy of").range_of("x")
     assert "4 of them, as at start and stop, lie beyond the picture" in page.text
     assert sum(value(row["Blows"]) for row in page.table("Blows by blow energy").values()) == 1000
 
