@@ -2,7 +2,6 @@
 import importlib
 import os
 import pathlib
-import re
 import runpy
 import subprocess
 import sys
@@ -12,8 +11,6 @@ import pytest
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PACKAGE = SOURCE / "ros2" / "hammer_loads_msgs"
 NAMES = sorted(path.stem for path in (SOURCE / "msg").glob("*.msg"))
-CONSTANT = re.compile(r"^\w+\s+[A-Z][A-Z0-9_]*\s*=")
-FIELD_NAME = re.compile(r"^(?!.*__)(?!.*_$)[a-z][a-z0-9_]*$")  # rosidl: VALID_FIELD_NAME_PATTERN
 TYPES_OF_ROS_1 = {"std_msgs/Header": "std_msgs/Header", "builtin_interfaces/Time": "time",
                   "builtin_interfaces/Duration": "duration"}
 TRANSLATE = """
@@ -56,14 +53,6 @@ def test_the_committed_files_are_those_that_the_script_writes(script):
     assert script["package_files"]() == written, "run scripts/ros2_messages"
     committed = {path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*") if path.is_file()}
     assert committed == set(written)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_field_name_is_legal_in_ros_2(name):
-    lines = (line.split("#")[0].strip() for line in (SOURCE / "msg" / (name + ".msg")).read_text().splitlines())
-    fields = [line.split()[1] for line in lines if line and not CONSTANT.match(line)]
-    assert fields
-    assert [field for field in fields if not FIELD_NAME.match(field)] == []
 
 
 @pytest.mark.parametrize("name", NAMES)
