@@ -79,21 +79,6 @@ TEST_F(LogTest, StandingDiskBlocksNobodyAndDropsAreCounted) {
   EXPECT_EQ(onTopic(entries, "/c").size(), 1u);
 }
 
-TEST_F(LogTest, DestructorWritesWhatASlowDiskStillOwes) {
-  Gate gate;
-  LogDisk disk;
-  disk.before_write = [&gate] { gate.pass(); };
-  {
-    BagLog log(settings_, disk);
-    ASSERT_TRUE(log.start().empty());
-    gate.close();
-    for (std::size_t i = 0; i < 2000; ++i) log.write("/a", at(i), wrench(i));
-    EXPECT_EQ(log.health().messages_written, 0u);
-    gate.open();
-  }
-  EXPECT_EQ(readAll().size(), 2000u);
-}
-
 /// Runs in a process of its own; 0 if all went well.
 template <typename Action>
 int inChild(Action action) {

@@ -41,18 +41,5 @@ TEST(RecordClock, RisesWhateverTheWallClockDoes) {
   EXPECT_EQ(clock.last(), ros::Time(101.0));
 }
 
-TEST(RecordClock, RestartsWhenSimulatedTimeRunsBack) {
-  ros::Time::setNow(ros::Time(100.0));
-  ASSERT_TRUE(ros::Time::isSimTime());
-  RecordClock clock;
-  clock.next(ros::Time(100.0));
-  const RecordClock::Tick back = clock.next(ros::Time(50.0));
-  EXPECT_EQ(back.time, ros::Time(50.0));
-  EXPECT_TRUE(back.ran_back);
-  const RecordClock::Tick on = clock.next(ros::Time(50.0));
-  EXPECT_EQ(on.time, ros::Time(50, 1)) << "a clock that stands still is no jump";
-  EXPECT_FALSE(on.ran_back);
-}
-
 }  // namespace
 }  // namespace hammer_loads
