@@ -25,17 +25,11 @@ class GrappleFlowTest : public testing::Test {
     flow_.jointStates(sliderMessage(stamp_, position, velocity), recordTime());
   }
   ros::Time recordTime() const { return stamp_ + ros::Duration(0.003); }
-  std::uint64_t count(const std::string& reason) const {
+  RefusalCount refused(const std::string& reason) const {
     for (const RefusalCount& refusal : flow_.refusals()) {
-      if (refusal.reason == reason) return refusal.count;
+      if (refusal.reason == reason) return refusal;
     }
     throw std::runtime_error("no such reason: " + reason);
-  }
-  std::string last(const std::string& reason) const {
-    for (const RefusalCount& refusal : flow_.refusals()) {
-      if (refusal.reason == reason) return refusal.last;
-    }
-    return {};
   }
 
   KeptMessages kept_;
@@ -104,30 +98,30 @@ TEST_F(GrappleFlowTest, MechanismHoldsTheTablesJointAngles) {
 }
 
 TEST_F(GrappleFlowTest, RefusesEachBadSampleCountsItAndStaysOnItsBranch) {
-  std::uint64_t refused = 0;
+  std::uint64_t all_refused = 0;
   for (const test::BadSample& bad : test::badSamples(stamp_, 0.5)) {
     SCOPED_TRACE(bad.reason);
     send(0.5, 0.1);
     const std::size_t before = kept_.edges[kRight].size();
     const double x = kept_.edges[kRight].back().second.point.x;
-    const std::uint64_t count_before = count(bad.reason);
+    const std::uint64_t count_before = refused(bad.reason).count;
     sensor_msgs::JointState message = bad.message;
     message.header.stamp += stamp_ - ros::Time(1000.0);
     flow_.jointStates(message, recordTime());
-    EXPECT_EQ(count(bad.reason), count_before + 1);
+    EXPECT_EQ(refused(bad.reason).count, count_before + 1);
     EXPECT_EQ(kept_.edges[kRight].size(), before);
     EXPECT_EQ(kept_.mechanisms.size(), before);
-    if (bad.reason != std::string("missing joint")) ++refused;
-    EXPECT_EQ(flow_.refused(), refused);
+    if (bad.reason != std::string("missing joint")) ++all_refused;
+    EXPECT_EQ(flow_.refused(), all_refused);
     stamp_ += ros::Duration(kStep);
     send(0.5, 0.1);
     ASSERT_EQ(kept_.edges[kRight].size(), before + 1);
     EXPECT_NEAR(kept_.edges[kRight].back().second.point.x, x, kRounding);
   }
-  EXPECT_EQ(last("across fold"),
+  EXPECT_EQ(refused("across fold").last,
             "grapple_slider_joint: 0.88 m, across fold: must lie between the dead centre at -0.27 m and the fold at "
             "0.7331923934967 m");
-  EXPECT_EQ(last("short array"), "");
+  EXPECT_EQ(refused("short array").last, "");
 }
 
 TEST_F(GrappleFlowTest, AcceptsTimeThatRunsBackFromTheSecondSampleOn) {

@@ -164,26 +164,25 @@ class ProcessTest(unittest.TestCase):
         self.assertGreater(len(wrenches), 0.99 * sent)
         return sent, len(wrenches)
 
-    def log_after(self, name, sign):
-        node = NodeProcess(name, {'log_enabled': True, 'log_directory': self.directory, 'log_min_free_mb': 0,
-                                  'crank_zero_std_rad': KNOWN_ZERO})
-        sent, received = self.publish_session(name, 4.0)
-        code, out, err = node.end(sign)
-        self.assertEqual(code, 0, err)
-        bags = glob.glob(self.directory + '/*')
-        self.assertEqual(len(bags), 1, bags)
-        self.assertTrue(bags[0].endswith('.bag'), bags)
-        return bags[0], sent, received
+    def messages_in(self, path):
+        """Numbers of messages of a bag by topic."""
+        with rosbag.Bag(path) as bag:
+            return {topic: info.message_count for topic, info in bag.get_type_and_topic_info().topics.items()}
 
     def test_the_log_is_whole_after_sigint_sigterm_and_a_closed_terminal(self):
         for name, sign in (('log_int', signal.SIGINT), ('log_term', signal.SIGTERM), ('log_hup', signal.SIGHUP)):
-            path, sent, received = self.log_after(name, sign)
+            node = NodeProcess(name, {'log_enabled': True, 'log_directory': self.directory, 'log_min_free_mb': 0,
+                                      'crank_zero_std_rad': KNOWN_ZERO})
+            sent, received = self.publish_session(name, 4.0)
+            code, _, err = node.end(sign)
+            self.assertEqual(code, 0, err)
+            path, = glob.glob(self.directory + '/*')
+            self.assertTrue(path.endswith('.bag'), path)
             subprocess.run(['rosbag', 'check', path], check=True, stdout=subprocess.DEVNULL)
             info = subprocess.run(['rosbag', 'info', path], check=True, stdout=subprocess.PIPE,
                                   universal_newlines=True).stdout
             self.assertIn('compression:  lz4', info)
-            with rosbag.Bag(path) as bag:
-                topics = {t: i.message_count for t, i in bag.get_type_and_topic_info().topics.items()}
+            topics = self.messages_in(path)
             self.assertEqual(topics['/%s/crank' % name], sent)
             self.assertEqual(topics['/%s/hull_wrench' % name], received)
             self.assertEqual(topics['/%s/run_info' % name], 1)
@@ -247,8 +246,7 @@ class ProcessTest(unittest.TestCase):
         subscriber.unregister()
         bags = sorted(glob.glob(self.directory + '/*'))
         self.assertEqual(len(bags), 2, bags)
-        with rosbag.Bag(bags[-1]) as bag:
-            topics = {t: i.message_count for t, i in bag.get_type_and_topic_info().topics.items()}
+        topics = self.messages_in(bags[-1])
         self.assertEqual(topics['/%s/crank' % name], sent)
         self.assertEqual(topics['/%s/hull_wrench' % name], received)
 

@@ -118,25 +118,24 @@ class RestartTest(unittest.TestCase):
         self.assertIn('/a/hammer_loads/hull_wrench', topics)
         self.assertTrue(outputs(path) == outputs(process_again(path, self.a)))
 
-    def test_3_an_unwritable_log_directory_costs_the_log_alone(self):
-        """The console reports it."""
-        node = NodeProcess('unwritable', {'log_directory': '/proc', 'log_min_free_mb': 0})
-        self.assertTrue(eventually(lambda: '/unwritable/hull_wrench' in dict(rosgraph.Master('/t').getTopicTypes())))
+    def console_of(self, name, directory):
+        """Errors of a node that ends well after it has begun, with a log in this directory."""
+        node = NodeProcess(name, {'log_directory': directory, 'log_min_free_mb': 0})
+        self.assertTrue(eventually(lambda: '/%s/hull_wrench' % name in dict(rosgraph.Master('/t').getTopicTypes())))
         code, _, err = node.end()
         self.assertEqual(code, 0, err)
+        return err
+
+    def test_3_an_unwritable_log_directory_costs_the_log_alone(self):
+        err = self.console_of('unwritable', '/proc')
         self.assertIn("log_directory: '/proc', must be writable", err)
         self.assertIn('the node runs without a log', err)
 
     def test_4_an_unclosed_bag_is_reported_with_its_recovery(self):
-        """The console has the command that recovers it."""
         bag = os.path.join(self.directory, 'unclosed_2026-01-02-00-00-00_0.bag')
         with open(bag + '.active', 'w') as file:
             file.write('cut off')
-        node = NodeProcess('unclosed', {'log_directory': self.directory, 'log_min_free_mb': 0})
-        self.assertTrue(eventually(lambda: '/unclosed/hull_wrench' in dict(rosgraph.Master('/t').getTopicTypes())))
-        code, _, err = node.end()
-        self.assertEqual(code, 0, err)
-        self.assertIn("mv '%s.active' '%s' && rosbag reindex '%s'" % (bag, bag, bag), err)
+        self.assertIn("mv '%s.active' '%s' && rosbag reindex '%s'" % (bag, bag, bag), self.console_of('unclosed', self.directory))
         self.assertTrue(os.path.exists(bag + '.active'))
 
 
