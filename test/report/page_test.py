@@ -1,10 +1,13 @@
 """Content of a page, read as a browser without JavaScript reads it, against independent queries of the database."""
 import os
+import re
 import statistics
+import subprocess
+import sys
 
 import pytest
 
-from support import Reader, execute, page_of, report, value
+from support import SOURCE, Reader, execute, page_of, report, value
 import sample_database as sample
 
 
@@ -192,3 +195,14 @@ def test_text_of_a_database_and_its_name_stay_text(made):
         assert sum(tag == name for tag, _ in page.tags) == sum(tag == name for tag, _ in honest.tags)
     assert not [given for _, given in page.tags if "onmouseover" in given or "onerror" in given]
     assert "alert(1)" in page.text
+
+
+def test_ten_lines_make_a_picture(made, tmp_path):
+    """The example of doc/report.md."""
+    text = (SOURCE / "doc" / "report.md").read_text(encoding="utf-8")
+    code = re.search(r"<!-- example -->\n```python\n(.*?)```", text, re.S).group(1)
+    assert code.count("\n") <= 10
+    made("work")
+    subprocess.run([sys.executable, "-c", code], cwd=str(tmp_path), check=True,
+                   env=dict(os.environ, MPLBACKEND="Agg", MPLCONFIGDIR=str(tmp_path)))
+    assert (tmp_path / "work.png").stat().st_size > 5000
