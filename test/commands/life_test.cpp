@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "hammer_loads/life/database.h"

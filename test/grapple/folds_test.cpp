@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "grapple/explicit_curve.h"
 #include "grapple/grapples.h"
 

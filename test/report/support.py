@@ -147,13 +147,13 @@ def value(text):
 
 
 class Reader(html.parser.HTMLParser):
-    """A page as a browser without JavaScript reads it: visible text, tables by caption, ids, scripts."""
+    """A page as a browser without JavaScript reads it: visible text, tables by caption, ids."""
 
     def __init__(self, page):
         super().__init__()
         self.size = len(page)
         self.pictures = [Drawn(svg) for svg in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
-        self.text, self.tables, self.ids, self.tags, self.scripts, self.links = "", {}, [], [], [], []
+        self.text, self.tables, self.ids, self.tags, self.links = "", {}, [], [], []
         self.pieces = []  # (tag, text) of every piece of text
         self.open, self._rows, self._caption, self._cell = [], None, "", None
         self.feed(page)
@@ -172,8 +172,6 @@ class Reader(html.parser.HTMLParser):
             self._rows.append([])
         if tag in ("td", "th"):
             self._rows[-1].append("")
-        if tag == "script":
-            self.scripts.append("")
 
     def handle_endtag(self, tag):
         if tag in ("path", "rect"):
@@ -186,9 +184,7 @@ class Reader(html.parser.HTMLParser):
 
     def handle_data(self, data):
         inside = self.open[-1] if self.open else ""
-        if inside == "script":
-            self.scripts[-1] += data
-        elif inside == "caption":
+        if inside == "caption":
             self._caption += data
         elif self._rows and any(tag in ("td", "th") for tag in self.open[-3:]):
             self._rows[-1][-1] += data

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
 
-#include <cmath>
 #include <map>
 
 #include "support/counting_new.h"

@@ -1,7 +1,5 @@
 #include "hammer_loads/settings/hammer_parameters.h"
 
-#include <cmath>
-
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "settings/hammer_yaml.h"
 #include "settings/load_support.h"
