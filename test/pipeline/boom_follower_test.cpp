@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "boom/booms.h"
-#include "hammer_loads/pipeline/boom_warnings.h"
 #include "hammer_loads/util/constants.h"
 #include "support/constants.h"
 
@@ -95,52 +92,6 @@ TEST(BoomFollower, ALoadThatStaysIsCarriedAsOnARigidBoom) {
   EXPECT_GT(deflection, 0.0);
   // Along z alone the hull yields as its reduced stiffness says; the x force and moment are a tenth of it here.
   EXPECT_NEAR(deflection, kLoad.force_z / state.reduced.stiffness, 0.5 * deflection);
-}
-
-TEST(BoomFollower, ABlowBetweenPiecesIsAnImpulse) {
-  Follower compliant(BoomModel::kCompliant);
-  compliant.sample({});
-  WrenchHistory step;
-  step.count = 2;
-  step.pieces[0].duration = step.pieces[1].duration = 1e-9;
-  step.pieces[0].ends_in_blow = true;
-  step.pieces[0].blow.force_z = 60.0;
-  const BoomState& state = compliant.sample({}, step);
-  EXPECT_NEAR(state.tip.velocity.z(), 60.0 / state.reduced.mass, 1e-6 * 60.0 / state.reduced.mass);
-  // The energy is that of the reduced mass.
-  EXPECT_NEAR(compliant.follower.boom().vibration().energy(), 0.5 * 60.0 * 60.0 / state.reduced.mass, 1e-3);
-}
-
-/// As on a computer that is behind: the state is there when the reason is asked for, and was not at the sample.
-TEST(BoomFollower, NamesJointStatesThatComeLaterThanTheSample) {
-  Follower compliant(BoomModel::kCompliant);
-  compliant.sample(kLoad);
-  compliant.now += 300 * kMs;
-  ASSERT_TRUE(compliant.follower.sample({compliant.now, kLoad}, {}).fault);
-  compliant.follower.jointStates(compliant.now, kFour, {0.2, -0.35, 1.2, -0.85}, {});
-  ASSERT_TRUE(compliant.follower.joints().complaints(compliant.now).empty());
-  std::vector<Warning> warnings;
-  warnOfBoom(compliant.follower, &compliant.follower.state(), false, warnings);
-  const auto joints = std::find_if(warnings.begin(), warnings.end(),
-                                   [](const Warning& w) { return std::string(w.key) == "boom joints"; });
-  ASSERT_NE(joints, warnings.end());
-  EXPECT_EQ(
-      joints->text,
-      "boom joints: no loads for 1 samples: swing_joint: its states come later than the crank samples of their time");
-}
-
-TEST(BoomFollower, StatesTheHullsLoadAtALink) {
-  Follower rigid(BoomModel::kRigid);
-  rigid.follower.jointStates(0, kFour, {0.0, 0.0, 0.4, 0.0}, {});
-  rigid.follower.sample({0, {}}, {});
-  const auto arm = rigid.follower.linkIndex("arm_link");
-  ASSERT_TRUE(arm);
-  EXPECT_FALSE(rigid.follower.linkIndex("strain_gauge"));
-  // The hull stands 1.80 m ahead of the arm's pin and 0.55 m below it.
-  const Wrench w = rigid.follower.wrenchAtLink(*arm, {1000.0, 20000.0, 50.0});
-  EXPECT_NEAR(w.force.x(), 1000.0, 1e-9);
-  EXPECT_NEAR(w.force.z(), 20000.0, 1e-9);
-  EXPECT_NEAR(w.torque.y(), 50.0 - 0.55 * 1000.0 - 1.80 * 20000.0, 1e-9);
 }
 
 TEST(BoomFollower, HoldsDownAgainstTheMeanHoldDownForceAtTheTool) {

@@ -56,51 +56,6 @@ TEST(HullImu, AcceptsTimeRunningBackFromTheSecondReadingOn) {
   EXPECT_TRUE(imu.at(1002 * kMs));
 }
 
-/// 1 ns and 50 us apart: a difference of 0.01 rad/s is noise there, not 1e7 and 200 rad/s2.
-TEST(HullImu, IgnoresSimultaneousStamps) {
-  const auto turning = [](double rate) {
-    ImuReading reading = kUpright;
-    reading.rate.y() = rate;
-    return reading;
-  };
-  for (const StampNs apart : {StampNs{1}, StampNs{50'000}}) {
-    HullImu imu(atD());
-    imu.update(0, turning(0.0));
-    imu.update(apart, turning(0.01));
-    EXPECT_FALSE(imu.at(kMs)) << "one reading and its neighbour";
-    imu.update(kMs, turning(0.02));
-    imu.update(kMs + apart, turning(0.03));
-    ASSERT_TRUE(imu.at(kMs + apart));
-    EXPECT_NEAR(imu.at(kMs + apart)->acceleration, 20.0, 1.1);
-    constexpr StampNs kNext = kMs + 190'000;
-    imu.update(kNext, turning(0.05));
-    EXPECT_NEAR(imu.at(kNext)->acceleration, apart == 1 ? 105.3 : 142.9, 1.0) << "two at 5 kHz do";
-  }
-}
-
-TEST(HullImu, ReportsThatItIsStale) {
-  HullImu imu(atD());
-  for (StampNs t : {0 * kMs, 1 * kMs}) imu.update(t, kUpright);
-  EXPECT_TRUE(imu.at(21 * kMs));
-  EXPECT_FALSE(imu.at(21 * kMs + 1));
-  EXPECT_FALSE(imu.at(-20 * kMs));
-  imu.update(30 * kMs, kUpright);  // after a gap: one reading in a row
-  EXPECT_FALSE(imu.at(30 * kMs));
-  imu.update(31 * kMs, kUpright);
-  EXPECT_TRUE(imu.at(31 * kMs));
-}
-
-TEST(HullImu, FollowsTheLineBetweenReadingsAndOneIntervalBeyond) {
-  HullImu imu(atD());
-  imu.update(0, {{0.0, 0.0, 10.0}, {0.0, 0.1, 0.0}});
-  imu.update(2 * kMs, {{0.0, 0.0, 12.0}, {0.0, 0.3, 0.0}});
-  EXPECT_NEAR(imu.at(kMs)->gravity.z, -11.0, 1e-13);
-  EXPECT_NEAR(imu.at(3 * kMs)->gravity.z, -13.0, 1e-13);
-  EXPECT_NEAR(imu.at(9 * kMs)->gravity.z, -14.0, 1e-13);
-  EXPECT_NEAR(imu.at(3 * kMs)->rate, 0.4, 1e-14);
-  EXPECT_NEAR(imu.at(2 * kMs)->acceleration, 100.0, 1e-10);
-}
-
 /// Force error over the peak: largest and root mean square.
 struct ForceError {
   double worst{}, sum{}, peak{};

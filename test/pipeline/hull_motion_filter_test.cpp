@@ -1,5 +1,4 @@
-// The hull's motion by its IMU, blows included: against a spring and mass in closed form, and against the machine on
-// its oil, whose equations are its own.
+// The hull's motion by its IMU, blows included, against the machine on its oil, whose equations are its own.
 #include "hammer_loads/pipeline/hull_motion_filter.h"
 
 #include <gtest/gtest.h>
@@ -38,70 +37,6 @@ TEST(WrenchPath, GivesTheProbabilityOfTheOtherSideAndTheLoadAddedThere) {
   EXPECT_NEAR(before.blow[1], 3.0, 1e-12);
   EXPECT_NEAR(after.blow[1], -3.0, 1e-12);
   EXPECT_LT(path.otherSide(2 * test::kMs).probability, 1e-12);
-}
-
-/// Mass on a spring under a load of steps: exact from step to step.
-struct SteppedOscillator {
-  double mass, omega, x{}, v{}, force{};
-  void advance(double h) {
-    const double rest = force / (mass * omega * omega), c = std::cos(omega * h), s = std::sin(omega * h);
-    const double off = x - rest;
-    x = rest + off * c + v / omega * s;
-    v = -omega * off * s + v * c;
-  }
-  double acceleration() const { return force / mass - omega * omega * x; }
-};
-
-struct Foretold {
-  double compliance{}, rms_at_jumps{}, covered{};
-};
-
-/// Readings each `interval`, the load steps just after each third of them: what the next instant is foretold as.
-Foretold foretell(double interval, double noise) {
-  DrivenSignal signal({DrivenSignal::Reads::kItself, 0.1, {5e-3, 5e-3, 5e-2}, {4e3, 4e3, 2e3}, {10.0, 10.0, 5.0}});
-  SteppedOscillator hull{400.0, kTwoPi * 9.0};
-  std::mt19937_64 random(5);
-  std::normal_distribution<> normal;
-  Foretold result;
-  int jumps = 0;
-  const Eigen::Vector3d along(0.0, 1.0, 0.0), none = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 6000; ++i) {
-    const auto swing =
-        signal.swing(interval, interval * hull.force * along, 0.5 * interval * interval * hull.force * along);
-    hull.advance(interval);
-    if (i > 0)
-      signal.advance(
-          {interval, interval * hull.force * along, none, {0.0, swing.velocity, 0.0}, {0.0, swing.way, 0.0}});
-    signal.read(9.8 + hull.acceleration() + noise * normal(random), interval, hull.force * along, {}, true);
-    if (i % 3 != 0) continue;
-    hull.force = 4000.0 * normal(random);
-    if (i < 3000) continue;
-    const auto value = DrivenSignal::Future(signal).at(hull.force * along);
-    const double miss = value.signal - 9.8 - hull.acceleration();
-    result.rms_at_jumps += miss * miss;
-    result.covered += std::abs(miss) <= 2.0 * std::sqrt(value.signal_variance);
-    ++jumps;
-  }
-  result.rms_at_jumps = std::sqrt(result.rms_at_jumps / jumps), result.covered /= jumps;
-  result.compliance = signal.compliance()[1];
-  return result;
-}
-
-constexpr double kJump = 4000.0 / 400.0;  // root mean square [m/s2]
-
-/// Without the load all of it would be missed.
-TEST(DrivenSignal, JumpsWithTheLoadAndStatesItsDeviation) {
-  for (const double interval : {1e-3, 5e-3}) {
-    for (const double noise : {0.02, 0.3}) {
-      const Foretold e = foretell(interval, noise);
-      std::printf("%g s, %g m/s2: compliance %.5f, missed %.3f m/s2, covered %.0f %%\n", interval, noise, e.compliance,
-                  e.rms_at_jumps, 100.0 * e.covered);
-      EXPECT_NEAR(e.compliance, 1.0 / 400.0, 0.02 / 400.0);
-      EXPECT_LT(e.rms_at_jumps, std::max(1.5 * noise, 0.005 * kJump));  // or half a percent of the jump
-      EXPECT_GT(e.covered, 0.88);
-      EXPECT_LT(e.covered, 0.995);
-    }
-  }
 }
 
 struct VectorErrors {

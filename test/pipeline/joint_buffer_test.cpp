@@ -15,10 +15,10 @@ namespace {
 using test::kMs;
 using Names = std::vector<std::string>;
 
-PipelineSettings accelerated(BoomAcceleration acceleration = BoomAcceleration::kDifference) {
+PipelineSettings accelerated() {
   PipelineSettings s;
   s.joint_max_age = 0.2;
-  s.boom_acceleration = acceleration;
+  s.boom_acceleration = BoomAcceleration::kDifference;
   return s;
 }
 
@@ -77,25 +77,6 @@ TEST_F(Joints, MayComeInPartsInAnyOrderAmongOthers) {
   EXPECT_TRUE(buffer_.complaints(2 * kMs).empty());
 }
 
-TEST_F(Joints, GrowStaleEachByItself) {
-  buffer_.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {});
-  buffer_.update(100 * kMs, {"swing_joint", "boom_joint", "hammer_joint"}, {0.0, 0.0, 0.0}, {});
-  at(200 * kMs);
-  JointMotion motion;
-  const auto fault = buffer_.at(201 * kMs, motion);
-  ASSERT_TRUE(fault);
-  EXPECT_EQ(fault->kind, JointFault::Kind::kStale);
-  EXPECT_EQ(buffer_.name(fault->joint), "arm_joint");
-  EXPECT_NEAR(fault->age, 0.201, 1e-12);
-  EXPECT_EQ(buffer_.complaints(201 * kMs), Names{"arm_joint: 0.201 s old, must be at most 0.2 s"});
-  buffer_.update(300 * kMs, {"arm_joint"}, {1.0}, {});
-  at(300 * kMs);
-  // A long gap is not bridged, but its ends are known.
-  buffer_.update(1000 * kMs, kFour, {0.0, 0.0, 2.0, 0.0}, {});
-  EXPECT_TRUE(buffer_.at(600 * kMs, motion));
-  EXPECT_NEAR(at(900 * kMs).position[2], 1.0 + 6.0 / 7.0, 1e-15);
-}
-
 TEST_F(Joints, DifferencesFollowAParabolaExactlyWithoutVelocities) {
   const double a = 0.6, v = -0.3;
   const auto position = [&](double t) { return 1.0 + v * t + 0.5 * a * t * t; };
@@ -107,16 +88,6 @@ TEST_F(Joints, DifferencesFollowAParabolaExactlyWithoutVelocities) {
   EXPECT_NEAR(between.acceleration[2], a, 1e-12);
   EXPECT_NEAR(between.position[2], position(0.080), 0.125 * a * 0.04 * 0.04 * 1.01);
   EXPECT_EQ(between.velocity[1], 0.0);
-
-  JointBuffer first(boom_.chain(), accelerated());
-  first.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {});
-  JointMotion motion;
-  ASSERT_FALSE(first.at(0, motion));
-  EXPECT_TRUE(motion.velocity.isZero(0.0));
-  first.update(10 * kMs, kFour, {0.0, 0.0, 1.1, 0.0}, {});
-  ASSERT_FALSE(first.at(10 * kMs, motion));
-  EXPECT_NEAR(motion.velocity[2], 10.0, 1e-13);
-  EXPECT_TRUE(motion.acceleration.isZero(0.0));  // one velocity has no difference
 }
 
 TEST_F(Joints, BadValuesAreRefusedAndCounted) {

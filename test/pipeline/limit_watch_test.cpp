@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <random>
 
 #include "support/session_player.h"
 
@@ -141,23 +139,6 @@ TEST(Limits, SumTheDamageOfTheLastHour) {
   piece.duration = 30'000'000'000;
   watch.judge(turnOf(0.0, 1), work, piece);
   EXPECT_NEAR(watch.states()[0].value, (59.0 * 1000.0 + 500.0) * 8e-6, 1e-12);
-}
-
-TEST(LastHour, EqualsTheSumOverItsMinutes) {
-  std::mt19937 random(3);
-  std::exponential_distribution<double> pause(1.0 / 40.0);
-  std::vector<std::pair<double, double>> all;  // minute, amount
-  LastHour hour;
-  double time = 0.0;
-  for (int i = 0; i < 2000; ++i) {
-    time += pause(random) * (i % 400 == 399 ? 100.0 : 1.0);  // now and then longer than an hour
-    const double amount = static_cast<double>(random() % 8);
-    hour.add(time, amount);
-    all.emplace_back(std::floor(time / 60.0), amount);
-    double sum = 0.0;
-    for (const auto& [minute, of_it] : all) sum += minute > all.back().first - 60.0 ? of_it : 0.0;
-    ASSERT_EQ(hour.sum(), sum) << i;
-  }
 }
 
 }  // namespace

@@ -4,11 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "boom/booms.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
-#include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/imu_trust.h"
-#include "hammer_loads/pipeline/measured_torques.h"
 #include "hammer_loads/pipeline/pressure_trust.h"
 #include "support/constants.h"
 
@@ -69,8 +66,6 @@ TEST(PressureTrust, TriesDelayedPressuresAgainLater) {
   EXPECT_FALSE(trust.isLate());
 }
 
-using test::kMs;
-
 TEST(CylinderPressures, NeedBothChambers) {
   CylinderPressures pressures(0.02);
   EXPECT_TRUE(pressures.update(kMs, 1, Chamber::kBore, 5e6));
@@ -80,17 +75,6 @@ TEST(CylinderPressures, NeedBothChambers) {
   EXPECT_EQ(pressures.at(1, kMs)->bore, 5e6);
   EXPECT_FALSE(pressures.at(0, kMs)) << "another cylinder";
   EXPECT_FALSE(pressures.at(1, 30 * kMs)) << "too old";
-}
-
-TEST(CylinderPressures, LieOnTheLineThroughTheLastTwo) {
-  CylinderPressures pressures(0.02);
-  for (const StampNs t : {kMs, 3 * kMs}) {
-    pressures.update(t, 0, Chamber::kBore, 1e6 * static_cast<double>(t / kMs));
-    pressures.update(t, 0, Chamber::kRod, 2e6);
-  }
-  EXPECT_NEAR(pressures.at(0, 2 * kMs)->bore, 2e6, 1e-6);
-  EXPECT_NEAR(pressures.at(0, 4 * kMs)->bore, 4e6, 1e-6);
-  EXPECT_NEAR(pressures.at(0, 9 * kMs)->bore, 5e6, 1e-6) << "one interval beyond at most";
 }
 
 TEST(CylinderPressures, RefuseWhatCannotBeAndGoOn) {
@@ -104,51 +88,6 @@ TEST(CylinderPressures, RefuseWhatCannotBeAndGoOn) {
   EXPECT_FALSE(pressures.update(1 * kMs, 0, Chamber::kBore, 5e6));
   EXPECT_TRUE(pressures.update(2 * kMs, 0, Chamber::kBore, 5e6)) << "time that runs back is believed the second time";
   EXPECT_EQ(pressures.accepted(), 3U);
-}
-
-constexpr std::size_t kBoomCylinder = 0;
-
-/// The shipped boom at rest and in mid air, its weight as steady torque. One cylinder has pressures.
-class MeasuredBoom : public testing::Test {
- protected:
-  MeasuredBoom() : boom_(test::shippedBoom()) {
-    boom_.moveCompliant(motion_, {0.0, 0.0, -test::kGravity});
-    boom_.vibration().rest();
-    boom_.moveCompliant(motion_, {0.0, 0.0, -test::kGravity});
-  }
-  /// A reading of this torque beside the weight, and a sample of the crank at once.
-  void read(double torque, double step = 1e-3) {
-    stamp_ += static_cast<StampNs>(std::llround(1e9 * step));
-    const Cylinder& cylinder = boom_.cylinders()[kBoomCylinder];
-    const double push = -torque / boom_.cylinderPosition(kBoomCylinder).arm;
-    pressures_.update(stamp_, kBoomCylinder, Chamber::kRod, 0.0);
-    pressures_.update(stamp_, kBoomCylinder, Chamber::kBore, push / cylinder.boreArea());
-    sample(0.0);
-  }
-  void sample(double later) {
-    measured_.follow(boom_, motion_.position, none_, none_,
-                     {stamp_ + static_cast<StampNs>(std::llround(1e9 * later)), 0.0}, pressures_);
-  }
-  const MeasuredTorques::Torque& torque() const { return *measured_.of(kBoomCylinder); }
-
-  Boom boom_;
-  JointVector none_ = JointVector::Zero(boom_.chain().joints());
-  JointMotion motion_{test::workingPosition(), none_, none_};
-  CylinderPressures pressures_{0.5};
-  MeasuredTorques measured_;
-  StampNs stamp_{test::kMs};
-};
-
-/// Of an even line, on whose second reading noise of 100 N m came by 1 ns later: no line goes through these two.
-TEST_F(MeasuredBoom, ReadingsThatCameTogetherAreNoLine) {
-  for (int i = 0; i < 100; ++i) read(10.0 * i);
-  read(1100.0, 1e-9);
-  sample(0.001);
-  EXPECT_NEAR(torque().value, 1000.0, 2.0);
-  EXPECT_LT(torque().deviation, 10.0);
-  for (int i = 100; i < 150; ++i) read(10.0 * i);
-  EXPECT_NEAR(torque().value, 1490.0, 2.0);
-  EXPECT_LT(torque().deviation, 10.0);
 }
 
 }  // namespace

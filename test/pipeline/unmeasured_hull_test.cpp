@@ -135,24 +135,5 @@ TEST(UnmeasuredHull, AHullThatIsHeldHasNoPartOfIt) {
   EXPECT_EQ(held.energy.within, 0);
 }
 
-/// Half the momentum of a rocker that swings in a free hull at even speed is the hull's at each end of the turn.
-TEST(TurnRecorder, SwingIsTheFreeHullsMomentumAtTheBlow) {
-  TurnRecorder recorder;
-  const auto at = [](double time, double momentum) {
-    return TurnInstant{time, {}, {0.0, momentum, 2.0 * momentum}, 0.0, -350.0};
-  };
-  // The links' momentum falls evenly from 60 to -160 N s: a constant push up of the hull, whose mean the boom carries.
-  recorder.begin(at(1.0, 60.0));
-  for (int i = 1; i < 200; ++i) recorder.add(at(1.0 + 1e-3 * i, 60.0 - 1.1 * i));
-  recorder.end(at(1.2, -160.0));
-  EXPECT_NEAR(recorder.swing().z, 0.0, 1e-9);
-  // All of it in the second half: the free hull swings by 220 N s * (1/2 - t) and then back.
-  recorder.begin(at(2.0, 60.0));
-  for (int i = 1; i < 200; ++i) recorder.add(at(2.0 + 1e-3 * i, i < 100 ? 60.0 : 60.0 - 2.2 * (i - 100)));
-  recorder.end(at(2.2, -160.0));
-  EXPECT_NEAR(recorder.swing().z, 55.0, 1e-9);
-  EXPECT_NEAR(recorder.swing().about_d, 110.0, 1e-9);
-}
-
 }  // namespace
 }  // namespace hammer_loads
