@@ -4,7 +4,6 @@
 
 #include "boom/vibrating_machine.h"
 #include "hammer_loads/bench/signal_error.h"
-#include "hammer_loads/boom/mode_identifier.h"
 #include "support/counting_new.h"
 
 namespace hammer_loads {
@@ -22,13 +21,11 @@ double rockForce(double time) {
 
 class OnRock {
  public:
-  OnRock(bool imu, bool pressures, bool identify = false)
-      : machine_(test::shippedBoomParameters(), 1e9, 3), imu_(imu), pressures_(pressures) {
-    if (identify) boom.vibration().identify();
+  explicit OnRock(bool imu) : machine_(test::shippedBoomParameters(), 1e9, 3), imu_(imu) {
     const JointVector zero = JointVector::Zero(4);
     boom.moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
     by_newton_ = boom.hammerTorque({{0.0, 0.0, 1.0}, {0.0, -kFoot, 0.0}});
-    if (pressures) boom.vibration().followContact(by_newton_, kLeast);
+    boom.vibration().followContact(by_newton_, kLeast);
   }
 
   /// The rock's force times `size`; errors are counted from the last second on.
@@ -68,7 +65,7 @@ class OnRock {
       see(1, tipAccelerationReading(J, here, z, g_T, imu[1]), 0.3, 0.3, 0.05);
       see(2, tipRateReading(J, Eigen::Vector3d::UnitY(), imu[2]), 0.005, 0.02, 0.005);
     }
-    for (int j = 1; j < 4 && pressures_ && i % 2 == 0; ++j)
+    for (int j = 1; j < 4 && i % 2 == 0; ++j)
       see(j, oilTorqueReading(j, machine_.hold()[j - 1] + machine_.noise(100.0)), 200.0, 1000.0, 100.0);
   }
   void see(int channel, VibrationReading reading, double noise, double offset, double walk) {
@@ -78,23 +75,14 @@ class OnRock {
 
   test::VibratingMachine machine_;
   test::PulsingHammer hammer_;
-  bool imu_, pressures_;
+  bool imu_;
   JointVector by_newton_, torque_ = JointVector::Zero(4);
   Eigen::Vector3d load_ = Eigen::Vector3d::Zero();
   double time_{};
 };
 
-TEST(ContactFollowing, PressuresShowWhatTheOilCarriesAndTheForceLate) {
-  OnRock run(false, true);
-  run.run(4.0, 1.0);
-  EXPECT_LT(run.torque.rms(), 0.05);
-  EXPECT_LT(run.force.rmsOfRange(), 0.2);
-  EXPECT_NEAR(run.force.sum[0] / run.force.sum[1], 1.0, 0.1) << "its mean is right";
-  EXPECT_EQ(run.allocations, 0U);
-}
-
 TEST(ContactFollowing, GivesTheForceOfTheInstantWithAnImu) {
-  OnRock run(true, true);
+  OnRock run(true);
   run.run(4.0, 1.0);
   EXPECT_LT(run.torque.rms(), 0.04);
   EXPECT_LT(run.force.rmsOfRange(), 0.09);
@@ -103,7 +91,7 @@ TEST(ContactFollowing, GivesTheForceOfTheInstantWithAnImu) {
 }
 
 TEST(ContactFollowing, AHullThatHangsCountsAsFreeAndLandsAgain) {
-  OnRock run(false, true);
+  OnRock run(false);
   run.run(3.0, 0.0);
   EXPECT_EQ(run.boom.vibration().contact(), 0.0);
   EXPECT_LT(run.torque.rms(), 0.05);
@@ -111,21 +99,6 @@ TEST(ContactFollowing, AHullThatHangsCountsAsFreeAndLandsAgain) {
   EXPECT_GT(run.boom.vibration().contact(), 0.0);
   run.run(4.0, 0.0);
   EXPECT_EQ(run.boom.vibration().contact(), 0.0) << "it was lifted off";
-}
-
-TEST(ContactFollowing, LearnsNothingFromABouncingHullWithoutPressures) {
-  OnRock run(true, false, true);
-  run.run(6.0, 0.0);
-  const ModeIdentifier& identifier = *run.boom.vibration().identifier();
-  EXPECT_TRUE(identifier.explains());
-  EXPECT_TRUE(identifier.identified());
-  run.run(3.0, 1.0);
-  EXPECT_FALSE(identifier.explains());
-  EXPECT_FALSE(identifier.identified());
-  EXPECT_EQ(identifier.frequencyRatio(0), 1.0);
-  run.run(8.0, 0.0);
-  EXPECT_TRUE(identifier.explains()) << "it hangs again";
-  EXPECT_TRUE(identifier.identified());
 }
 
 }  // namespace

@@ -27,20 +27,6 @@ std::string tiltedUrdf() {
       "<origin xyz=\"0.25 0 0.40\" rpy=\"0 0 0\"/>", "<origin xyz=\"0.25 0 0.40\" rpy=\"0.02 -0.03 0.01\"/>");
 }
 
-TEST(Gravity, FollowsABaseThatLeansInTheRoot) {
-  std::mt19937 random(51);
-  for (int i = 0; i < 100; ++i) {
-    const BaseTilt base{test::between(random, -3.0, 3.0), test::between(random, -1.5, 1.5)};
-    const Eigen::Matrix3d R_WB = about(1, base.pitch) * about(0, base.roll);
-    const Eigen::Vector3d expected = R_WB.transpose() * Eigen::Vector3d(0.0, 0.0, -kGravity);
-    EXPECT_LT((gravityInRoot(kGravity, base) - expected).norm(), 1e-14);
-  }
-  EXPECT_EQ(gravityInRoot(kGravity, {}), Eigen::Vector3d(0.0, 0.0, -kGravity));
-  // Boom's side down: gravity pulls along +x. Right side down: along -y, which is to the right.
-  EXPECT_GT(gravityInRoot(kGravity, {0.0, 0.1}).x(), 0.9);
-  EXPECT_LT(gravityInRoot(kGravity, {0.1, 0.0}).y(), -0.9);
-}
-
 TEST(Gravity, FollowsTheTiltsOfTheDescriptionInTheTip) {
   const Checked<Chain> made = Chain::make(tiltedUrdf(), {});
   ASSERT_TRUE(made.value);

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace hammer_loads {
 namespace {
@@ -62,53 +62,6 @@ TEST(HeldForces, GoOutAsTheyCameInWhateverTheLengths) {
   EXPECT_EQ(blows, 1);
   EXPECT_TRUE(forces.empty());
   EXPECT_NEAR(time, 12e-3, 1e-11);
-}
-
-TEST(HeldForces, AreKnownAheadUpToTheLast) {
-  const HeldForces forces = held(8);
-  const ModeVector present = ModeVector::Constant(17.0);
-  for (int i = 0; i < 8; ++i) {  // on the line between a step's ends
-    const double begin = SomeForce::kStep * i,
-                 line = 0.75 * SomeForce::step(i).from[0] + 0.25 * SomeForce::step(i).to[0];
-    const Driven driven = forces.drivenAt(begin + 0.25 * SomeForce::kStep, present);
-    EXPECT_NEAR(driven.force[0], line, 1e-9) << i;
-    EXPECT_EQ(driven.jump[0], begin < SomeForce::kBlow - 1e-9 ? 0.0 : 0.3) << i;
-  }
-  EXPECT_NEAR(forces.drivenAt(1.0, present).force[0], SomeForce::step(7).to[0], 1e-9);
-  EXPECT_EQ(HeldForces().drivenAt(1e-3, present).force, present);
-}
-
-/// A blow 0.2 ms ago and a force that jumps there, seen at an instant known to 0.5 ms and to 0.1 ms: half of the jump
-/// is the line's, half is not; or it has been.
-TEST(HeldForces, TreatABlowAsALineAndABendIfTheInstantIsUncertain) {
-  ModeHistory past;
-  const auto step = [&past](double length, double force) {
-    past.begin(length);
-    past.set(0, {}, {}, force, force);
-  };
-  step(1e-3, 100.0);
-  past.strike(0, 0.4);
-  step(0.2e-3, 160.0);
-  const HeldForces none;
-  const ModeVector present = ModeVector::Constant(160.0);
-  const auto unsure = drivenAround(past, none, present, 0.0, 0.5e-3);
-  ASSERT_TRUE(unsure);
-  EXPECT_NEAR(unsure->velocity_rate[0], 0.4 / 1e-3, 1e-9);
-  EXPECT_NEAR(unsure->force_rate[0], 60.0 / 1e-3, 1e-6);
-  EXPECT_NEAR(unsure->velocity_bend[0], -0.2, 1e-11);
-  EXPECT_NEAR(unsure->force_bend[0], -30.0, 1e-9);
-  const auto sure = drivenAround(past, none, present, 0.0, 0.1e-3);
-  EXPECT_EQ(sure->velocity_rate[0], 0.0);
-  EXPECT_EQ(sure->force_bend[0], 0.0);
-  EXPECT_FALSE(drivenAround(past, none, present, 0.0, 0.0));
-}
-
-TEST(HeldForces, AHistoryReachesAStepBeyondItsFirst) {
-  ModeHistory past;
-  EXPECT_TRUE(past.reaches(1.0)) << "nothing says so yet";
-  for (int i = 0; i < 3; ++i) past.begin(1e-3);
-  EXPECT_TRUE(past.reaches(3.9e-3));
-  EXPECT_FALSE(past.reaches(4.1e-3));
 }
 
 }  // namespace
