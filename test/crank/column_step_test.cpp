@@ -54,23 +54,5 @@ TEST(ColumnStep, IsTheOtherHammersStep) {
   }
 }
 
-TEST(ShaftTable, IsWithinAHundredthOfTheLargestBetweenItsPoints) {
-  const Mechanism mechanism = uncertain();
-  ShaftModel model(mechanism, Level::kLinkage);
-  model.setHullMotion({{1.7, -9.81}, 0.0, 0.0});
-  const ShaftModel table = model.tabulated();
-  MachineColumns::OnShaft worst = MachineColumns::OnShaft::Zero(), largest = worst;
-  for (double offset = -3.14; offset < 3.14; offset += 1.3e-3) {
-    const CrankAngle angle = CrankAngle::fromOffset(offset);
-    const MachineColumns::OnShaft there = model.columns(angle);
-    worst = worst.cwiseMax((table.columns(angle) - there).cwiseAbs());
-    largest = largest.cwiseMax(there.cwiseAbs());
-  }
-  EXPECT_TRUE((worst.array() <= 0.01 * largest.array()).all()) << worst << "\n\n" << largest;
-  EXPECT_GT(worst.sum(), 0.0);  // between its points
-  const CrankAngle mirrored{4e-3, Side::kBeforeBlow};
-  EXPECT_EQ(table.columns(mirrored), model.columns(mirrored));
-}
-
 }  // namespace
 }  // namespace hammer_loads

@@ -2,10 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <vector>
 
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/util/square.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"
@@ -41,39 +39,6 @@ TEST(ConstantErrors, AreSeenInTheInnovations) {
     const ConstantErrors::Vector estimate = found(b) - none;
     for (int k = 0; k < ConstantErrors::kPlace; ++k) EXPECT_NEAR(estimate[k], b[k], 2.5e-3) << i << ' ' << k;
   }
-}
-
-/// What is off for certain is part of the uncertainty with what is not known of it; what may be nothing is not.
-TEST(ConstantErrors, CountsACertainConstantWithItsDeviation) {
-  const auto momentOf = [](double b) {
-    ConstantErrors errors;
-    for (int turn = 0; turn < 12; ++turn) {
-      for (double offset = -3.1; offset < 3.1; offset += 0.2)
-        errors.learn(b, 1e-6, ConstantErrors::ofAngle({offset, 30.0, 0.0}));
-      errors.endTurn(1.0, 0.0);
-    }
-    EXPECT_NEAR(errors.estimate()[0], b, 0.05 * b);
-    return std::sqrt(errors.moment()(0, 0)) / b;
-  };
-  EXPECT_NEAR(momentOf(0.004), 1.0, 0.05);
-  EXPECT_LT(momentOf(0.0005), 0.8);
-}
-
-/// On which side of the blow a sample is cannot wait for it.
-TEST(ConstantErrors, AZeroIsSeenBeforeAnythingElseIsConcluded) {
-  const auto seen = [](double zero, double variance) {
-    ConstantErrors errors;
-    std::vector<double> after;
-    for (int turn = 0; turn < 8; ++turn) {
-      for (int i = 0; i < 40; ++i) errors.learn(zero, variance, ConstantErrors::ofAngle({-3.0 + 0.15 * i, 30.0, 0.0}));
-      errors.endTurn(1.0, 0.0);
-      after.push_back(errors.zeroSeen());
-    }
-    return after;
-  };
-  for (const double s : seen(0.03, 1e-6)) EXPECT_NEAR(s, 0.03, 2e-3);
-  for (const double s : seen(0.002, 1e-6)) EXPECT_EQ(s, 0.0) << "a clean machine's";
-  for (const double s : seen(0.03, 0.1)) EXPECT_EQ(s, 0.0) << "not seen well enough";
 }
 
 }  // namespace
