@@ -87,7 +87,7 @@ checkLocalhost() {
 }
 
 # cmake_options: more of them. A build directory keeps its generator. Headers that many files include are compiled once,
-# and thirty files of a target as one: most of what compiling costs is what headers make, once for each such thirty.
+# and all files of a target as one: most of what compiling costs is what headers make, once for each target.
 cmake_options=()
 configure() {
   local log generator=()
