@@ -84,7 +84,8 @@ std::string exactHammer() {
   return yaml;
 }
 
-/// A machine at work, recorded on a topic of its own, its encoder 0.4 deg off and with 1024 counts.
+/// A machine at work, recorded on a topic of its own, its encoder 0.4 deg off and with 1024 counts. The first reading
+/// is recorded before the first message of /clock, at 1 ns.
 void recordWork(const std::string& path, double seconds, double rate, const std::string& topic) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = seconds;
@@ -102,12 +103,14 @@ void recordWork(const std::string& path, double seconds, double rate, const std:
   bag.write("/hammer_loads/run_info", info.header.stamp, info);
   sensor_msgs::JointState message;
   message.name = {"hammer_crank_joint"};
+  ros::Time record(0, 1);
   for (const simulation::CrankReading& reading : simulation::recordSession(machine).crank) {
     message.header.stamp.fromNSec(static_cast<std::uint64_t>(reading.stamp));
     message.position = {reading.angle};
     message.velocity.clear();
     if (reading.speed) message.velocity = {*reading.speed};
-    bag.write(topic, message.header.stamp, message);
+    bag.write(topic, record, message);
+    record = message.header.stamp;
   }
 }
 

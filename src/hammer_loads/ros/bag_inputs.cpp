@@ -13,6 +13,8 @@
 namespace hammer_loads {
 namespace {
 
+constexpr std::uint32_t kLongest = 10000000;  // [s]: a recording with a real clock has later times than its length
+
 bool beginsAsBag(const std::string& file) {
   constexpr char kMagic[] = "#ROSBAG V";
   char read[sizeof kMagic - 1]{};
@@ -93,18 +95,25 @@ std::string BagInputs::topicsOfType(const std::string& type) const {
 }
 
 std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const {
-  std::pair<ros::Time, ros::Time> span{ros::TIME_MAX, ros::TIME_MIN};
+  std::vector<std::pair<ros::Time, ros::Time>> chunks;
+  ros::Time end;
   for (const auto& bag : bags_) {
     const auto isWanted = [&](const auto& counted) {
       const auto connection = bag->connections().find(counted.first);
       return topic.empty() || (connection != bag->connections().end() && connection->second.topic == topic);
     };
     for (const BagChunk& chunk : bag->chunks()) {
-      if (std::any_of(chunk.counts.begin(), chunk.counts.end(), isWanted))
-        span = {std::min(span.first, chunk.first), std::max(span.second, chunk.last)};
+      if (std::none_of(chunk.counts.begin(), chunk.counts.end(), isWanted)) continue;
+      chunks.emplace_back(chunk.first, chunk.last);
+      end = std::max(end, chunk.last);
     }
   }
-  return span.first <= span.second ? span : std::pair<ros::Time, ros::Time>{};
+  ros::Time begin = end;
+  for (const auto& [first, last] : chunks) {
+    const bool before_clock = first.sec == 0 && end.sec > kLongest;
+    if (!before_clock || last.sec != 0) begin = std::min(begin, before_clock ? last : first);
+  }
+  return {begin, end};
 }
 
 BagMessages BagInputs::messagesOn(const std::set<std::string>& topics) const {

@@ -38,7 +38,8 @@ class BagInputs {
   /// Names of the topics of this type, in one line; "none" if there are none.
   std::string topicsOfType(const std::string& type) const;
   /// Record times of the first and last message of the chunks with the topic, or of all chunks for an empty name; zero
-  /// if there is none.
+  /// if there is none. Messages that were recorded before the first message of /clock have times near 0 and do not
+  /// count.
   std::pair<ros::Time, ros::Time> span(const std::string& topic = {}) const;
   /// The files' names, in one line.
   const std::string& names() const { return names_; }
