@@ -50,5 +50,28 @@ TEST(SupplyLaw, IsLearnedFromTheHose) {
   EXPECT_LT(soft.stiffness, 20.0);
 }
 
+/// After ten thousand innovations, each `memory` times the one before and noise, of variance 4.
+double factorAfter(double memory, double jitter) {
+  SupplyRoughness supply;
+  std::mt19937 random(3);
+  std::normal_distribution<> normal;
+  double innovation = 0.0;
+  for (int i = 0; i < 10000; ++i) {
+    innovation = memory * innovation + 2.0 * std::sqrt(1.0 - memory * memory) * normal(random);
+    supply.learn(innovation, 4.0, jitter);
+  }
+  return supply.factor();
+}
+
+TEST(SupplyRoughness, IsRougherWhereInnovationsKeepTheirSign) {
+  EXPECT_GT(factorAfter(0.3, 0.8), 2.0);
+  EXPECT_LT(factorAfter(-0.3, 0.8), 0.5);
+}
+
+TEST(SupplyRoughness, IsTheGivenOneWhileStampsAreExact) {
+  EXPECT_EQ(factorAfter(0.3, 0.0), 1.0);
+  EXPECT_EQ(factorAfter(-0.3, 0.0), 1.0);
+}
+
 }  // namespace
 }  // namespace hammer_loads
