@@ -19,13 +19,12 @@ constexpr double kRepeats = 0.2;        // relative change between steps that re
 constexpr double kMoves = 1.0;          // [rad/s]: a slower angle does not show its unit
 constexpr int kEnough = 8;              // votes more for another unit than against
 
-constexpr double kWindow = 8e-3;   // [s] over which a rate is taken
-constexpr double kMeanRate = 1.0;  // time constant of the mean rate [s]
-constexpr double kSlowPart = 0.8,
-                 kFastPart = 1.2;         // parts of the mean rate: a hammer's crank passes both in each revolution
-constexpr double kLikeRevolution = 1.25;  // factor
-constexpr double kSameLength = 0.2;       // relative change from one revolution to the next
-constexpr double kLeastCounts = 100.0;    // counts per revolution
+constexpr double kWindow = 8e-3;                    // [s] over which a rate is taken
+constexpr double kMeanRate = 1.0;                   // time constant of the mean rate [s]
+constexpr double kSlowPart = 0.8, kFastPart = 1.2;  // of the mean rate: a crank at work passes both in each revolution
+constexpr double kLikeRevolution = 1.25;            // factor
+constexpr double kSameLength = 0.2;                 // relative change from one revolution to the next
+constexpr double kLeastCounts = 100.0;              // counts per revolution
 
 /// Unit that a cycle's length in the angle's own unit, times the gain, shows. Nothing: it is none of them.
 std::optional<CrankUnit> unitOfRevolution(double length) noexcept {

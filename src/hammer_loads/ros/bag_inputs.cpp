@@ -13,7 +13,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint32_t kLongest = 10000000;  // [s]: a recording with a real clock has later times than its length
+constexpr std::uint32_t kLongest = 10000000;  // [s]: no recording lasts as long
 
 bool beginsAsBag(const std::string& file) {
   constexpr char kMagic[] = "#ROSBAG V";
@@ -95,7 +95,7 @@ std::string BagInputs::topicsOfType(const std::string& type) const {
 }
 
 std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const {
-  std::vector<std::pair<ros::Time, ros::Time>> chunks;
+  std::vector<ros::Time> times;
   ros::Time end;
   for (const auto& bag : bags_) {
     const auto isWanted = [&](const auto& counted) {
@@ -104,15 +104,13 @@ std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const 
     };
     for (const BagChunk& chunk : bag->chunks()) {
       if (std::none_of(chunk.counts.begin(), chunk.counts.end(), isWanted)) continue;
-      chunks.emplace_back(chunk.first, chunk.last);
+      times.insert(times.end(), {chunk.first, chunk.last});
       end = std::max(end, chunk.last);
     }
   }
   ros::Time begin = end;
-  for (const auto& [first, last] : chunks) {
-    const bool before_clock = first.sec == 0 && end.sec > kLongest;
-    if (!before_clock || last.sec != 0) begin = std::min(begin, before_clock ? last : first);
-  }
+  for (const ros::Time& time : times)
+    if (time.sec != 0 || end.sec < kLongest) begin = std::min(begin, time);
   return {begin, end};
 }
 
