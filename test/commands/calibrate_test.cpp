@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "commands/bag_files.h"
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"

@@ -1,9 +1,8 @@
 // What a constant of the hammer does to a step of the crank, against the step of the other hammer.
-#include "hammer_loads/crank/column_step.h"
-
 #include <gtest/gtest.h>
 
 #include "hammer_loads/crank/crank_belief.h"
+#include "hammer_loads/crank/crank_dynamics.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {

@@ -1,10 +1,9 @@
-#include "hammer_loads/crank/crank_sensor.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {

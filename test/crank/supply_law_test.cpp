@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/supply.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"

@@ -1,11 +1,10 @@
 // The table of unknown constants: what the filter says each of them does to it, against a second filter on a machine
 // that has the error.
-#include "hammer_loads/crank/unknowns.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 
+#include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/util/square.h"
 #include "support/filter_settings.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "estimation/linear_machine.h"
-#include "hammer_loads/estimation/constant_fit.h"
+#include "hammer_loads/crank/constant_errors.h"
 
 namespace hammer_loads::test {
 namespace {

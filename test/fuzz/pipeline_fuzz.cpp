@@ -10,9 +10,9 @@
 #include "fuzz/bytes.h"
 #include "fuzz/drawn_settings.h"
 #include "hammer_loads/life/cycle_count.h"
+#include "hammer_loads/pipeline/crank_checks.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
-#include "hammer_loads/pipeline/unit_check.h"
 #include "hammer_loads/settings/channel_names.h"
 #include "hammer_loads/settings/load.h"
 

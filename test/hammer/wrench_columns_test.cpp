@@ -1,10 +1,9 @@
 // What a constant of the hammer does to the loads, against the loads of hammers built a little beside it.
-#include "hammer_loads/hammer/wrench_columns.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "hammer_loads/hammer/hull_model.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {

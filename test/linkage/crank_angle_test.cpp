@@ -1,10 +1,10 @@
-#include "hammer_loads/linkage/crank_angle.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <random>
+
+#include "hammer_loads/linkage/crank_motion.h"
 
 namespace hammer_loads {
 namespace {

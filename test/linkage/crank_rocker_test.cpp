@@ -1,8 +1,8 @@
-#include "hammer_loads/linkage/crank_rocker.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "hammer_loads/linkage/mechanism.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,11 +1,10 @@
 /// What is withheld and named of cranks that are not what the parameters say, on simulated machines and by hand.
-#include "hammer_loads/pipeline/crank_trust.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "hammer_loads/crank/consistency.h"
+#include "hammer_loads/pipeline/crank_checks.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "support/session_player.h"
 

@@ -1,8 +1,7 @@
 /// Weight on a base that leans, with and without a description.
-#include "hammer_loads/pipeline/hull_gravity.h"
-
 #include <gtest/gtest.h>
 
+#include "hammer_loads/pipeline/hull_state.h"
 #include "support/constants.h"
 #include "support/session_player.h"
 

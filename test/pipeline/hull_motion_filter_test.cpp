@@ -10,7 +10,6 @@
 
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/bench/session_player.h"
-#include "hammer_loads/pipeline/hull_mobility.h"
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/format.h"
 #include "support/constants.h"

@@ -1,12 +1,12 @@
 // Readings that no hull gives: single ones are refused, sensors that go on giving them are not used.
+#include "hammer_loads/pipeline/sensor_trust.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "hammer_loads/pipeline/cylinder_pressures.h"
-#include "hammer_loads/pipeline/imu_trust.h"
-#include "hammer_loads/pipeline/pressure_trust.h"
 #include "support/constants.h"
 
 namespace hammer_loads {

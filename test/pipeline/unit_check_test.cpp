@@ -1,9 +1,8 @@
-#include "hammer_loads/pipeline/unit_check.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "hammer_loads/pipeline/crank_checks.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/constants.h"
 #include "support/mo100.h"

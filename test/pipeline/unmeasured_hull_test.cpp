@@ -1,12 +1,11 @@
 /// Blows of hammers whose hull swings on its boom and has no IMU, against hull and hammer as one free system.
-#include "hammer_loads/pipeline/unmeasured_hull.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "hammer_loads/pipeline/hull_state.h"
 #include "support/free_run.h"
 #include "support/mo100.h"
 #include "support/rigid_impact.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/hammer/hull_wrench.h"
-#include "hammer_loads/linkage/motion.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/util/constants.h"

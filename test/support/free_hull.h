@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/simulation/moving_links.h"
 
 namespace hammer_loads::test {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "hammer_loads/linkage/crank_motion.h"
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 
 namespace hammer_loads::test {

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "hammer_loads/linkage/motion.h"
+#include "hammer_loads/linkage/link_motion.h"
 
 namespace hammer_loads::test {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/util/median.h"
 
 namespace hammer_loads::calibration {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/link_motion.h"
 
 namespace hammer_loads::calibration {
 

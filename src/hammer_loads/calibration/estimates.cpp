@@ -6,7 +6,7 @@
 
 #include "hammer_loads/calibration/hammer_keys.h"
 #include "hammer_loads/estimation/gates.h"
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 

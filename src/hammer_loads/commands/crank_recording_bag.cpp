@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "hammer_loads/pipeline/hull_gravity.h"
+#include "hammer_loads/pipeline/hull_state.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {

@@ -8,7 +8,7 @@
 
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/running_mean.h"
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "hammer_loads/crank/weighed_sample.h"
+#include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/estimation/look_back.h"
 
 namespace hammer_loads {

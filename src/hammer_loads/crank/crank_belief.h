@@ -1,15 +1,18 @@
-/// State and covariance of the crank filter, with their prediction, update and jump at a blow.
+/// Belief of the crank filter: state and covariance, their prediction, update and jump at a blow; the samples that
+/// update it, the prior of a blow, and the estimate between two samples.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "hammer_loads/crank/column_step.h"
 #include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_estimate.h"
-#include "hammer_loads/crank/supply.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/gaussian_belief.h"
+#include "hammer_loads/estimation/running_mean.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -97,5 +100,119 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
 /// Derivatives by the hammer's constants of the acceleration [rad/s2] at the state itself.
 void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double acceleration, double inverse_inertia,
                      CrankUncertainty& result) noexcept;
+
+/// Mean and variance of the blows' factors, weighted towards the last ten. If all blows of a machine are alike, the
+/// next one is known before any sample; otherwise the variance remains as large as the scatter.
+class BlowHistory {
+ public:
+  explicit BlowHistory(const BlowPrior& first) noexcept
+      : first_(first),
+        mean_(kLength, first.mean, kFirstCounts),
+        variance_(kLength, first.deviation * first.deviation, kFirstCounts),
+        by_error_(kLength, ConstantErrors::Row::Zero(), kFirstCounts) {}
+
+  /// Takes the factor of a blow, its variance and its derivative by the sensor's errors, estimated from all samples
+  /// since.
+  void add(double factor, double variance, const ConstantErrors::Row& by_error) noexcept {
+    const double doubt = square(gate::kUsual) * variance;
+    if (!(doubt < variance_.mean() || variance < square(kLeast))) return;  // nothing was learned of it
+    variance_.add(square(factor - mean_.mean()));
+    mean_.add(factor);
+    by_error_.add(by_error);
+  }
+
+  BlowPrior prior() const noexcept {
+    return {mean_.mean(), std::clamp(std::sqrt(variance_.mean()), std::min(kLeast, first_.deviation), kMost),
+            by_error_.mean()};
+  }
+
+ private:
+  /// Weight of the first guess in blows; a small weight lets a wrong conclusion from the first few blows show at once.
+  static constexpr double kFirstCounts = 0.1, kLength = 10.0 + kFirstCounts;
+  static constexpr double kLeast = 0.01;  // deviation
+  static constexpr double kMost = 0.3;
+  BlowPrior first_;
+  RunningMean<> mean_, variance_;
+  RunningMean<ConstantErrors::Row> by_error_;
+};
+
+/// A measurement less its prediction.
+struct Innovation {
+  double value{};                                             ///< measured less predicted
+  double total{};                                             ///< variance of the innovation
+  double variance{};                                          ///< the measurement's part of that
+  ConstantErrors::Row by_error{ConstantErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
+
+  double ratio() const noexcept { return value * value / total; }
+  bool exceeds(double deviations) const noexcept { return hammer_loads::exceeds(value, total, deviations); }
+  /// Logarithm of the likelihood, without a constant.
+  double logLikelihood() const noexcept { return -0.5 * (ratio() + std::log(total)); }
+};
+
+struct WeighedSample {
+  double angle{};               ///< from the nearest blow [rad]
+  std::optional<double> speed;  ///< [rad/s]
+  double angle_variance{};      ///< variance of count and noise [rad2]
+  double timing_variance{};     ///< variance of the stamp [s2]
+  double speed_variance{};      ///< variance of the speed's noise [rad2/s2]
+  /// Variances of the constants that reduce the weight of a speed; empty: none.
+  std::optional<ConstantErrors::Row> of_speed{};
+
+  /// Variance of the angle about that at the stamp [rad2].
+  double angleVariance(double speed_there) const noexcept {
+    return angle_variance + speed_there * speed_there * timing_variance;
+  }
+  /// Returns true if its instant is less certain than the crank's place.
+  bool isUnsureOfTime(double speed_there) const noexcept {
+    return speed_there * speed_there * timing_variance > angle_variance;
+  }
+  Innovation ofAngle(const CrankBelief& belief) const noexcept;
+  /// Innovation of the speed. Precondition: a speed was measured.
+  Innovation ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept;
+};
+
+inline Innovation WeighedSample::ofAngle(const CrankBelief& belief) const noexcept {
+  const double offset = belief.encoderOffset(), variance = angleVariance(belief.encoderSpeed());
+  return {CrankAngle::wrapToPi(angle - offset), belief.encoderVariance(CrankBelief::kAngle) + variance, variance,
+          ConstantErrors::ofAngle({offset, belief.encoderSpeed(), 0.0})};
+}
+
+/// An error of the stamp changes the speed by the acceleration.
+inline Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept {
+  const ShaftState& state = belief.state;
+  const ShaftLoad load = model(state.position.angle);
+  const double change = acceleration(load, state);
+  const double noise = speed_variance + square(change) * timing_variance;
+  const auto by_error = ConstantErrors::ofSpeed({belief.encoderOffset(), belief.encoderSpeed(), change});
+  const double of_constants =
+      of_speed ? (by_error - belief.encoderByError(CrankBelief::kSpeed)).cwiseAbs2().dot(*of_speed) : 0.0;
+  return {*speed - belief.encoderSpeed(), belief.encoderVariance(CrankBelief::kSpeed) + noise + of_constants, noise,
+          by_error};
+}
+
+/// Estimate of a state at which the model has the load.
+inline CrankEstimate estimateOf(const ShaftLoad& load, const ShaftState& state) noexcept {
+  return {state.position, state.speed, acceleration(load, state)};
+}
+
+/// Two samples and the step between them; refers to its arguments.
+struct BetweenSamples {
+  const ShaftModel& model;
+  const ShaftModel& step_model;  ///< with the hull's mean motion over the step
+  const CrankBelief& before;
+  const CrankBelief& now;
+  const HullMotion& before_hull;  ///< at the samples
+  const HullMotion& now_hull;
+  double step{};        ///< [s]
+  double most_speed{};  ///< from which on an estimate has diverged [rad/s]
+};
+
+/// Weighted mean of the prediction forward from the earlier sample and backward from the later one, each with more
+/// weight near its own end. A prediction that diverges, between impossible samples, is left out. dt after the earlier
+/// one, less than the step [s].
+CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;
+
+/// Crank by both paths, each with its own speed and torque, at the place between them. None where one has diverged.
+std::optional<CrankWays> waysBetween(const BetweenSamples& samples, double dt) noexcept;
 
 }  // namespace hammer_loads

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "hammer_loads/crank/constant_errors.h"
-#include "hammer_loads/crank/crank_state.h"
-#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/crank_motion.h"
+#include "hammer_loads/linkage/link_motion.h"
 
 namespace hammer_loads {
 

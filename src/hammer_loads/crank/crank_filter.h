@@ -5,18 +5,14 @@
 #include <cmath>
 #include <optional>
 
-#include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
 #include "hammer_loads/crank/contact_hypothesis.h"
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/crank/encoder.h"
-#include "hammer_loads/crank/estimate_between.h"
-#include "hammer_loads/crank/sample_clock.h"
 #include "hammer_loads/crank/speed_trust.h"
-#include "hammer_loads/crank/supply.h"
-#include "hammer_loads/crank/weighed_sample.h"
+#include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/estimation/timing_noise.h"
 

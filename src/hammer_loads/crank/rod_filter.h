@@ -2,8 +2,8 @@
 #pragma once
 
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/estimation/gaussian_belief.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/two_bodies.h"
 
 namespace hammer_loads {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hammer_loads/crank/unknowns.h"
+#include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
@@ -21,8 +21,8 @@ namespace hammer_loads {
 /// less the effect of lag and scale of earlier speeds on the estimate. Lag and scale are estimated by least squares
 /// (Gauss-Newton, one step per turn) over some turns, with their priors. The residuals of a revolution have a variance
 /// and an autocorrelation rho from one sample to the next; n such errors carry as much information as n (1 - rho)/(1 +
-/// rho) independent ones. Speeds are weighted by the uncertainty of lag and scale (GaussianBelief, unknowns.h) until it
-/// is negligible. If lag or scale is significant, speeds are used at the start only.
+/// rho) independent ones. Speeds are weighted by the uncertainty of lag and scale (GaussianBelief, constant_errors.h)
+/// until it is negligible. If lag or scale is significant, speeds are used at the start only.
 class SpeedTrust {
  public:
   /// Restarts after a discontinuity.

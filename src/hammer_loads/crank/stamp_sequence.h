@@ -8,9 +8,14 @@
 #include <cstdlib>
 #include <optional>
 
-#include "hammer_loads/crank/sample_clock.h"
-
 namespace hammer_loads {
+
+/// Knowledge of the time before a sample that is one of equal intervals.
+struct SampleClock {
+  double interval{};        ///< [s]; 0 if not known or not constant
+  double suspected_loss{};  ///< time by which the sample's stamp is late, in whole intervals [s]; it may only be late
+  bool may_have_lost{};     ///< the stamp allows for lost samples before it
+};
 
 /// Estimate of a sensor's own clock from the stamps of its samples: a line by sequence number, whose offset and
 /// interval are found by least squares over all samples so far, later over the last 4000 (expanding, then fading

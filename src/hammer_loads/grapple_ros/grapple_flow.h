@@ -15,7 +15,7 @@
 #include "hammer_loads/grapple/grapple_settings.h"
 #include "hammer_loads/grapple/grapple_tracker.h"
 #include "hammer_loads/grapple_ros/grapple_outputs.h"
-#include "hammer_loads/pipeline/stamp_order.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 

@@ -5,8 +5,8 @@
 
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
-#include "hammer_loads/linkage/motion.h"
 
 namespace hammer_loads {
 namespace {

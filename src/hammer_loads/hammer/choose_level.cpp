@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/hull_wrench.h"
-#include "hammer_loads/hammer/wrench_columns.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/linkage/two_bodies.h"
 #include "hammer_loads/util/format.h"

@@ -1,7 +1,7 @@
 /// Load of the moving links on a hull whose mass includes them at their mean places.
 #pragma once
 
-#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/hull_model.h"
 
 namespace hammer_loads {
 

@@ -3,13 +3,10 @@
 
 #include <Eigen/Core>
 
-#include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/crank_motion.h"
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
-#include "hammer_loads/linkage/motion.h"
 #include "hammer_loads/linkage/two_bodies.h"
 
 namespace hammer_loads {

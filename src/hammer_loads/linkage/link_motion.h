@@ -1,13 +1,138 @@
-/// Motion of crank, rod and rocker, for loads beyond those of the rocker.
+/// Motion of crank, rod and rocker, and of the hull that carries them.
 #pragma once
 
+#include <cmath>
+
 #include "hammer_loads/linkage/crank_motion.h"
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
-#include "hammer_loads/linkage/motion.h"
 #include "hammer_loads/linkage/planar.h"
+#include "hammer_loads/util/sine_cosine.h"
 
 namespace hammer_loads {
+
+struct HullMotion;
+
+/// Gravity in hull axes [m/s2]: (g sin pitch, 0, -g cos pitch) for a level base.
+struct Gravity {
+  double x{};
+  double z{};
+
+  operator HullMotion() const noexcept;  ///< motion of a hull at rest
+};
+
+/// Motion of the frame hammer_hull at its origin D, in its plane. An acceleration of D acts on everything in the hull
+/// as gravity in the opposite direction. Both are therefore one quantity: the negative reading of an accelerometer at
+/// D.
+struct HullMotion {
+  Gravity gravity;        ///< effective: gravity less the acceleration of D, hull axes [m/s2]
+  double rate{};          ///< Omega, turning rate about +y [rad/s]
+  double acceleration{};  ///< angular acceleration about +y [rad/s2]
+
+  bool turns() const noexcept { return rate != 0.0 || acceleration != 0.0; }
+};
+
+/// Motion on the line from a (part 0) to b (part 1); of equal motions that motion to the bit.
+inline HullMotion blend(const HullMotion& a, const HullMotion& b, double part) noexcept {
+  return {{a.gravity.x + part * (b.gravity.x - a.gravity.x), a.gravity.z + part * (b.gravity.z - a.gravity.z)},
+          a.rate + part * (b.rate - a.rate),
+          a.acceleration + part * (b.acceleration - a.acceleration)};
+}
+
+inline Gravity::operator HullMotion() const noexcept { return {*this, 0.0, 0.0}; }
+
+/// Angles are counter-clockwise in the mechanism frame (model.md 1): psi = rocker from A->D, beta = rod,
+/// mu = psi - beta the transmission angle. Rates are per radian of crank angle phi.
+struct Motion {
+  double sin_psi{}, cos_psi{};
+  double u{};               ///< dpsi/dphi [-], P0 (4)
+  double du{};              ///< d2psi/dphi2 [1/rad], P0 (5)
+  double sin_half{};        ///< s = sin(phi/2) >= 0 within the turn
+  double cos_half{};        ///< c = cos(phi/2), negative before the blow
+  double r{};               ///< sqrt(lambda2 lambda3/lambda0 - s^2)
+  double inv_r{};           ///< 1/r
+  double sin_psi_over_s{};  ///< sin psi/s, finite at the blow
+  double du_over_s{};       ///< u'/s, finite at the blow
+};
+
+namespace detail {
+
+/// Terms of both sides of the blow, from s >= 0 and c >= 0, sine and cosine of half the offset's size.
+struct HalfAngleTerms {
+  double s, c, ss, cc;
+  double r;  ///< sqrt(g + c^2) = sqrt(r0^2 - s^2), without the difference
+  double inv_r;
+  double z, g_over_z;   ///< r + c, r - c
+  double d, d_squared;  ///< lambda0 r + lambda3 c
+};
+
+HAMMER_LOADS_INLINE HalfAngleTerms halfAngleTerms(const CrankRocker::Ratios& k, SineCosine half) noexcept {
+  HalfAngleTerms t;
+  t.s = half.sine;
+  t.c = half.cosine;
+  t.ss = t.s * t.s;
+  t.cc = t.c * t.c;
+  const double rr = k.g + t.cc;
+  t.r = std::sqrt(rr);
+  t.inv_r = 1.0 / t.r;
+  t.z = t.r + t.c;
+  t.g_over_z = k.g / t.z;
+  t.d = k.lambda0 * t.r + k.lambda3 * t.c;
+  t.d_squared = k.lambda0_squared * rr + k.lambda3_squared * t.cc + (2.0 * k.lambda03 * t.c) * t.r;
+  return t;
+}
+
+/// tan(psi/2) = sigma s/d.
+HAMMER_LOADS_INLINE Motion motionAfterBlow(const CrankRocker::Ratios& k, const HalfAngleTerms& t) noexcept {
+  const double pp = k.sigma_squared * t.ss;
+  const double inv_n = 1.0 / (pp + t.d_squared);
+  const double inv_nr = inv_n * t.inv_r;
+  const double a = t.r + k.lambda2 * t.c;
+  const double bracket = (k.lambda03 * a * t.g_over_z) * inv_nr - (0.5 * k.lambda2 * t.z) * (t.inv_r * t.inv_r);
+  Motion m;
+  m.sin_psi_over_s = (2.0 * k.sigma * t.d) * inv_n;
+  m.cos_psi = (t.d_squared - pp) * inv_n;
+  m.u = (k.lambda3_sigma * a) * inv_nr;
+  m.du_over_s = (k.lambda3_sigma * t.g_over_z) * inv_nr * bracket;
+  m.cos_half = t.c;
+  return m;
+}
+
+/// tan(psi/2) = s d/q; differences of nearly equal terms are replaced by products with their sums.
+HAMMER_LOADS_INLINE Motion motionBeforeBlow(const CrankRocker::Ratios& k, const HalfAngleTerms& t) noexcept {
+  const double q = k.k_cos * t.cc + k.k_sin * t.ss;
+  const double pp = t.ss * t.d_squared, qq = q * q;
+  const double inv_n = 1.0 / (pp + qq);
+  const double inv_nr = inv_n * t.inv_r;
+  const double a = ((k.lambda2 - 1.0) * t.ss - k.w0) / (t.r + k.lambda2 * t.c) * t.d_squared;
+  const double bracket =
+      (k.lambda03 * a * t.z) * inv_nr - (0.5 * k.lambda2 * k.sigma * t.g_over_z) * (t.inv_r * t.inv_r);
+  Motion m;
+  m.sin_psi_over_s = (2.0 * t.d * q) * inv_n;
+  m.cos_psi = (qq - pp) * inv_n;
+  m.u = (k.lambda3 * a) * inv_nr;
+  m.du_over_s = (k.lambda3_over_sigma_squared * t.z * t.d_squared) * inv_nr * bracket;
+  m.cos_half = -t.c;
+  return m;
+}
+
+}  // namespace detail
+
+/// Motion at a crank angle. No allocation, no failure for any finite offset.
+HAMMER_LOADS_INLINE Motion motion(const CrankRocker& linkage, CrankAngle angle) noexcept {
+  const bool before = angle.side == Side::kBeforeBlow;
+  const SineCosine half = sineCosine(before ? -0.5 * angle.offset : 0.5 * angle.offset);
+  const detail::HalfAngleTerms t = detail::halfAngleTerms(linkage.ratios(), half);
+  Motion m = before ? detail::motionBeforeBlow(linkage.ratios(), t) : detail::motionAfterBlow(linkage.ratios(), t);
+  m.sin_half = t.s;
+  m.r = t.r;
+  m.inv_r = t.inv_r;
+  m.sin_psi = t.s * m.sin_psi_over_s;
+  m.du = t.s * m.du_over_s;
+  return m;
+}
+
+/// Rocker angle psi [rad] in [0, pi).
+inline double rockerAngle(const Motion& m) noexcept { return std::atan2(m.sin_psi, m.cos_psi); }
 
 /// Directions are e^(i angle), angles counter-clockwise in the mechanism frame; rates per radian of crank angle.
 /// mu = psi - beta is the transmission angle: sin(mu/2) = s/r0, cos(mu/2) = r/r0, mu' = c/r, with s, c, r of Motion.

@@ -16,7 +16,6 @@
 #include <limits>
 
 #include "hammer_loads/linkage/crank_motion.h"
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"

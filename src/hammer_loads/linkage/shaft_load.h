@@ -1,12 +1,10 @@
 /// The mechanism's moving links as a load of the crank's shaft: a variable inertia and a torque by weight and hull.
 #pragma once
 
-#include "hammer_loads/linkage/crank_angle.h"
-#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
-#include "hammer_loads/linkage/motion.h"
 
 namespace hammer_loads {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/linkage/rod_spring.h"
+#include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
 

@@ -5,10 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
-#include "hammer_loads/linkage/rod_spring.h"
 
 namespace hammer_loads {
 

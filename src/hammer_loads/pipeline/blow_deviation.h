@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hammer_loads/crank/crank_estimate.h"
-#include "hammer_loads/hammer/wrench_columns.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/number_error.h"
 
 namespace hammer_loads {

@@ -12,16 +12,16 @@
 #include "hammer_loads/boom/contact_load.h"
 #include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/boom/known.h"
-#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/held_pose.h"
+#include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
 #include "hammer_loads/pipeline/measured_torques.h"
 #include "hammer_loads/pipeline/mode_observer.h"
-#include "hammer_loads/pipeline/pressure_trust.h"
-#include "hammer_loads/pipeline/tip_velocity.h"
+#include "hammer_loads/pipeline/sensor_trust.h"
 #include "hammer_loads/pipeline/vibration_bound.h"
-#include "hammer_loads/pipeline/wrench_history.h"
+#include "hammer_loads/pipeline/wrench_path.h"
 
 namespace hammer_loads {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "hammer_loads/pipeline/boom_follower.h"
-#include "hammer_loads/pipeline/hull_speed.h"
+#include "hammer_loads/pipeline/hull_imu.h"
 
 namespace hammer_loads {
 namespace {

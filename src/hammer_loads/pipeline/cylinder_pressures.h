@@ -9,7 +9,7 @@
 
 #include "hammer_loads/boom/cylinder_flags.h"
 #include "hammer_loads/boom/joint_space.h"
-#include "hammer_loads/pipeline/jump_guard.h"
+#include "hammer_loads/pipeline/reading_checks.h"
 #include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/estimation/look_back.h"
-#include "hammer_loads/pipeline/hull_speed.h"
+#include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
 

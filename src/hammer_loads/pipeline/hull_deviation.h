@@ -7,8 +7,7 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/crank/crank_estimate.h"
 #include "hammer_loads/estimation/gates.h"
-#include "hammer_loads/hammer/hammer_model.h"
-#include "hammer_loads/hammer/wrench_columns.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/hull_motion_filter.h"
 
 namespace hammer_loads {

@@ -1,20 +1,65 @@
-/// Motion of the hull from an inertial measurement unit fixed to it.
+/// Motion of the hull from an inertial measurement unit fixed to it, and its velocity at a blow.
 #pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
-#include "hammer_loads/hammer/hammer_model.h"
-#include "hammer_loads/pipeline/hull_speed.h"
-#include "hammer_loads/pipeline/jump_guard.h"
-#include "hammer_loads/pipeline/overdue.h"
+#include "hammer_loads/estimation/look_back.h"
+#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/pipeline/reading_checks.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
 #include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
+
+/// Velocity of the hull's origin D, in its plane.
+struct TipVelocity {
+  double z{};     ///< along the hull's z [m/s]
+  double rate{};  ///< about its y [rad/s]
+};
+
+/// From blow to blow [s]: over a longer one the hull's velocity has a mean.
+constexpr double kLongestTurn = look_back::kFiveTurns;
+
+/// The hull's motion is periodic: from blow to blow its velocity has no trend and no mean. This condition removes
+/// weight, offsets and the jump at the blow from the integral of the unit's readings. The rest at both ends is the
+/// velocity at the blow, mean of before and after it. None before the second blow in a row, or after a pause of the
+/// unit.
+///
+/// Neglects: differences between revolutions, and the boom's slow motion.
+class HullSpeed {
+ public:
+  /// The unit at a stamp, axes of the hull: force along z [m/s2], what turning adds to D's velocity along z [m/s], rate
+  /// about y [rad/s]. No allocation.
+  void add(StampNs stamp, double force_z, double by_turning, double rate) noexcept;
+  void forget() noexcept;
+  void struck(StampNs blow) noexcept;
+  /// At the last blow.
+  std::optional<TipVelocity> atBlow() const noexcept { return at_blow_; }
+
+ private:
+  struct Point {
+    StampNs stamp{};
+    double force{}, integral{};  ///< less the first force
+    TipVelocity velocity;        ///< but for weight and offsets
+    TipVelocity way;             ///< integral of the velocity
+  };
+  static constexpr std::size_t kKept = 64;  ///< some 60 ms at 1 kHz: so late a crank sample may show a blow
+
+  static Point after(const Point& point, StampNs stamp, double force, double by_turning, double rate) noexcept;
+  Point at(StampNs stamp) const noexcept;
+  const Point& back(std::size_t steps) const noexcept { return points_[(count_ - 1 - steps) % kKept]; }
+
+  std::array<Point, kKept> points_;
+  std::uint64_t count_{};
+  double first_force_{};
+  std::optional<Point> last_blow_;
+  std::optional<TipVelocity> at_blow_;
+};
 
 /// One reading, in the unit's own axes.
 struct ImuReading {
@@ -83,6 +128,39 @@ class HullImu {
   JumpGuard force_guard_{kLeastForceJump}, rate_guard_{kLeastRateJump};
   int readings_{};  ///< in a row, counted up to 2
   std::optional<StampNs> rewound_, blow_;
+};
+
+/// In the order they came in; of more than 64 the oldest is dropped. No allocation.
+class WaitingReadings {
+ public:
+  void add(const StampedImuReading& reading) noexcept {
+    if (count_ == kMost) drop(1);
+    readings_[count_++] = reading;
+  }
+  /// each(reading) of the first ones, up to a stamp: they wait no longer.
+  template <typename Each>
+  void takeUpTo(StampNs stamp, const Each& each) noexcept {
+    std::size_t taken = 0;
+    while (taken < count_ && readings_[taken].stamp <= stamp) each(readings_[taken++]);
+    if (taken > 0) drop(taken);
+  }
+  /// Number of readings up to a stamp. Readings that wait for a bus may be later.
+  std::ptrdiff_t upTo(StampNs stamp) const noexcept {
+    return std::count_if(readings_.begin(), readings_.begin() + static_cast<std::ptrdiff_t>(count_),
+                         [stamp](const StampedImuReading& reading) { return reading.stamp <= stamp; });
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+
+  void drop(std::size_t first) noexcept {
+    std::move(readings_.begin() + static_cast<std::ptrdiff_t>(first),
+              readings_.begin() + static_cast<std::ptrdiff_t>(count_), readings_.begin());
+    count_ -= first;
+  }
+
+  std::array<StampedImuReading, kMost> readings_;
+  std::size_t count_{};
 };
 
 }  // namespace hammer_loads

@@ -1,23 +1,138 @@
-/// The hull's state: its pitch, its own motion and the source of that.
+/// The hull's state: gravity in its axes, its own motion and the source of that.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/boom_follower.h"
-#include "hammer_loads/pipeline/hull_gravity.h"
 #include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/hull_motion_filter.h"
-#include "hammer_loads/pipeline/imu_trust.h"
-#include "hammer_loads/pipeline/unmeasured_hull.h"
+#include "hammer_loads/pipeline/sensor_trust.h"
 #include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
+
+/// Sum of the pitch joints' latest angles, each with its sign (contract: boom + arm + hammer, all about +y), and an
+/// offset. Messages may hold any subset of joints in any order.
+class HullPitch {
+ public:
+  /// A larger angle is refused: degrees are taken and recognised, garbage is not [rad].
+  static constexpr double kMostAngle = 1e4;
+  // Limit: kMostAngle
+
+  /// initial: pitch until every joint has been heard [rad].
+  HullPitch(std::vector<std::string> joints, double initial) : HullPitch(std::move(joints), {}, 0.0, initial) {}
+  /// signs: 1 about +y, -1 about -y, one for each joint; empty: all 1. offset: pitch where all of them are at zero
+  /// [rad].
+  HullPitch(std::vector<std::string> joints, std::vector<int> signs, double offset, double initial);
+
+  /// Takes the pitch joints of a message; returns whether there was any. Angles that are not finite or beyond 1e4 rad
+  /// are refused and counted.
+  bool update(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+
+  double pitch() const noexcept { return pitch_; }             ///< [rad]
+  bool known() const noexcept { return unheard_ == 0; }        ///< every pitch joint has been heard
+  std::uint64_t refused() const noexcept { return refused_; }  ///< joint angles refused
+  /// Returns true if the latest angle of a joint exceeds a whole turn, which no boom reaches.
+  bool looksLikeDegrees() const noexcept;
+  /// Joints not heard yet, for diagnostics.
+  std::vector<std::string> unheard() const;
+
+ private:
+  std::vector<std::string> joints_;
+  std::vector<int> signs_;
+  double offset_;
+  std::vector<double> angles_;
+  std::vector<bool> heard_;
+  std::size_t unheard_;
+  double pitch_;
+  std::uint64_t refused_{};
+};
+
+/// With a boom, or a description that has the pitch joints, by its axes, zeros, fixed tilts and swing, once every pitch
+/// joint has been heard: joints beside these are at zero until they are heard. Else by the sum of the pitch joints.
+class HullGravity {
+ public:
+  HullGravity(const PipelineSettings& settings, const std::optional<Boom>& boom);
+
+  /// Takes boom joint angles, any subset in any order. Returns true if any was used.
+  bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+
+  /// Positions of the chain's joints once all of them have been received; null before, or without a chain.
+  const JointVector* position() const noexcept { return chain_ && allHeard() ? &position_ : nullptr; }
+  const Gravity& gravity() const noexcept { return gravity_; }  ///< hull axes [m/s2]
+  const HullPitch& pitch() const noexcept { return pitch_; }
+
+ private:
+  bool takePosition(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+  void find() noexcept;
+  bool allHeard() const noexcept;
+
+  HullPitch pitch_;
+  Eigen::Vector3d g_B_;  ///< in the root's axes [m/s2]
+  std::optional<Chain> chain_;
+  double beyond_{};           ///< pitch of the hull against the chain's tip [rad]
+  JointVector zeros_;         ///< readings at the chain's zeros
+  JointVector position_;      ///< positions of the chain's joints; zero: not received
+  std::vector<bool> heard_;   ///< true for each joint that was received
+  bool pitch_is_of_chain_{};  ///< the pitch joints are joints of the chain
+  Gravity gravity_;
+};
+
+/// A boom holds the hull with an unknown stiffness. The motion of a free hull of `hull_mass_kg` is therefore multiplied
+/// by the amplification of a resonance, with any phase.
+class UnmeasuredHull {
+ public:
+  explicit UnmeasuredHull(const HammerParameters& hammer) noexcept
+      : mass_(hammer.hull_mass > 0.0 ? hammer.hull_mass : kUsualMass * hammer.rocker_mass),
+        resonance_(kResonance *
+                   std::hypot(1.0, hammer.hull_mass > 0.0 ? hammer.hull_mass_std / hammer.hull_mass : kUsualDeviation)),
+        striking_distance_(hammer.striking_distance),
+        reflected_(square(hammer.rocker_mass * hammer.rocker_com_distance) / hammer.rocker_inertia_about_pivot) {}
+
+  /// Covariance of the motion. scatter: variances of the load's components [N2, N2, N2 m2].
+  HullMotionCovariance motion(const Eigen::Vector3d& scatter) const noexcept {
+    const double factor = square(resonance_ / mass_), force = factor * (scatter[0] + scatter[1]);
+    HullMotionCovariance covariance = HullMotionCovariance::Zero();
+    covariance(0, 0) = covariance(1, 1) = force;
+    covariance(3, 3) = factor * scatter[2] / square(square(kGyration)) + force / square(kGyration);
+    return covariance;
+  }
+  /// Standard deviation of the striking point's velocity along z at a blow [m/s]. swing: momentum that the links' load
+  /// has given a free hull by then, about the mean of the turn (TurnRecorder::swing()).
+  double speedAtBlow(const LinkMomentum& swing) const noexcept {
+    return kSpeedResonance / kResonance * resonance_ / mass_ *
+           std::hypot(swing.z, striking_distance_ / square(kGyration) * swing.about_d);
+  }
+  /// Relative standard deviation of the rocker's inertia as the crank feels it at a blow: a hull that yields takes part
+  /// of it. Blows are too short for a resonance.
+  double reflectedInertia() const noexcept { return reflected_ / mass_; }
+
+ private:
+  static constexpr double kUsualMass = 10.0;      ///< times the rocker's, where none is given
+  static constexpr double kUsualDeviation = 0.5;  ///< relative, for that mass
+  static constexpr double kGyration = 0.4;        ///< [m] about D
+  /// Motion over that of a free hull where the boom's frequency is near that of the blows: of the acceleration; of the
+  /// velocity, of which the first harmonic is a larger part.
+  static constexpr double kResonance = 2.0, kSpeedResonance = 3.0;
+
+  double mass_;               ///< [kg]
+  double resonance_;          ///< with the mass's own deviation
+  double striking_distance_;  ///< [m]
+  double reflected_;          ///< mass by which a free hull would halve it [kg]
+};
 
 /// Readings of the hull's IMU since the start.
 struct ImuCounts {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hammer_loads/pipeline/together.h"
+#include "hammer_loads/pipeline/reading_checks.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 

@@ -8,7 +8,6 @@
 
 #include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/life/turn_loads.h"
-#include "hammer_loads/pipeline/band_means.h"
 #include "hammer_loads/pipeline/channel_values.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/pipeline/step_wrenches.h"

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/estimation/gates.h"
-#include "hammer_loads/pipeline/overdue.h"
-#include "hammer_loads/pipeline/together.h"
+#include "hammer_loads/pipeline/reading_checks.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {

@@ -7,8 +7,8 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/held_pose.h"
+#include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
-#include "hammer_loads/pipeline/waiting_readings.h"
 
 namespace hammer_loads {
 

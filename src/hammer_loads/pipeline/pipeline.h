@@ -8,8 +8,8 @@
 
 #include "hammer_loads/hammer/displaced_links.h"
 #include "hammer_loads/pipeline/boom_follower.h"
+#include "hammer_loads/pipeline/crank_checks.h"
 #include "hammer_loads/pipeline/crank_follower.h"
-#include "hammer_loads/pipeline/crank_trust.h"
 #include "hammer_loads/pipeline/elastic_follower.h"
 #include "hammer_loads/pipeline/hull_state.h"
 #include "hammer_loads/pipeline/misuse.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <deque>
 
-#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/stamp.h"
 

@@ -7,7 +7,7 @@
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/blow_inertia.h"
-#include "hammer_loads/linkage/rod_spring.h"
+#include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/constants.h"

@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "hammer_loads/hammer/hammer_model.h"
-#include "hammer_loads/linkage/rod_spring.h"
-#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/pipeline/crank_follower.h"
 
 namespace hammer_loads {
 

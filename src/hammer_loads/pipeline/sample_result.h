@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hammer_loads/crank/crank_estimate.h"
-#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/hull_state.h"

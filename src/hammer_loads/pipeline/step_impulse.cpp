@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/hull_model.h"
 
 namespace hammer_loads {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "hammer_loads/hammer/hammer_model.h"
-#include "hammer_loads/pipeline/crank_step.h"
-#include "hammer_loads/pipeline/wrench_history.h"
+#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/pipeline/crank_follower.h"
+#include "hammer_loads/pipeline/wrench_path.h"
 
 namespace hammer_loads {
 

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "hammer_loads/hammer/hammer_model.h"
-#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/pipeline/crank_follower.h"
 #include "hammer_loads/util/parts.h"
 
 namespace hammer_loads {

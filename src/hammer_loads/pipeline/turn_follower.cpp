@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "hammer_loads/linkage/blow_inertia.h"
-#include "hammer_loads/pipeline/crank_trust.h"
+#include "hammer_loads/pipeline/crank_checks.h"
 #include "hammer_loads/util/parts.h"
 #include "hammer_loads/util/square.h"
 

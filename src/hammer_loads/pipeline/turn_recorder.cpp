@@ -1,8 +1,7 @@
-#include "hammer_loads/pipeline/turn_recorder.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/pipeline/turn_follower.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/hull_model.h"
 
 namespace hammer_loads {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/unknowns.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/pipeline/boom_warnings.h"
 #include "hammer_loads/pipeline/reading_warnings.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/crank_follower.h"
 #include "hammer_loads/pipeline/elastic_follower.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/step_impulse.h"

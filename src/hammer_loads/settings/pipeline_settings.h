@@ -9,7 +9,7 @@
 
 #include "hammer_loads/boom/chain.h"
 #include "hammer_loads/boom/gravity.h"
-#include "hammer_loads/crank/crank_sensor.h"
+#include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/settings/hull_imu_settings.h"

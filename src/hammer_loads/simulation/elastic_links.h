@@ -5,8 +5,8 @@
 #include <cmath>
 #include <complex>
 
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/simulation/moving_links.h"

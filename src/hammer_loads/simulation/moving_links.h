@@ -1,8 +1,8 @@
 /// The striking mechanism's links by loop closure and differentiation: independent of linkage/ and hammer/.
 #pragma once
 
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/simulation/jet.h"
 

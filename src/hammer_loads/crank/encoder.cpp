@@ -1,8 +1,8 @@
-#include "hammer_loads/crank/crank_sensor.h"
+#include "hammer_loads/crank/encoder.h"
 
 #include <cmath>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {

@@ -1,12 +1,32 @@
-/// Detection of single damaged readings.
+/// Checks that the readings of every sensor share: overdue, simultaneous, leaping.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
+
+/// No sensor of a machine is read more often than this [s].
+constexpr double kSameInstant = 1e-4;
+
+/// Returns true if two consecutive stamps of one sensor are too close for a rate: their difference comes from the bus.
+inline bool cameTogether(StampNs before, StampNs after) noexcept { return seconds(after - before) < kSameInstant; }
+
+/// Time since a second reading was due [s]; negative before that. since: time of the last reading; interval: time
+/// between the last two.
+inline double overdue(double since, double interval) noexcept {
+  constexpr double kIntervals = 2.0;
+  return since - kIntervals * interval;
+}
+
+/// Part of the last reading that is no longer valid, 0 to 1. overdue: as above [s].
+inline double forgottenPart(double overdue) noexcept {
+  return overdue > 0.0 ? -std::expm1(-overdue / look_back::kHeld) : 0.0;
+}
 
 /// Refuses a reading that differs from the last one by more than twelve times the root mean square of some hundred such
 /// differences. A second one in a row is accepted, so that a true jump is one reading late. On a hammer at work, also
