@@ -1,9 +1,8 @@
 // The rock's force from cylinder pressures, against a rock that pushes.
-#include "hammer_loads/boom/contact_load.h"
-
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
+#include "hammer_loads/boom/hold_down.h"
 
 namespace hammer_loads {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
-#include "hammer_loads/boom/urdf_limits.h"
+#include "hammer_loads/boom/robot_description.h"
 
 namespace hammer_loads {
 namespace {

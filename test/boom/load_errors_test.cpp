@@ -6,7 +6,7 @@
 #include <random>
 
 #include "boom/booms.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

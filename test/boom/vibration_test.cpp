@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "boom/shipped_boom.h"
-#include "hammer_loads/boom/rigid_error.h"
+#include "hammer_loads/boom/load_errors.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "calibration/free_boom.h"
-#include "hammer_loads/calibration/reading_check.h"
 #include "hammer_loads/calibration/sensor_check.h"
 #include "hammer_loads/calibration/static_torques.h"
 #include "hammer_loads/simulation/session.h"

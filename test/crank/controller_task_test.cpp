@@ -1,10 +1,10 @@
 // Recognition of a controller's task by the ages of its readings.
-#include "hammer_loads/crank/controller_task.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "hammer_loads/crank/stamp_sequence.h"
 
 namespace hammer_loads {
 namespace {

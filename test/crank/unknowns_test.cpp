@@ -6,7 +6,7 @@
 
 #include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"

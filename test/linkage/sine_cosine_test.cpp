@@ -1,8 +1,8 @@
-#include "hammer_loads/util/sine_cosine.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -4,7 +4,7 @@
 #include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 #include "pipeline/shipped_machine.h"
 #include "support/held_hull.h"
 

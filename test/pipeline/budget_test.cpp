@@ -16,7 +16,7 @@
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/pipeline/life_follower.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 #include "pipeline/shipped_machine.h"
 #include "support/exact_hammer.h"
 #include "support/held_hull.h"

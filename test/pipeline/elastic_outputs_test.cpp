@@ -7,7 +7,7 @@
 #include "hammer_loads/bench/figure_errors.h"
 #include "hammer_loads/bench/scene_table.h"
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 #include "pipeline/shipped_machine.h"
 
 namespace hammer_loads {

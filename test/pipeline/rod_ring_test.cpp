@@ -8,7 +8,7 @@
 #include "hammer_loads/life/damage.h"
 #include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/pipeline/life_follower.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 #include "pipeline/shipped_machine.h"
 
 namespace hammer_loads {

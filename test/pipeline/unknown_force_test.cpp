@@ -12,7 +12,7 @@
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/util/format.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 #include "pipeline/shipped_machine.h"
 #include "support/exact_hammer.h"
 #include "support/mo100.h"

@@ -7,7 +7,7 @@
 
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/util/format.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::accuracy {
 namespace {

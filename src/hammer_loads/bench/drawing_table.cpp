@@ -11,7 +11,7 @@
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::accuracy {
 namespace {

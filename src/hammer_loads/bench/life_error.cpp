@@ -4,7 +4,7 @@
 
 #include "hammer_loads/life/damage.h"
 #include "hammer_loads/util/format.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::accuracy {
 namespace {

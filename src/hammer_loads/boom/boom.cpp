@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "hammer_loads/boom/rigid_error.h"
+#include "hammer_loads/boom/load_errors.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/known_count.h"
 

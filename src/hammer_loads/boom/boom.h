@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/chain_pose.h"
-#include "hammer_loads/boom/cylinder_flags.h"
+#include "hammer_loads/boom/cylinder.h"
 #include "hammer_loads/boom/hold_down.h"
 #include "hammer_loads/boom/load_errors.h"
 #include "hammer_loads/boom/steel_loads.h"

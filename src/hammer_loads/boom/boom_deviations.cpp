@@ -3,7 +3,7 @@
 
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,6 +1,6 @@
 #include "hammer_loads/boom/chain_pose.h"
 
-#include "hammer_loads/util/sine_cosine.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/chain_pose.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

@@ -1,4 +1,4 @@
-/// Hold-down capacity of the machine, limited by its weight and its cylinders.
+/// Hold-down capacity of the machine, and the rock's force on the hull from torques that no other load explains.
 #pragma once
 
 #include <array>
@@ -34,5 +34,32 @@ struct HoldDown {
 HoldDown holdDown(const Chain& chain, const ChainPose& pose, const JointVector& position,
                   const std::vector<Cylinder>& cylinders, const std::optional<Supports>& supports, const Wrench& w_mean,
                   const Eigen::Vector3d& g_B) noexcept;
+
+/// Loads on the tip, forces along its x and z and moment about its y, by the torques that they make on three joints of
+/// the chain: what a cylinder's measured force holds (-force times arm) less hammer, weight, motion and vibration.
+/// About the tip's origin, axes of the tip; force across the plane zero. Errors grow as 1/sine of the angle between
+/// boom and arm.
+class InPlaneTip {
+ public:
+  /// J of tipJacobian().
+  InPlaneTip(const Jacobian& J, const std::array<int, 3>& joints) noexcept;
+  /// Not where the three joints do not move the tip in its plane independently (boom and arm in line).
+  bool isKnown() const noexcept { return known_; }
+  /// Load in the plane by torques on all joints of the chain [N m], linear in them: force x, z [N], moment y [N m].
+  template <typename Torques>
+  Eigen::Vector3d inPlane(const Torques& torque) const noexcept {
+    return inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
+  }
+  template <typename Torques>
+  Wrench load(const Torques& torque) const noexcept {
+    const Eigen::Vector3d load = inPlane(torque);
+    return {{load[0], 0.0, load[1]}, {0.0, load[2], 0.0}};
+  }
+
+ private:
+  std::array<int, 3> joints_;
+  bool known_;
+  Eigen::Matrix3d inverse_;  ///< (force x, force z, moment y) by torques on the joints
+};
 
 }  // namespace hammer_loads

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/functions.h"
 #include "hammer_loads/util/known_count.h"
-#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <optional>
 
-#include "hammer_loads/boom/behind_hose.h"
 #include "hammer_loads/boom/boom_modes.h"
 #include "hammer_loads/boom/covariance_kernels.h"
+#include "hammer_loads/boom/cylinder_oil.h"
 #include "hammer_loads/boom/held_forces.h"
 #include "hammer_loads/boom/mode.h"
 #include "hammer_loads/boom/mode_history.h"
-#include "hammer_loads/boom/seals.h"
-#include "hammer_loads/boom/vibration_reading.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/timing_noise.h"
 

@@ -5,7 +5,7 @@
 #include "hammer_loads/boom/mode_identifier.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/look_back.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/mode_identifier.h"
-#include "hammer_loads/util/growth.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hammer_loads/boom/body_motion.h"
+#include "hammer_loads/boom/chain_dynamics.h"
 #include "hammer_loads/util/inline.h"
 
 namespace hammer_loads {

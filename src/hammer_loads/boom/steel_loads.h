@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "hammer_loads/boom/body_motion.h"
+#include "hammer_loads/boom/chain_dynamics.h"
 #include "hammer_loads/boom/cylinder.h"
 #include "hammer_loads/boom/section.h"
 

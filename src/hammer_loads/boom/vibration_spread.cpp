@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/calibration/shot_way.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::calibration {
 namespace {

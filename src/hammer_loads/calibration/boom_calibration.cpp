@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/calibration/reading_check.h"
 #include "hammer_loads/calibration/recording_check.h"
 #include "hammer_loads/calibration/sensor_check.h"
 #include "hammer_loads/calibration/static_torques.h"

@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "hammer_loads/calibration/estimates.h"
-#include "hammer_loads/calibration/hammer_keys.h"
 #include "hammer_loads/calibration/rod_check.h"
 #include "hammer_loads/crank/zero_search.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::calibration {
 namespace {

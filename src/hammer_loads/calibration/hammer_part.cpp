@@ -7,7 +7,7 @@
 
 #include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/linkage/machine_columns.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::calibration {
 namespace {

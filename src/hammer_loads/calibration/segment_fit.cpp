@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::calibration {
 namespace {

@@ -1,10 +1,12 @@
-/// Checks of a joint's sensor by its own readings: noise, leaps, readings that stay.
+/// Checks of a joint's sensor by its own readings, and of readings against the given boom: exchanged pressures, units,
+/// limits.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "hammer_loads/boom/chain.h"
+#include "hammer_loads/calibration/boom_model.h"
 #include "hammer_loads/calibration/boom_recording.h"
 
 namespace hammer_loads::calibration {
@@ -20,5 +22,10 @@ std::vector<std::string> noisySensors(const Chain& chain, const std::vector<Boom
 /// equal although it is noisy elsewhere. No joint moves like that. Recordings and their names.
 std::vector<std::string> brokenSensors(const Chain& chain, const std::vector<const BoomRecording*>& recordings,
                                        const std::vector<std::string>& names);
+
+/// One line per cylinder whose pressures agree with the given boom only under another interpretation, or not at all,
+/// and per joint beyond its limits. The forces of the given boom must be right within a half, as those of a drawing
+/// are. Empty without a finding.
+std::vector<std::string> misreadings(const BoomModel& model, const BoomPoints& recording);
 
 }  // namespace hammer_loads::calibration

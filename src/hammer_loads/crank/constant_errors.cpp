@@ -6,7 +6,7 @@
 
 #include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/estimation/look_back.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_dynamics.h"
-#include "hammer_loads/util/growth.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

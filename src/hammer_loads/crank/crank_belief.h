@@ -12,7 +12,7 @@
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/gaussian_belief.h"
 #include "hammer_loads/estimation/running_mean.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

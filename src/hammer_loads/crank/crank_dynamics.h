@@ -15,7 +15,7 @@
 #include "hammer_loads/linkage/machine_columns.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/shaft_load.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

@@ -8,7 +8,7 @@
 
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/ablation.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -5,9 +5,7 @@
 
 #include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/estimation/gates.h"
-#include "hammer_loads/util/growth.h"
-#include "hammer_loads/util/parts.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "hammer_loads/estimation/gates.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -6,7 +6,7 @@
 #include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/planar.h"
-#include "hammer_loads/util/sine_cosine.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

@@ -9,7 +9,7 @@
 #include "hammer_loads/linkage/planar.h"
 #include "hammer_loads/util/checked.h"
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/sine_cosine.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

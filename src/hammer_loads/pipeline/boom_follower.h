@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "hammer_loads/boom/boom.h"
-#include "hammer_loads/boom/contact_load.h"
 #include "hammer_loads/boom/gravity.h"
-#include "hammer_loads/boom/known.h"
+#include "hammer_loads/boom/hold_down.h"
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/held_pose.h"
@@ -24,6 +23,12 @@
 #include "hammer_loads/pipeline/wrench_path.h"
 
 namespace hammer_loads {
+
+enum class Known {
+  kGiven,     ///< the vibration is that of the file's oil under the hammer's load
+  kFollowed,  ///< readings show the vibration
+  kMeasured,  ///< pressures in all cylinders give torques and the rock's force as well
+};
 
 /// One accepted crank sample.
 struct BoomSample {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/pipeline/boom_follower.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 
-#include "hammer_loads/crank/controller_task.h"
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/hammer/hull_model.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "hammer_loads/boom/cylinder_flags.h"
+#include "hammer_loads/boom/cylinder.h"
 #include "hammer_loads/boom/joint_space.h"
 #include "hammer_loads/pipeline/reading_checks.h"
 #include "hammer_loads/util/stamp.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

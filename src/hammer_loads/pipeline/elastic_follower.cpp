@@ -9,7 +9,7 @@
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/util/ablation.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

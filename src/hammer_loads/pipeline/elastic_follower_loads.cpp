@@ -5,7 +5,7 @@
 
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/pipeline/elastic_follower.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/pipeline/hull_imu.h"
+#include "hammer_loads/util/functions.h"
 #include "hammer_loads/util/known_count.h"
-#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {

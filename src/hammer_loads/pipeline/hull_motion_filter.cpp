@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hammer_loads/pipeline/reading_checks.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

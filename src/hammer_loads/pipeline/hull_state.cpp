@@ -7,7 +7,7 @@
 
 #include "hammer_loads/pipeline/crank_checks.h"
 #include "hammer_loads/pipeline/reading_checks.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

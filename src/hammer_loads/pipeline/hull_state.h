@@ -20,7 +20,7 @@
 #include "hammer_loads/pipeline/hull_motion_filter.h"
 #include "hammer_loads/pipeline/sensor_trust.h"
 #include "hammer_loads/settings/pipeline_settings.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

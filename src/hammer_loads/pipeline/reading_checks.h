@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/estimation/look_back.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 #include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {

@@ -11,8 +11,7 @@
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/parts.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

@@ -11,7 +11,7 @@
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/reading_checks.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

@@ -9,7 +9,7 @@
 
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/crank_follower.h"
-#include "hammer_loads/util/parts.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

@@ -6,8 +6,7 @@
 
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/pipeline/crank_checks.h"
-#include "hammer_loads/util/parts.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

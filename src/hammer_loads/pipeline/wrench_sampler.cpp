@@ -4,7 +4,7 @@
 
 #include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/step_impulse.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 

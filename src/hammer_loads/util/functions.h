@@ -1,11 +1,14 @@
-/// Sine and cosine of an angle that is not large, by polynomials that a compiler can vectorise.
+/// Functions of the hot path: square, sine and cosine, exponential of small numbers, equal parts of a length.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/util/inline.h"
 
 namespace hammer_loads {
+
+constexpr double square(double x) noexcept { return x * x; }
 
 struct SineCosine {
   double sine{};
@@ -36,6 +39,20 @@ HAMMER_LOADS_INLINE SineCosine sineCosinePolynomial(double h) noexcept {
 HAMMER_LOADS_INLINE SineCosine sineCosine(double h) noexcept {
   if (std::abs(h) <= kPolynomialAngle) return sineCosinePolynomial(h);
   return {std::sin(h), std::cos(h)};
+}
+
+/// exp(x); of a small number exact to rounding at a tenth of the time.
+inline double growth(double x) noexcept {
+  constexpr double kNear = 2e-3;
+  if (!(std::abs(x) < kNear)) return std::exp(x);
+  return 1.0 + x * (1.0 + x * (1.0 / 2.0 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))));
+}
+
+/// Number of equal parts, at least 1; a part is at most an eighth longer than `longest`, so that a step of a nominal
+/// length that is rounded or jitters has the parts of that length.
+inline int partsOf(double length, double longest) noexcept {
+  constexpr double kLonger = 1.125;
+  return std::max(1, static_cast<int>(std::ceil(length / (kLonger * longest))));
 }
 
 }  // namespace hammer_loads
