@@ -9,26 +9,10 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
-constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
-constexpr double kFullWeight = 3.0;      // standard deviations of what is left
+constexpr double kFullWeight = 3.0;  // standard deviations of what is left
 constexpr int kMostRounds = 40;
 constexpr double kSettled = 1e-3;               // in standard deviations
-constexpr double kStep = 0.05;                  // step of differences, in standard deviations before the recording
 constexpr std::size_t kNeighbouringRows = 100;  // range of rows that may have a common error: 20 s
-
-bool isFriction(BoomUnknown kind) {
-  return kind == BoomUnknown::kFrictionForce || kind == BoomUnknown::kFriction || kind == BoomUnknown::kViscous;
-}
-
-/// True if the rod moves in one direction throughout the readings of the point.
-bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point) {
-  const int joint = boom.cylinders()[cylinder].joint();
-  const double arm = std::abs(boom.cylinderPosition(cylinder).arm);
-  const double rate = std::abs(point.motion.velocity[joint]);
-  const double least = rate - point.half_width * std::abs(point.motion.acceleration[joint]);
-  return arm * least > kLeastRodSpeed && rate > kSurelyMoves * point.rate_std[joint];
-}
 
 /// Variance of a sum of neighbours over that of as many strangers: 1 + 2 sum of the autocorrelation. Pairs of lags are
 /// added until their sum is lost in noise (initial positive sequence, Geyer 1992): residuals that alternate with a
@@ -48,6 +32,10 @@ double alike(const std::vector<double>& left) {
     sum += 2.0 * pair;
   }
   return std::max(1.0, sum);
+}
+
+bool isFriction(BoomUnknown kind) {
+  return kind == BoomUnknown::kFrictionForce || kind == BoomUnknown::kFriction || kind == BoomUnknown::kViscous;
 }
 
 class Fitter {
@@ -187,47 +175,8 @@ class Fitter {
 
 }  // namespace
 
-std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints>& recordings) {
-  std::vector<BoomRow> rows;
-  Boom boom = model.given();
-  for (std::size_t r = 0; r < recordings.size(); ++r) {
-    for (std::size_t k = 0; k < boom.cylinders().size(); ++k) {
-      for (const BoomPoint& point : recordings[r].points) {
-        model.move(boom, model.zero(), point);
-        if (boom.cylinderPosition(k).zero_moment_arm || !surelyMoves(boom, k, point)) continue;
-        rows.push_back({r, k, &point, model.measuredForce(k, point)});
-      }
-    }
-  }
-  return rows;
-}
-
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress) {
   return Fitter(model, rows).run(progress);
-}
-
-Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x) {
-  Eigen::VectorXd left(static_cast<Eigen::Index>(rows.size()));
-  std::optional<Boom> boom;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const BoomRow& row = rows[i];
-    if (i == 0 || row.recording != rows[i - 1].recording) boom = model.boomAt(x, row.recording);
-    if (!boom) return left.setConstant(std::numeric_limits<double>::quiet_NaN());
-    model.move(*boom, x, *row.point);
-    left[static_cast<Eigen::Index>(i)] =
-        row.measured - model.shownForce(*boom, x, row.cylinder, row.recording, *row.point);
-  }
-  return left;
-}
-
-Eigen::MatrixXd slopesOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x) {
-  Eigen::MatrixXd J(static_cast<Eigen::Index>(rows.size()), x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    Eigen::VectorXd up = x, down = x;
-    up[i] += kStep, down[i] -= kStep;
-    J.col(i) = (residualsOf(model, rows, down) - residualsOf(model, rows, up)) / (2.0 * kStep);
-  }
-  return J;
 }
 
 Eigen::VectorXd weightsOf(const BoomFit& fit, const std::vector<BoomRow>& rows, const Eigen::VectorXd& left) {

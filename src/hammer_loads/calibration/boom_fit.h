@@ -4,21 +4,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "hammer_loads/calibration/boom_model.h"
+#include "hammer_loads/calibration/boom_rows.h"
 #include "hammer_loads/util/progress.h"
 
 namespace hammer_loads::calibration {
-
-/// Reading of one cylinder at one point with a rod speed of certain sign.
-struct BoomRow {
-  std::size_t recording{}, cylinder{};
-  const BoomPoint* point{};
-  double measured{};  ///< force [N]
-};
-
-/// Rows of the points of all recordings, in the order of recordings, cylinders, times. The points must outlive the
-/// rows.
-std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints>& recordings);
 
 struct BoomFit {
   Eigen::VectorXd x;             ///< values in the order of BoomModel, in standard deviations before the recording
@@ -32,12 +21,6 @@ struct BoomFit {
 /// deviations. The noise is that of the residuals, per cylinder. Residuals of neighbours may be correlated; their
 /// number is then reduced accordingly. Friction is not negative.
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
-
-/// Residuals: forces of the rows less those of the model with values x [N].
-Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
-
-/// Slopes of the model's forces by the unknowns at x [N].
-Eigen::MatrixXd slopesOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
 
 /// Weights of rows with these residuals in a fit [1/N2]: the noise, the correlation of neighbours, Huber's weights.
 Eigen::VectorXd weightsOf(const BoomFit& fit, const std::vector<BoomRow>& rows, const Eigen::VectorXd& left);

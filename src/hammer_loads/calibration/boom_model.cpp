@@ -199,6 +199,15 @@ std::optional<Boom> BoomModel::boomAt(const Eigen::VectorXd& x, std::size_t reco
   return Boom::make(basis_.urdf, parameters).value;
 }
 
+std::size_t BoomModel::firstWithWeightOf(std::size_t recording) const {
+  const TipWeight& own = weights_[recording];
+  const auto same = [&](const TipWeight& w) {
+    return own.deviation == 0.0 && w.deviation == 0.0 && w.mass == own.mass && w.x == own.x && w.z == own.z;
+  };
+  const auto first = std::find_if(weights_.begin(), weights_.begin() + static_cast<std::ptrdiff_t>(recording), same);
+  return static_cast<std::size_t>(first - weights_.begin());
+}
+
 double BoomModel::jointZero(const Eigen::VectorXd& x, std::size_t cylinder) const {
   return valueOf(x, BoomUnknown::kZero, cylinder, given_.cylinders()[cylinder].parameters().joint_zero);
 }
