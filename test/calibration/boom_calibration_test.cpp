@@ -245,34 +245,46 @@ TEST(BoomCalibration, LeavesOutWhatIsHammered) {
   }
 }
 
-/// Three days of one machine: each has its own offset of the pressures and its own load on the tip.
-TEST(BoomCalibration, KnowsHowWellItKnowsFromSeveralDays) {
-  constexpr double kLoad = 50.0, kLoadStd = 20.0;  // [kg]
-  const std::complex<double> place(-0.2, -0.9);    // [m] from D
-  std::mt19937 random(21);
+/// Errors of static torques at unseen poses over their stated deviations, from some days of one machine. Each day has
+/// its own offset of the pressures and its own load on the tip, by which the torques differ by 3 to 12 %.
+std::vector<double> errorsFromDays(std::size_t days, std::mt19937& random) {
+  constexpr double kLoad = 50.0, kLoadStd = 20.0, kOffsetStd = 1e5;  // [kg], [kg], [Pa]
+  const std::complex<double> place(-0.2, -0.9);                      // [m] from D
   std::normal_distribution<> normal;
-  int weights = 0, within = 0;
-  for (int i = 0; i < 8; ++i) {
-    const FreeBoom machine = FreeBoom::drawn(random);
-    FreeBoom usual = machine;
-    usual.hang(kLoad, place);
-    std::vector<BoomPoints> points;
-    for (int day = 0; day < 3; ++day) {
-      FreeBoom today = machine;
-      today.hang(std::max(0.0, kLoad + kLoadStd * normal(random)), place);
-      for (std::size_t k = 0; k < 3; ++k) today.offset[k] += 1e5 * normal(random);
-      points.push_back(pointsOf(today.record(random, 60.0)));
-    }
-    const BoomModel model(test::shippedBasis(), {TipWeight{}, TipWeight{}, TipWeight{}});
-    const BoomFit fit = fitBoom(model, rowsOf(model, points));
-    for (int n = 0; n < 4; ++n) {
-      const Pose3 q = anyPose(random), truth = usual.staticTorque(q);
-      const std::vector<StaticTorque> found = staticTorques(model, fit, {readAt(machine, q)}).front();
-      for (std::size_t k = 0; k < 3; ++k)
-        ++weights, within += std::abs(found[k].value - truth[k]) < 2.0 * found[k].deviation;
-    }
+  const FreeBoom machine = FreeBoom::drawn(random);
+  FreeBoom usual = machine;
+  usual.hang(kLoad, place);
+  std::vector<BoomPoints> points;
+  for (std::size_t day = 0; day < days; ++day) {
+    FreeBoom today = machine;
+    today.hang(std::max(0.0, kLoad + kLoadStd * normal(random)), place);
+    for (std::size_t k = 0; k < 3; ++k) today.offset[k] += kOffsetStd * normal(random);
+    points.push_back(pointsOf(today.record(random, 30.0)));
   }
-  EXPECT_GE(within, static_cast<int>(0.88 * weights)) << weights;
+  const BoomModel model(test::shippedBasis(), std::vector<TipWeight>(days));
+  const BoomFit fit = fitBoom(model, rowsOf(model, points));
+  std::vector<double> errors;
+  for (int n = 0; n < 4; ++n) {
+    const Pose3 q = anyPose(random), truth = usual.staticTorque(q);
+    const std::vector<StaticTorque> found = staticTorques(model, fit, {readAt(machine, q)}).front();
+    for (std::size_t k = 0; k < 3; ++k) errors.push_back((found[k].value - truth[k]) / found[k].deviation);
+  }
+  return errors;
+}
+
+/// Few days show their own scatter only roughly: deviations allow for that. Two days are the most difficult.
+TEST(BoomCalibration, KnowsHowWellItKnowsFromFewDays) {
+  std::mt19937 random(21);
+  double torques = 0.0, within = 0.0;
+  for (const auto& [days, machines] : {std::pair<std::size_t, int>{2, 24}, {3, 12}, {5, 6}}) {
+    double own = 0.0, own_within = 0.0;
+    for (int i = 0; i < machines; ++i)
+      for (const double error : errorsFromDays(days, random)) own += 1.0, own_within += std::abs(error) < 2.0;
+    EXPECT_GE(own_within, 0.85 * own) << days;  // the torques of a machine err alike: 3 to 6 % less by chance
+    torques += own, within += own_within;
+  }
+  EXPECT_GE(within, 0.88 * torques);
+  EXPECT_LE(within, 0.99 * torques);
 }
 
 /// A bore sensor that drifts by 8 bar in the last quarter: formal deviations alone would not tell.

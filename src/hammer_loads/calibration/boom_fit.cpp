@@ -34,6 +34,28 @@ double alike(const std::vector<double>& left) {
   return std::max(1.0, sum);
 }
 
+/// Half the two-sided 95.4 % quantile of Student's distribution, which is one for many degrees of freedom: its
+/// expansion about the normal distribution's (Abramowitz and Stegun, 26.7.5) errs by less than 1 % from two degrees on.
+double studentFactor(double degrees) {
+  const double d = 1.0 / degrees;
+  return 1.0 + d * (1.25 + d * (1.531 + d * (1.430 + d * 0.922)));
+}
+
+/// Variance of the relative error of a cylinder's forces in a recording. It is that of the moments (DerSimonian and
+/// Laird, 1986), as the scores' covariance is: information + variance * information squared. Satterthwaite's degrees of
+/// freedom (1946) are the number of recordings less one where all show as much; the prior counts as one more. Student's
+/// factor enlarges what few recordings show: two standard deviations then contain 90 % or more even where the scatter
+/// is ten times the prior.
+double scatterOf(const Eigen::VectorXd& scores, const Eigen::MatrixXd& information, double prior_std) {
+  constexpr double kPriorDegrees = 1.0;
+  const Eigen::MatrixXd square = information * information;
+  const double prior = prior_std * prior_std;
+  if (!(square.trace() > 0.0)) return prior;
+  const double shown = std::max(0.0, (scores.squaredNorm() - information.trace()) / square.trace());
+  const double degrees = std::pow(square.trace(), 2) / square.squaredNorm(), all = kPriorDegrees + degrees;
+  return (kPriorDegrees * prior + degrees * std::pow(studentFactor(all), 2) * shown) / all;
+}
+
 bool isFriction(BoomUnknown kind) {
   return kind == BoomUnknown::kFrictionForce || kind == BoomUnknown::kFriction || kind == BoomUnknown::kViscous;
 }
@@ -58,7 +80,7 @@ class Fitter {
     settle(piece(progress, 0.0, 0.7));
     for (std::size_t k = 0; k < fit_.noise.size(); ++k) fit_.together[k] = alike(residualsOfCylinder(k));
     settle(piece(progress, 0.7, 1.0));
-    addRecordings();
+    findCovariance();
     return std::move(fit_);
   }
 
@@ -74,53 +96,60 @@ class Fitter {
     }
   }
 
-  /// Adds a relative error of a cylinder's forces in each recording to the covariance, since the load on the tip, the
-  /// temperature of the oil and zeros differ by day. Its variance is estimated by the method of moments over the
-  /// recordings (DerSimonian and Laird, 1986), in which the basis' value counts as two recordings.
-  void addRecordings() {
+  /// Linear system about the values of the fit; a row that the model has no force for is zero.
+  struct System {
+    Eigen::VectorXd left, weight;
+    Eigen::MatrixXd slopes;
+    Eigen::MatrixXd normal() const {
+      return slopes.transpose() * weight.asDiagonal() * slopes +
+             Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols());
+    }
+  };
+
+  System system() const {
+    System s;
+    s.left = residualsOf(model_, rows_, fit_.x), s.weight = weightsOf(fit_, rows_, s.left);
+    s.slopes = slopesOf(model_, rows_, fit_.x);
+    for (Eigen::Index i = 0; i < s.left.size(); ++i)
+      if (!(s.weight[i] > 0.0)) s.left[i] = 0.0, s.slopes.row(i).setZero();
+    return s;
+  }
+
+  /// Covariance of the fit and of what differs from recording to recording. The load on the tip, the temperature of
+  /// the oil and zeros are those of a day. A cylinder's forces therefore have a relative error of their own in each
+  /// recording, which few recordings show only roughly.
+  void findCovariance() {
+    const System s = system();
+    fit_.covariance = inverseOf(s.normal());
     if (rows_.empty() || rows_.front().recording == rows_.back().recording) return;
-    constexpr double kAsMany = 2.0;
-    const Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x), weight = weightsOf(fit_, rows_, left);
-    const Eigen::MatrixXd slopes = slopesOf(model_, rows_, fit_.x), covariance = fit_.covariance;
+    const Eigen::MatrixXd covariance = fit_.covariance;
     for (std::size_t k = 0; k < fit_.noise.size(); ++k) {
-      double sum = kAsMany * std::pow(model_.basis().recording_gain_std, 2), count = kAsMany;
-      Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(fit_.x.size(), fit_.x.size());
-      for (std::size_t r = 0; r <= rows_.back().recording; ++r) {
-        const Eigen::VectorXd force = forcesOf(k, r), weighted = weight.cwiseProduct(force);
-        const Eigen::VectorXd by_unknowns = slopes.transpose() * weighted, change = covariance * by_unknowns;
-        const double information = weighted.dot(force) - by_unknowns.dot(change);
-        if (!(information > 0.0)) continue;
-        sum += std::pow(weighted.dot(left) / information, 2) - 1.0 / information, count += 1.0;
-        changes += change * change.transpose();
-      }
-      fit_.covariance += std::max(sum, 0.0) / count * changes;
+      const Eigen::MatrixXd forces = forcesOf(k), weighted = s.weight.asDiagonal() * forces,
+                            by_unknowns = s.slopes.transpose() * weighted, changes = covariance * by_unknowns,
+                            information = forces.transpose() * weighted - by_unknowns.transpose() * changes;
+      fit_.covariance += scatterOf(weighted.transpose() * s.left, information, model_.basis().recording_gain_std) *
+                         changes * changes.transpose();
     }
   }
 
-  /// Measured forces in the rows of one cylinder in one recording [N], zero in others.
-  Eigen::VectorXd forcesOf(std::size_t cylinder, std::size_t recording) const {
-    Eigen::VectorXd force(static_cast<Eigen::Index>(rows_.size()));
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const bool own = rows_[i].cylinder == cylinder && rows_[i].recording == recording;
-      force[static_cast<Eigen::Index>(i)] = own ? rows_[i].measured : 0.0;
-    }
-    return force;
+  /// Measured forces of one cylinder [N]: one column for each recording, with zeros in the rows of others.
+  Eigen::MatrixXd forcesOf(std::size_t cylinder) const {
+    Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size()),
+                                                   static_cast<Eigen::Index>(rows_.back().recording) + 1);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (rows_[i].cylinder == cylinder)
+        forces(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(rows_[i].recording)) = rows_[i].measured;
+    return forces;
   }
 
   /// Friction that would be below zero is held at zero.
   void step() {
-    Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x);
-    const Eigen::VectorXd weight = weightsOf(fit_, rows_, left);
-    left = (weight.array() > 0.0).select(left, 0.0);
-    Eigen::MatrixXd J = slopesOf(model_, rows_, fit_.x);
-    for (Eigen::Index r = 0; r < J.rows(); ++r)
-      if (!(weight[r] > 0.0)) J.row(r).setZero();
+    const System s = system();
     const Eigen::Index n = fit_.x.size();
     std::set<Eigen::Index> held;
     for (bool again = true; again;) {
-      Eigen::MatrixXd N = J.transpose() * weight.asDiagonal() * J + Eigen::MatrixXd::Identity(n, n);
-      Eigen::VectorXd right = J.transpose() * weight.asDiagonal() * left - fit_.x;
-      fit_.covariance = inverseOf(N);
+      Eigen::MatrixXd N = s.normal();
+      Eigen::VectorXd right = s.slopes.transpose() * s.weight.cwiseProduct(s.left) - fit_.x;
       for (const Eigen::Index i : held) {
         const double way = atZero(i) - fit_.x[i];
         right -= N.col(i) * way;
