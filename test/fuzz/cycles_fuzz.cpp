@@ -7,7 +7,6 @@
 
 #include "fuzz/bytes.h"
 #include "hammer_loads/life/cycle_counter.h"
-#include "hammer_loads/life/exact_cycles.h"
 #include "support/count_text.h"
 
 namespace hammer_loads::life {

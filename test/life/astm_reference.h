@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "hammer_loads/life/cycle_counter.h"
-#include "hammer_loads/life/exact_cycles.h"
 #include "support/count_text.h"
 
 namespace hammer_loads::life::test {

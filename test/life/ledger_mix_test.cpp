@@ -7,7 +7,7 @@
 #include <csignal>
 
 #include "hammer_loads/life/database.h"
-#include "hammer_loads/life/ledger_batch.h"
+#include "hammer_loads/life/ledger_run.h"
 #include "life/ledger_support.h"
 
 namespace hammer_loads::life {

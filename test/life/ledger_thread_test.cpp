@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "hammer_loads/life/database.h"
-#include "hammer_loads/life/ledger_batch.h"
+#include "hammer_loads/life/ledger_run.h"
 #include "life/ledger_support.h"
 #include "support/resident_memory.h"
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "hammer_loads/life/load_error.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::life {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "hammer_loads/bench/elastic_table.h"
+#include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/damage.h"
-#include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "pipeline/shipped_machine.h"
 #include "support/counting_new.h"

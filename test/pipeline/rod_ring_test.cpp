@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/damage.h"
-#include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/util/functions.h"
 #include "pipeline/shipped_machine.h"

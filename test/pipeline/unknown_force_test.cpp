@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/damage.h"
-#include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/util/format.h"

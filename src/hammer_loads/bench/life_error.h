@@ -4,8 +4,8 @@
 #include <string>
 
 #include "hammer_loads/life/cycle_count.h"
-#include "hammer_loads/life/exact_cycles.h"
-#include "hammer_loads/life/load_error.h"
+#include "hammer_loads/life/cycle_counter.h"
+#include "hammer_loads/life/turn_loads.h"
 
 namespace hammer_loads::accuracy {
 

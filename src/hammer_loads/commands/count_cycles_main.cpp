@@ -5,9 +5,8 @@
 #include <optional>
 
 #include "hammer_loads/commands/command_line.h"
-#include "hammer_loads/life/count_csv.h"
+#include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/life/cycle_counter.h"
-#include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/constants.h"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "hammer_loads/life/count_csv.h"
+#include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {

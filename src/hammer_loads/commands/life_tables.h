@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/life/life_report.h"
+#include "hammer_loads/life/ledger_reader.h"
 
 namespace hammer_loads {
 

@@ -8,7 +8,7 @@
 #include "hammer_loads/commands/bag_options.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
-#include "hammer_loads/life/ledger_batch.h"
+#include "hammer_loads/life/ledger_run.h"
 #include "hammer_loads/ros/bag_output.h"
 #include "hammer_loads/ros/bag_processing.h"
 #include "hammer_loads/ros/bag_runs.h"

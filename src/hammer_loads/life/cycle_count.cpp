@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hammer_loads/life/four_point.h"
+#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads::life {
 namespace {
@@ -108,6 +109,13 @@ std::vector<RangeMean> rangesAndMeans(const CycleCount& count) {
         {count.grid.range(half.steps), count.grid.mean(half.low, half.steps), 0.5 * static_cast<double>(half.count)});
   }
   return result;
+}
+
+std::string csvText(const std::vector<RangeMean>& cycles) {
+  std::string text = "range,mean,count\n";
+  for (const RangeMean& c : cycles)
+    text += shortNumber(c.range) + ',' + shortNumber(c.mean) + ',' + shortNumber(c.count) + '\n';
+  return text;
 }
 
 }  // namespace hammer_loads::life

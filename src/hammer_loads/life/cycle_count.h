@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "hammer_loads/life/load_grid.h"
@@ -118,5 +119,8 @@ struct RangeMean {
 
 /// Closed cycles and the residue as half cycles, sorted by range, then by mean: the count of ASTM E1049-85 5.4.4.
 std::vector<RangeMean> rangesAndMeans(const CycleCount& count);
+
+/// `range,mean,count`, one line for each; with the header alone when there is no cycle.
+std::string csvText(const std::vector<RangeMean>& cycles);
 
 }  // namespace hammer_loads::life

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <regex>
+#include <sstream>
 
 namespace hammer_loads::life {
 
@@ -106,6 +108,33 @@ std::string Database::Statement::text(int column) const {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
   return text == nullptr ? std::string{}
                          : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+const char* const kColumnsTable = R"(
+CREATE TABLE columns(
+  table_name TEXT,   -- [-] name of a table
+  column_name TEXT,  -- [-] name of a column of it
+  unit TEXT,         -- [-] unit of its numbers; channel: that of the channel in the same row
+  description TEXT,  -- [-] meaning of its values
+  PRIMARY KEY(table_name, column_name)) WITHOUT ROWID;
+)";
+
+std::vector<ColumnText> columnTexts(const std::string& schema) {
+  static const std::regex begins(R"(CREATE TABLE (\w+)\()"), column(R"re(\s+(\w+) .*-- \[([^\]]+)\] (.+))re");
+  std::vector<ColumnText> texts;
+  std::istringstream lines(schema);
+  std::string table;
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch found;
+    if (std::regex_search(line, found, begins)) table = found[1];
+    if (std::regex_match(line, found, column)) texts.push_back({table, found[1], found[2], found[3]});
+  }
+  return texts;
+}
+
+void insert(const std::vector<ColumnText>& texts, Database& database) {
+  Database::Statement statement(database, "INSERT INTO columns VALUES(?1, ?2, ?3, ?4)");
+  for (const ColumnText& text : texts) statement.run(text.table, text.column, text.unit, text.description);
 }
 
 }  // namespace hammer_loads::life

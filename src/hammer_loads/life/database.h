@@ -1,4 +1,5 @@
-/// A SQLite file: statements one after another, the first error kept. Nothing throws.
+/// A SQLite file: statements one after another, the first error kept; and the table that explains its columns. Nothing
+/// throws.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -93,5 +95,20 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
   std::string problem_;
 };
+
+/// A row of the table `columns`.
+struct ColumnText {
+  std::string table, column;
+  std::string unit;  ///< "-" for a number without unit and for a text; "channel": that of the row's channel
+  std::string description;
+};
+
+/// Rows for a schema with one column a line and a comment `-- [unit] description` behind each, in their order.
+std::vector<ColumnText> columnTexts(const std::string& schema);
+
+/// Schema of the table `columns` itself, in that form.
+extern const char* const kColumnsTable;
+
+void insert(const std::vector<ColumnText>& texts, Database& database);
 
 }  // namespace hammer_loads::life

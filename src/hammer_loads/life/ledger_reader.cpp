@@ -6,9 +6,9 @@
 
 #include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/life/ledger_schema.h"
+#include "hammer_loads/life/life_settings.h"
 
 namespace hammer_loads::life {
-
 namespace {
 
 constexpr int kReaderPatience = 5000;  // [ms]; a writer needs some ms
@@ -53,6 +53,22 @@ void joinRuns(Database& database, std::int64_t channel, std::vector<std::uint32_
     joinResidues(total, residue.classes, cycles);
     closed(residue.last_day, cycles);
   }
+}
+
+ChannelReport channelReport(LedgerReader& reader, const LedgerEpoch& epoch, const LedgerChannel& channel) {
+  constexpr double kNsPerHour = 3600e9;
+  const LedgerCounts counts = reader.counts(epoch, channel);
+  ChannelReport report{channel.name, unitOf(channel.name), {}, counts.total.tally, counts.total.extremes};
+  const auto add = [&](const LedgerDay& day, const CycleCount& count) {
+    const double hours = static_cast<double>(day.duration) / kNsPerHour;
+    report.periods.push_back(
+        {day.date, hours, day.turns, figuresOf(count, channel, hours, epoch.machine.equivalent_cycles_per_hour)});
+  };
+  LedgerDay all{{}, "all", 0, 0};
+  for (const LedgerDay& day : epoch.days) all.duration += day.duration, all.turns += day.turns;
+  add(all, counts.total);
+  for (std::size_t i = 0; i < epoch.days.size(); ++i) add(epoch.days[i], counts.days[i]);
+  return report;
 }
 
 }  // namespace
@@ -140,6 +156,24 @@ LedgerCounts LedgerReader::counts(const LedgerEpoch& epoch, const LedgerChannel&
   if (database_->good() && !isPossible(counts.total))
     database_->fail("damaged: no loads give the count of " + channel.name);
   return counts;
+}
+
+Checked<std::vector<EpochReport>> lifeReport(LedgerReader& reader) {
+  Checked<std::vector<EpochReport>> result;
+  std::vector<EpochReport> reports;
+  for (LedgerEpoch& epoch : reader.epochs()) {
+    EpochReport report{std::move(epoch), {}};
+    for (const LedgerChannel& channel : report.epoch.machine.channels) {
+      if (!reader.problem().empty()) break;
+      report.channels.push_back(channelReport(reader, report.epoch, channel));
+    }
+    reports.push_back(std::move(report));
+  }
+  if (reader.problem().empty())
+    result.value = std::move(reports);
+  else
+    result.problems.push_back(reader.problem());
+  return result;
 }
 
 }  // namespace hammer_loads::life

@@ -1,4 +1,5 @@
-/// Reader of a ledger for tables and reports; a run may write to the ledger meanwhile.
+/// Reader of a ledger for tables and reports, with the figures of damage and remaining life. A run may write to the
+/// ledger meanwhile.
 #pragma once
 
 #include <cstdint>
@@ -63,5 +64,27 @@ class LedgerReader {
   std::string path_;
   std::unique_ptr<Database> database_;  ///< stays where it is: statements refer to it
 };
+
+struct PeriodFigures {
+  std::string day;  ///< date; `all` for the whole epoch
+  double hours{};
+  std::uint64_t blows{};
+  ChannelFigures figures;  ///< a day has the cycles that closed on it
+};
+
+struct ChannelReport {
+  std::string name, unit;
+  std::vector<PeriodFigures> periods;  ///< the whole epoch, then its days
+  SampleTally tally;
+  Extremes extremes;
+};
+
+struct EpochReport {
+  LedgerEpoch epoch;
+  std::vector<ChannelReport> channels;
+};
+
+/// Every epoch of the ledger. A problem of one line when it cannot be read whole.
+Checked<std::vector<EpochReport>> lifeReport(LedgerReader& reader);
 
 }  // namespace hammer_loads::life

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "hammer_loads/life/column_texts.h"
 #include "hammer_loads/life/cycle_count.h"
+#include "hammer_loads/life/database.h"
 
 namespace hammer_loads::life {
 namespace {

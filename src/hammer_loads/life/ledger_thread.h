@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hammer_loads/life/ledger_run.h"
-#include "hammer_loads/life/live_ledger.h"
+#include "hammer_loads/life/piece_sink.h"
 
 namespace hammer_loads::life {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "hammer_loads/life/channel_unit.h"
+#include "hammer_loads/life/life_settings.h"
 
 namespace hammer_loads::life {
 namespace {

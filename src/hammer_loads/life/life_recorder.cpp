@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "hammer_loads/life/count_csv.h"
+#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads::life {
 

@@ -7,7 +7,7 @@
 
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/life_settings.h"
-#include "hammer_loads/life/load_error.h"
+#include "hammer_loads/life/turn_loads.h"
 #include "hammer_loads/util/checked.h"
 
 namespace hammer_loads::life {

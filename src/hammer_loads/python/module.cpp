@@ -12,7 +12,6 @@
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/hammer/evaluate.h"
 #include "hammer_loads/life/cycle_counter.h"
-#include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/python/boom.h"
 #include "hammer_loads/python/hammer.h"
 #include "hammer_loads/settings/pipeline_settings.h"

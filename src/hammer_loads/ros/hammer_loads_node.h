@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/life/live_ledger.h"
+#include "hammer_loads/life/piece_sink.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/hammer_inputs.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/life/channel_unit.h"
+#include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/stamp.h"
 

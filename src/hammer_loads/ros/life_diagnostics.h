@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "hammer_loads/life/live_ledger.h"
+#include "hammer_loads/life/piece_sink.h"
 #include "hammer_loads/pipeline/limit_watch.h"
 #include "hammer_loads/pipeline/reference.h"
 #include "hammer_loads/pipeline/warnings.h"

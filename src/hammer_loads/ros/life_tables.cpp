@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/life/channel_unit.h"
+#include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/settings/channel_names.h"
 

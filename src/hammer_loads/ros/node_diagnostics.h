@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/life/live_ledger.h"
+#include "hammer_loads/life/piece_sink.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/ros/diagnostics_publisher.h"

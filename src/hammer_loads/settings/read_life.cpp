@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "hammer_loads/life/channel_unit.h"
+#include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {

@@ -79,11 +79,7 @@ YAML::Node textNode(const std::string& text) {
 }
 
 std::string numberText(double value) {
-  std::string text;
-  for (int digits = 15; digits <= 17; ++digits) {
-    text = format("%.*g", digits, value);
-    if (std::strtod(text.c_str(), nullptr) == value) break;
-  }
+  std::string text = shortNumber(value);
   if (text.find_first_of(".n") == std::string::npos) {  // n: inf, nan
     const std::size_t exponent = text.find('e');
     text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");

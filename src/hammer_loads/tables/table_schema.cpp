@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "hammer_loads/life/column_texts.h"
+#include "hammer_loads/life/database.h"
 
 namespace hammer_loads {
 namespace {

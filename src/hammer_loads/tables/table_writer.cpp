@@ -1,6 +1,6 @@
 #include "hammer_loads/tables/table_writer.h"
 
-#include "hammer_loads/life/column_texts.h"
+#include "hammer_loads/life/database.h"
 
 namespace hammer_loads {
 

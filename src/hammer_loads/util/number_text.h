@@ -1,9 +1,11 @@
-/// Numbers from text.
+/// Numbers from text, and texts that read back as the same number.
 #pragma once
 
 #include <cstdlib>
 #include <optional>
 #include <string>
+
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 
@@ -14,6 +16,16 @@ inline std::optional<double> decimalNumber(const std::string& text) {
   const double number = std::strtod(text.c_str(), &end);
   if (end != text.c_str() + text.size()) return std::nullopt;
   return number;
+}
+
+/// Shortest of at most 17 significant digits that reads back as the same double.
+inline std::string shortNumber(double value) {
+  std::string text;
+  for (int digits = 15; digits <= 17; ++digits) {
+    text = format("%.*g", digits, value);
+    if (std::strtod(text.c_str(), nullptr) == value) break;
+  }
+  return text;
 }
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-#include "hammer_loads/life/live_ledger.h"
+#include "hammer_loads/life/piece_sink.h"
 
 #include <dlfcn.h>
 
