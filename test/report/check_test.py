@@ -5,7 +5,7 @@ import math
 import pytest
 
 from support import DATA, SOURCE, assert_refused, needs_programs, report_here
-from report import checks
+from report.check import BY_KEY
 
 SOUND = DATA / "mo100_1khz.bag"
 SECONDS = 8.0  # of the sound recording that are altered
@@ -71,7 +71,7 @@ def test_wrong_unit_direction_and_zero_are_named(altered, name, change, expected
 
 def test_every_key_is_one_that_the_programs_give():
     source = "".join(path.read_text() for path in (SOURCE / "src").rglob("*.[ch]*") if path.suffix in (".cpp", ".h"))
-    assert [key for key in checks.BY_KEY if f'"{key}"' not in source] == []
+    assert [key for key in BY_KEY if f'"{key}"' not in source] == []
 
 
 def test_wrong_usage_is_refused():

@@ -10,7 +10,7 @@ import time
 import pytest
 
 from support import REPORT, assert_refused, execute, report, report_here
-from report import csv_tables, output
+from report import output
 
 
 def contents(folder):
@@ -52,9 +52,9 @@ def test_no_cell_of_csv_is_a_formula(made, tables):
     with open(tables / "warnings.csv", newline="", encoding="utf-8") as text:
         text.readline()  # units
         shown = [row["text"] for row in csv.DictReader(text) if row["key"].startswith("k")]
-    assert not [cell for cell in shown if cell.startswith(csv_tables.FORMULA)]
+    assert not [cell for cell in shown if cell.startswith(output.FORMULA)]
     assert [cell.lstrip("'") for cell in shown] == [text.replace("\r", "\ufffd") for text in texts]
-    assert [csv_tables.plain(v) for v in (-1.5, -1, None, "-1")] == [-1.5, -1, None, "'-1"]
+    assert [output.plain(v) for v in (-1.5, -1, None, "-1")] == [-1.5, -1, None, "'-1"]
 
 
 def test_replaces_its_own_tables_alone(made, tables):

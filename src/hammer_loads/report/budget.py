@@ -3,7 +3,6 @@ import csv
 import io
 import json
 import math
-import tempfile
 
 from report import inputs
 from report.blocks import Bars, Table
@@ -145,7 +144,6 @@ def as_csv(budgets):
     yield text.getvalue().rstrip("\n")
 
 
-def run(given):
-    with tempfile.TemporaryDirectory(prefix="hammer_loads_budget") as folder:
-        budgets = [budget for database in inputs.databases(given, folder) for budget in budgets_of(database)]
+def run(given, folder):
+    budgets = [budget for database in inputs.databases(given, folder) for budget in budgets_of(database)]
     print("\n".join(given.text_of(budgets)))

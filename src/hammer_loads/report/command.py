@@ -9,7 +9,7 @@ import tempfile
 import warnings
 import xml.etree.ElementTree as ElementTree
 
-from report import csv_tables, inputs, output
+from report import inputs, output
 from report.database import Problem, one_line
 from report.subjects import notes
 
@@ -58,18 +58,14 @@ def parser():
     return result
 
 
-def run(given):
+def run(given, folder):
     if given.html is None and given.csv is None:
         raise Usage("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
     if given.html is not None:
         output.check_file(given.html, given.files, given.force)
     if given.csv is not None:
         output.check_directory(given.csv, [*given.files, *([given.html] if given.html else [])], given.force)
-    with tempfile.TemporaryDirectory(prefix="hammer_loads_report") as folder:
-        write(given, list(inputs.databases(given, folder)))
-
-
-def write(given, databases):
+    databases = list(inputs.databases(given, folder))
     for note in notes(databases):
         print(one_line(f"note: {note}"), file=sys.stderr)
     if given.html is not None:
@@ -78,12 +74,12 @@ def write(given, databases):
         output.publish_file(given.html, content, given.force)
         print(f"{given.html}: {len(databases)} file{'s' if len(databases) > 1 else ''}, {len(content) / 1e6:.2f} MB")
     if given.csv is not None:
-        output.publish_directory(given.csv, lambda part: csv_tables.write_tables(databases, part), given.force)
+        output.publish_directory(given.csv, lambda part: output.write_tables(databases, part), given.force)
         print(f"{given.csv}: {len(os.listdir(given.csv))} tables")
 
 
 def main(arguments, name="report"):
-    """Exit code of the command of this name; its module has parser() and run()."""
+    """Exit code of the command of this name; its module has parser() and run(), which gets a folder for databases of bags."""
     module = importlib.import_module("report." + ("command" if name == "report" else name))
     options = module.parser()
     given = options.parse_args(arguments)
@@ -94,7 +90,8 @@ def main(arguments, name="report"):
     try:
         if inputs.bag_options(given) and not any(map(inputs.is_bag, given.files)):
             raise Usage("--params, --urdf and topics are for bags; a database has its parameters")
-        module.run(given)
+        with tempfile.TemporaryDirectory(prefix=f"hammer_loads_{name}") as folder:
+            module.run(given, folder)
         return 0
     except Usage as problem:
         options.error(str(problem))

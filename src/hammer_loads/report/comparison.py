@@ -4,7 +4,7 @@ from collections import namedtuple
 from markupsafe import Markup
 
 from report.blocks import Note, Table
-from report.checks import refusals_of
+from report.check import refusals_of
 from report.conditions import MISUSE, UNKNOWN, counter
 from report.cycles import SLOPES
 from report.formats import (NOTHING, clean, duration, in_unit, in_words, is_nothing, measured, moment, number,

@@ -6,7 +6,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from report.blocks import Table
 from report.boom_health import boom_health
 from report.budget import budget
-from report.checks import check_rows, sensor_health, verdict
+from report.check import check_rows, sensor_health, verdict
 from report.comparison import comparison, runs_compared
 from report.conditions import limits, misuse, reference
 from report.costs import costs

@@ -1,10 +1,8 @@
 """A test report, and its command: one page with results, their uncertainty, inputs, checks and method."""
-import tempfile
-
 from report import inputs, output
 from report.blocks import Table
 from report.budget import figures_in
-from report.checks import LOOK, refusals_of, sensor_rows
+from report.check import LOOK, refusals_of, sensor_rows
 from report.command import Parser, package_version
 from report.database import RECORDING, Problem
 from report.formats import NOTHING, duration, in_unit, in_words, rounded, scaled, utc
@@ -90,9 +88,8 @@ def the_subject(databases, machine):
     return found[0]
 
 
-def run(given):
+def run(given, folder):
     output.check_file(given.html, given.files, given.force)
-    with tempfile.TemporaryDirectory(prefix="hammer_loads_test_report") as folder:
-        content = test_report(the_subject(inputs.databases(given, folder), given.machine), package_version(), given.site)
+    content = test_report(the_subject(inputs.databases(given, folder), given.machine), package_version(), given.site)
     output.publish_file(given.html, content, given.force)
     print(f"{given.html}: {len(content) / 1e3:.0f} kB")
