@@ -21,8 +21,7 @@ else()
   endif()
   message(STATUS "Python: hammer_loads_py is built for ${Python3_EXECUTABLE}")
   pybind11_add_module(hammer_loads_py MODULE NO_EXTRAS
-                      src/hammer_loads/python/boom.cpp
-                      src/hammer_loads/python/hammer.cpp
+                      src/hammer_loads/python/models.cpp
                       src/hammer_loads/python/module.cpp)
   target_link_libraries(hammer_loads_py PRIVATE hammer_loads_settings)
   set_target_properties(hammer_loads_py PROPERTIES OUTPUT_NAME _native LIBRARY_OUTPUT_DIRECTORY ${python_package}

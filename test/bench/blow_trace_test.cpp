@@ -1,10 +1,9 @@
-#include "hammer_loads/bench/blow_trace.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/bench/elastic_table.h"
 #include "support/held_hull.h"
 
 namespace hammer_loads::accuracy {

@@ -1,8 +1,8 @@
-#include "hammer_loads/bench/life_error.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "hammer_loads/bench/estimate_errors.h"
 
 namespace hammer_loads::accuracy {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/settings/parameter_reader.h"
-#include "hammer_loads/settings/read_boom.h"
+#include "hammer_loads/settings/readers.h"
 #include "hammer_loads/util/format.h"
 #include "support/constants.h"
 

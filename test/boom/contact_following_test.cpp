@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "boom/vibrating_machine.h"
-#include "hammer_loads/bench/signal_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "support/counting_new.h"
 
 namespace hammer_loads {

@@ -6,8 +6,8 @@
 
 #include "boom/booms.h"
 #include "hammer_loads/linkage/link_motion.h"
-#include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/readers.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "commands/bag_files.h"
-#include "hammer_loads/bench/signal_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/ros/stamp.h"
 #include "support/known_zero.h"

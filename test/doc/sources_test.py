@@ -61,7 +61,7 @@ def test_api_page_holds_every_topic_of_the_hammers_nodes():
 
 
 def test_api_page_holds_every_topic_of_the_grapples_nodes():
-    source = text_of("src/hammer_loads/grapple_ros/grapple_outputs.h")
+    source = text_of("src/hammer_loads/grapple_ros/grapple_flow.h")
     outputs = re.findall(r'^  Output<.*> \w+\{"(\w+)"', source, re.M)
     endings = re.findall(r'\("jaw_edge/" \+ jaw(?: \+ "(\w+)")?,', source)
     assert len(re.findall(r"Output<", source)) == len(outputs) + len(endings) == 5

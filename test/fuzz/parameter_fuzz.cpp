@@ -7,10 +7,9 @@
 #include <string>
 
 #include "hammer_loads/log/log_settings.h"
-#include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/pipeline_settings.h"
-#include "hammer_loads/settings/read_log.h"
+#include "hammer_loads/settings/readers.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,11 +1,11 @@
-#include "hammer_loads/log/record_clock.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <random>
+
+#include "hammer_loads/log/bag_log.h"
 
 namespace hammer_loads {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/bench/life_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/linkage/hammer_constants.h"

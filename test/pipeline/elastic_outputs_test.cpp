@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/bench/figure_errors.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/bench/scene_table.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/functions.h"

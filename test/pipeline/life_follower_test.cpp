@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "hammer_loads/settings/channel_names.h"
+#include "hammer_loads/settings/readers.h"
 #include "pipeline/life_session.h"
 #include "support/counting_new.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/bench/session_errors.h"
+#include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"

@@ -1,8 +1,7 @@
-#include "hammer_loads/ros/fill_boom.h"
-
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
+#include "hammer_loads/ros/fill_messages.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,6 +1,6 @@
-#include "hammer_loads/ros/fill_hammer.h"
-
 #include <gtest/gtest.h>
+
+#include "hammer_loads/ros/fill_messages.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,6 +1,5 @@
-#include "hammer_loads/settings/hammer_parameters.h"
-
 #include "hammer_loads/linkage/hammer_constants.h"
+#include "hammer_loads/settings/readers.h"
 #include "settings/hammer_yaml.h"
 #include "settings/load_support.h"
 #include "support/mo100.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/load.h"
+#include "hammer_loads/settings/readers.h"
 
 namespace hammer_loads::test {
 

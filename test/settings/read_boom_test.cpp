@@ -1,5 +1,3 @@
-#include "hammer_loads/settings/read_boom.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,6 +5,7 @@
 
 #include "boom/booms.h"
 #include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/readers.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,9 +1,8 @@
 // life.yaml: what is read, what is refused.
-#include "hammer_loads/settings/read_life.h"
-
 #include <gtest/gtest.h>
 
 #include "hammer_loads/settings/load.h"
+#include "hammer_loads/settings/readers.h"
 
 namespace hammer_loads {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/simulation/chamber_oil.h"
+#include "hammer_loads/simulation/oil_boom.h"
 #include "hammer_loads/simulation/session.h"
 #include "simulation/boom_run.h"
 

@@ -12,7 +12,7 @@
 
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/pipeline/pipeline.h"
-#include "hammer_loads/ros/steady_memory.h"
+#include "hammer_loads/ros/run_node.h"
 #include "hammer_loads/settings/load.h"
 #include "soak/endless_session.h"
 #include "soak/verdict.h"

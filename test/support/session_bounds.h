@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hammer_loads/bench/session_errors.h"
+#include "hammer_loads/bench/session_run.h"
 
 namespace hammer_loads::test {
 

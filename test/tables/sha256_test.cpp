@@ -1,8 +1,7 @@
 // SHA-256 against the examples of FIPS 180-2; tables_test.cpp compares with sha256sum.
-#include "hammer_loads/tables/sha256.h"
-
 #include <gtest/gtest.h>
 
+#include "hammer_loads/tables/digest.h"
 #include "settings/temporary_file.h"
 
 namespace hammer_loads {

@@ -1,6 +1,5 @@
 #include "hammer_loads/bench/boom_errors.h"
 
-#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>

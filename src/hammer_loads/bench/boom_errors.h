@@ -6,9 +6,8 @@
 #include <iterator>
 #include <string>
 
-#include "hammer_loads/bench/life_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/bench/session_player.h"
-#include "hammer_loads/bench/signal_error.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::accuracy {

@@ -148,11 +148,8 @@ std::vector<BoomRow> boomTable() {
 std::string markdown(const std::vector<BoomRow>& rows) {
   std::string text =
       "| machine | sensors | joint torques | bending | hull moment | Fx | Fz | worst sample of Fz | force | worst "
-      "sample of "
-      "the force | energy | rock's force | torques within two standard deviations | smallest of Fx, Fz, moment within "
-      "two "
-      "standard deviations "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "sample of the force | energy | rock's force | torques within two standard deviations | smallest of Fx, Fz, "
+      "moment within two standard deviations |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const BoomRow& r : rows) {
     text += format("| %s | %s |", r.machine.c_str(), r.sensors.c_str());
     for (const double part :
@@ -168,9 +165,9 @@ std::string json(const std::vector<BoomRow>& rows) {
   for (const BoomRow& r : rows)
     text += format(
         "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %.4g, \"section\": %.4g, \"moment\": %.4g, "
-        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g, "
-        "\"rms_x\": %.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g, "
-        "\"life_force\": %s, \"life_torque\": %s, \"life_section\": %s}",
+        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g, \"rms_x\": "
+        "%.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g, \"life_force\": %s, "
+        "\"life_torque\": %s, \"life_section\": %s}",
         &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), r.torque, r.section, r.moment, r.force_z,
         r.worst_z, r.energy, jsonNumber(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force,
         r.covered_wrench, json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/bench/life_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 
 namespace hammer_loads::accuracy {
 

@@ -1,10 +1,9 @@
 #include "hammer_loads/bench/drawing_table.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "hammer_loads/bench/life_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/simulation/normal_noise.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/bench/figure_errors.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::accuracy {

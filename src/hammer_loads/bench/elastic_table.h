@@ -1,11 +1,12 @@
-/// Cost table, fifth part: errors on machines with an elastic rod and a lasting blow, by level.
+/// Cost table, fifth part: errors on machines with an elastic rod and a lasting blow, by level; and one of these blows
+/// as a picture shows it.
 #pragma once
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "hammer_loads/bench/life_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/settings/load.h"
@@ -58,5 +59,22 @@ std::vector<ElasticRow> elasticTable(const Settings& settings, const MachineChoi
 std::string markdown(const std::vector<ElasticRow>& rows);
 /// Rows as a JSON array of objects, errors as parts of one.
 std::string json(const std::vector<ElasticRow>& rows);
+
+/// Force z on the hull [N] by the time from the first touch [s]; of an estimate with its standard deviation [N].
+struct ForceTrace {
+  std::vector<double> time, force_z, deviation;
+};
+
+struct BlowTrace {
+  std::string machine;  ///< name in elasticKinds()
+  ForceTrace truth;     ///< each 0.1 ms, without deviation
+  ForceTrace linkage, elastic;
+};
+
+/// The first blow once the rod is known, from 5 ms before it to 45 ms after it.
+BlowTrace blowTrace(const Settings& settings);
+
+/// Trace as a JSON object.
+std::string json(const BlowTrace& trace);
 
 }  // namespace hammer_loads::accuracy

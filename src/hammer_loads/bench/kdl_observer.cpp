@@ -5,8 +5,6 @@
 #define HAMMER_LOADS_KDL_OBSERVER
 #endif
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/boom/gravity.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/bench/signal_error.h"
+#include "hammer_loads/bench/estimate_errors.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 

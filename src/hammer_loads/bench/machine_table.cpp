@@ -3,7 +3,6 @@
 #include <functional>
 #include <regex>
 
-#include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/calibration/calibration.h"
 #include "hammer_loads/pipeline/filter_settings.h"
 #include "hammer_loads/util/constants.h"
@@ -193,9 +192,8 @@ std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoi
 std::string markdown(const std::vector<MachineRow>& rows) {
   std::string text =
       "| machine | rate, Hz | speed | rms force, Fx, Fz, moment | worst sample of each | within two standard "
-      "deviations: Fx, "
-      "Fz, "
-      "moment | blow instant | energy | blows | missed | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "deviations: Fx, Fz, moment | blow instant | energy | blows | missed | false "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const MachineRow& row : rows) {
     const SessionErrors& e = row.errors;
     if (std::isnan(e.rms_force)) {
@@ -227,8 +225,7 @@ std::string json(const std::vector<MachineRow>& rows) {
         "%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"rms_z\": %.6g, \"worst_z\": %.6g, "
         "\"covered_z\": %.6g, \"rms_force\": %.6g, \"worst_force\": %.6g, \"rms_x\": %.6g, \"worst_x\": %.6g, "
         "\"covered_x\": %.6g, \"rms_torque\": %.6g, \"worst_torque\": %.6g, \"covered_torque\": %.6g, \"blow_time_s\": "
-        "%.6g, \"energy\": %s, \"blows\": %d, \"missed_blows\": %d, "
-        "\"false_blows\": %d}",
+        "%.6g, \"energy\": %s, \"blows\": %d, \"missed_blows\": %d, \"false_blows\": %d}",
         &row == rows.data() ? "" : ",", row.machine.c_str(), row.rate, row.speed ? "true" : "false", e.rms_z, e.worst_z,
         e.covered_z, e.rms_force, e.worst_force, e.rms_x, e.worst_x, e.covered_x, e.rms_torque, e.worst_torque,
         e.covered_torque, e.blow_time, energyJson(e).c_str(), e.blows, e.unseen_blows, e.false_blows);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/bench/session_errors.h"
+#include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/machine_settings.h"
 

@@ -100,10 +100,8 @@ std::vector<SceneRow> sceneTable(const Settings& settings, const std::vector<Ela
 std::string markdown(const std::vector<SceneRow>& rows) {
   std::string text =
       "| machine | level | means of 1/60 s: rms Fx, Fz, moment | stated | within two standard deviations | "
-      "damage-equivalent "
-      "range "
-      "of Fz | stated | energy: mean error | rms | stated | within | restitution: mean error | rms | stated | within "
-      "|\n"
+      "damage-equivalent range of Fz | stated | energy: mean error | rms | stated | within | restitution: mean error | "
+      "rms | stated | within |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   const auto each = [](const SceneRow& row, double FigureErrors::Result::*part, int digits) {
     return format("%.*f, %.*f, %.*f %% | ", digits, 100.0 * (row.slow[0].*part), digits, 100.0 * (row.slow[1].*part),

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hammer_loads/bench/elastic_table.h"
-#include "hammer_loads/bench/figure_errors.h"
+#include "hammer_loads/bench/estimate_errors.h"
 
 namespace hammer_loads::accuracy {
 

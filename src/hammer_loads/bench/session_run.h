@@ -1,11 +1,119 @@
-/// A simulated session through the pipeline, judged by its truth.
+/// A simulated session through the pipeline, judged by its truth; cost table, second part: error of a whole session by
+/// sample rate and encoder.
 #pragma once
 
-#include "hammer_loads/bench/session_errors.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 
 namespace hammer_loads::accuracy {
+
+/// Wrench of a sample [N, N, N m], time since the session's start [s]; of an estimate with its deviation.
+struct WrenchAt {
+  double time{}, force_x{}, force_z{}, torque_y{};
+  double force_x_std{}, force_z_std{}, torque_y_std{};
+};
+
+/// A blow and the pulse of the turn before it, as estimated or true; turn_* are NaN without a pulse.
+struct BlowAt {
+  double time{}, energy{}, tool_impulse{};
+  double turn_peak{std::numeric_limits<double>::quiet_NaN()};
+  double turn_impulse_z{std::numeric_limits<double>::quiet_NaN()};
+  double energy_std{}, tool_impulse_std{};  ///< standard deviations of an estimate
+};
+
+/// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
+struct SessionErrors {
+  double rms_x{}, rms_z{}, rms_torque{};
+  double worst_x{}, worst_z{}, worst_torque{};        ///< errors of one sample
+  double covered_x{}, covered_z{}, covered_torque{};  ///< part of the errors within two of their deviations
+  double rms_force{}, worst_force{};                  ///< errors of the force as a vector, over its largest magnitude
+  double turn_peak{};                                 ///< relative, worst turn
+  double turn_impulse{};                              ///< error over the blow's tool impulse, worst turn
+  double blow_time{};                                 ///< [s], worst
+  /// Relative, worst of those that are known; NaN where none is.
+  double energy{std::numeric_limits<double>::quiet_NaN()};
+  int known_energies{};
+  int blows{}, missed_blows{}, extra_blows{};  ///< missed: without pulse as well
+  int unseen_blows{}, false_blows{};           ///< nothing near them; nothing there
+};
+
+/// The judged time: [from, to], without the two turns after each drop-out.
+struct Judged {
+  double from{}, to{};
+  std::vector<double> drop_outs;  ///< ends of drop-outs [s]
+  double two_turns{0.5};          ///< [s]
+  bool operator()(double time) const {
+    return time >= from && time <= to && std::none_of(drop_outs.begin(), drop_outs.end(), [&](double end) {
+             return time > end - 0.15 && time < end + two_turns;
+           });
+  }
+};
+
+inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const std::vector<WrenchAt>& truth,
+                                   const std::vector<BlowAt>& blows, const std::vector<BlowAt>& true_blows,
+                                   const Judged& judged) {
+  SessionErrors e;
+  double peak_x = 0, peak_z = 0, peak_torque = 0, peak_force = 0, count = 0;
+  std::size_t next = 0;
+  for (const WrenchAt& t : truth) {
+    while (next < estimate.size() && estimate[next].time < t.time - 1e-5) ++next;
+    if (!judged(t.time)) continue;
+    peak_x = std::max(peak_x, std::abs(t.force_x));
+    peak_z = std::max(peak_z, std::abs(t.force_z));
+    peak_torque = std::max(peak_torque, std::abs(t.torque_y));
+    peak_force = std::max(peak_force, std::hypot(t.force_x, t.force_z));
+    if (next == estimate.size() || std::abs(estimate[next].time - t.time) > 1e-5) continue;  // withheld
+    const WrenchAt& w = estimate[next];
+    const double x = w.force_x - t.force_x, z = w.force_z - t.force_z, torque = w.torque_y - t.torque_y;
+    e.rms_x += x * x, e.rms_z += z * z, e.rms_torque += torque * torque;
+    e.worst_x = std::max(e.worst_x, std::abs(x)), e.worst_z = std::max(e.worst_z, std::abs(z));
+    e.worst_torque = std::max(e.worst_torque, std::abs(torque));
+    e.worst_force = std::max(e.worst_force, std::hypot(x, z));
+    e.covered_x += std::abs(x) <= 2.0 * w.force_x_std;
+    e.covered_z += std::abs(z) <= 2.0 * w.force_z_std;
+    e.covered_torque += std::abs(torque) <= 2.0 * w.torque_y_std;
+    ++count;
+  }
+  e.rms_force = std::sqrt((e.rms_x + e.rms_z) / count) / peak_force;
+  e.rms_x = std::sqrt(e.rms_x / count) / peak_x;
+  e.rms_z = std::sqrt(e.rms_z / count) / peak_z;
+  e.rms_torque = std::sqrt(e.rms_torque / count) / peak_torque;
+  e.worst_x /= peak_x, e.worst_z /= peak_z, e.worst_torque /= peak_torque, e.worst_force /= peak_force;
+  e.covered_x /= count, e.covered_z /= count, e.covered_torque /= count;
+  for (const BlowAt& t : true_blows) {
+    if (!judged(t.time)) continue;
+    ++e.blows;
+    const auto nearest = std::min_element(blows.begin(), blows.end(), [&](const BlowAt& a, const BlowAt& b) {
+      return std::abs(a.time - t.time) < std::abs(b.time - t.time);
+    });
+    const bool unseen = nearest == blows.end() || std::abs(nearest->time - t.time) > 0.05;
+    e.unseen_blows += unseen;
+    if (unseen || std::isnan(nearest->turn_peak)) {
+      ++e.missed_blows;
+      continue;
+    }
+    e.blow_time = std::max(e.blow_time, std::abs(nearest->time - t.time));
+    e.energy = std::fmax(e.energy, std::abs(nearest->energy / t.energy - 1.0));  // no heed to what is no number
+    e.known_energies += !std::isnan(nearest->energy);
+    e.turn_peak = std::max(e.turn_peak, std::abs(nearest->turn_peak / t.turn_peak - 1.0));
+    e.turn_impulse = std::max(e.turn_impulse, std::abs(nearest->turn_impulse_z - t.turn_impulse_z) / t.tool_impulse);
+  }
+  const auto within = [&](const BlowAt& b) { return judged(b.time); };
+  const auto isFalse = [&](const BlowAt& b) {
+    const auto isNear = [&](const BlowAt& t) { return std::abs(t.time - b.time) <= 0.05; };
+    return within(b) && std::none_of(true_blows.begin(), true_blows.end(), isNear);
+  };
+  e.false_blows = static_cast<int>(std::count_if(blows.begin(), blows.end(), isFalse));
+  e.extra_blows = static_cast<int>(std::count_if(blows.begin(), blows.end(), within)) - e.blows;
+  return e;
+}
 
 struct SessionRun {
   std::vector<WrenchAt> wrenches;  ///< at the stamps they are published with
@@ -30,5 +138,20 @@ SessionErrors judge(const SessionRun& run, const simulation::Session& session,
 /// the instants, which no sequence shows [s].
 SessionErrors judgeAtStamps(const SessionRun& run, const simulation::Session& session,
                             const simulation::MachineSettings& machine, double shift);
+
+struct SessionRow {
+  double rate{};  ///< rate of crank samples [Hz]
+  int counts{};   ///< counts of the encoder per revolution
+  bool speed{};   ///< speeds are measured too
+  SessionErrors errors;
+};
+
+/// Simulated working sessions of the given hammer (seeded: the same on every run), some 20 s of computing.
+std::vector<SessionRow> sessionTable(const Settings& settings);
+
+/// Rows as a table in Markdown.
+std::string markdown(const std::vector<SessionRow>& rows);
+/// Rows as a JSON array of objects, errors as parts of one.
+std::string json(const std::vector<SessionRow>& rows);
 
 }  // namespace hammer_loads::accuracy

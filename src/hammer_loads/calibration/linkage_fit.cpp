@@ -9,7 +9,6 @@
 
 #include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/csv_cells.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/number_text.h"
 

@@ -6,7 +6,7 @@
 #include "hammer_loads/bench/drawing_table.h"
 #include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/machine_table.h"
-#include "hammer_loads/bench/session_table.h"
+#include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/commands/command_line.h"
 
 namespace hammer_loads {

@@ -1,5 +1,3 @@
-#include "hammer_loads/commands/calibrate_linkage.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "hammer_loads/boom/chain.h"
 #include "hammer_loads/calibration/linkage_fit.h"
+#include "hammer_loads/commands/calibrate.h"
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
@@ -20,6 +19,9 @@ namespace hammer_loads {
 namespace {
 
 using calibration::LinkageUnknowns;
+
+/// First line of its file, by which the command recognises it.
+constexpr const char* kLinkageYamlBegins = "# Bucket linkage fitted by calibrate --linkage to";
 
 struct LinkageArguments {
   std::string table, output, cylinder{"hammer_cylinder"}, urdf;
@@ -45,12 +47,10 @@ void addLinkageOptions(CommandLine& line, LinkageArguments& given) {
   line.add_option("--cylinder", given.cylinder, "name of the cylinder, in front of its keys")
       ->type_name("NAME")
       ->capture_default_str();
-  addParamsOption(line, given.params);
-  line.get_option("--params")
+  addParamsOption(line, given.params)
       ->description("boom file: its keys of the cylinder's pins and links count as measured with a tape");
-  addUrdfOption(line, given.urdf);
-  line.get_option("--urdf")->description(
-      "robot description, for the place and the axis of the joint NAME_joint of --params");
+  addUrdfOption(line, given.urdf)
+      ->description("robot description, for the place and the axis of the joint NAME_joint of --params");
   line.add_option("--tape-std", given.tape_std, "standard deviation of what was measured [m]")
       ->check(within(1e-5, 1.0, "m"))
       ->capture_default_str();

@@ -8,15 +8,10 @@
 #include "hammer_loads/calibration/boom_report.h"
 #include "hammer_loads/calibration/report.h"
 #include "hammer_loads/commands/bag_options.h"
-#include "hammer_loads/commands/calibrate_boom.h"
-#include "hammer_loads/commands/calibrate_linkage.h"
-#include "hammer_loads/commands/crank_recording_bag.h"
+#include "hammer_loads/commands/calibrate.h"
 #include "hammer_loads/commands/output_file.h"
-#include "hammer_loads/commands/progress_bar.h"
-#include "hammer_loads/pipeline/filter_settings.h"
-#include "hammer_loads/ros/bag_runs.h"
+#include "hammer_loads/ros/bag_processing.h"
 #include "hammer_loads/settings/yaml_value.h"
-#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -34,22 +29,11 @@ std::string write(std::vector<OutputFile>& files, const std::vector<std::string>
   return problem;
 }
 
-calibration::Globals inForce(const CrankSensor& sensor) {
-  const CrankSensorPlace& p = sensor.place();
-  calibration::Globals g = calibration::Globals::Zero();
-  g[calibration::kZero] = p.zero * sensor.gain();
-  g.segment<2>(calibration::kSine1) << p.eccentricity[0] * std::cos(p.eccentricity_phase[0]),
-      p.eccentricity[0] * std::sin(p.eccentricity_phase[0]);
-  g.segment<2>(calibration::kSine2) << p.eccentricity[1] * std::cos(p.eccentricity_phase[1]),
-      p.eccentricity[1] * std::sin(p.eccentricity_phase[1]);
-  return g;
-}
-
 struct Arguments {
   std::vector<std::string> bags, params;
   std::string output, urdf;
-  double rocker_std{0.02};
-  bool force{}, boom{}, verbose{};
+  bool force{}, boom{};
+  CrankCalibrationJob crank_job;
   BoomCalibrationJob boom_job;
 };
 
@@ -60,21 +44,20 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   line.add_option("--write", given.output, "parameters found, for --params; the picture goes beside it as .svg")
       ->required()
       ->type_name("FILE.yaml");
-  addParamsOption(line, given.params);
-  line.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
-  addUrdfOption(line, given.urdf);
-  line.get_option("--urdf")->description("robot description, for the hull's pitch");
+  addParamsOption(line, given.params)
+      ->description("parameters instead of those of a run_info in the bags; may be repeated");
+  addUrdfOption(line, given.urdf)->description("robot description, for the hull's pitch");
   addTopicOption(line, job.topics, &InputTopics::crank);
   addTopicOption(line, job.topics, &InputTopics::joint_states);
-  line.add_option("--rocker-inertia-std", given.rocker_std, "of the given rocker inertia, relative")
+  line.add_option("--rocker-inertia-std", given.crank_job.rocker_std, "of the given rocker inertia, relative")
       ->check(within(1e-6, 1.0, ""))
       ->capture_default_str();
   line.add_flag("--force", given.force, "replaces files that exist");
-  line.add_flag("--verbose", given.verbose, "prints every estimate with its limit, strong correlations and notes");
-  line.add_flag(
-          "--boom", given.boom,
-          "weighs the boom instead: from a recording of its free movement without hammering, with cylinder pressures; "
-          "writes a boom file")
+  line.add_flag("--verbose", given.crank_job.verbose,
+                "prints every estimate with its limit, strong correlations and notes");
+  line.add_flag("--boom", given.boom,
+                "weighs the boom instead: from a recording of its free movement without hammering, with cylinder "
+                "pressures; writes a boom file")
       ->excludes("--verbose");
   addTopicOption(line, job.topics, &InputTopics::cylinder_pressures)->needs("--boom");
   line.add_option("--weight", given.boom_job.weight, "a known weight on the tool [kg]")
@@ -107,57 +90,6 @@ Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::ve
   if (runs.value->size() > 1)
     result.notes.push_back(std::to_string(runs.value->size()) + " runs in it: the parameters of the last are used");
   result.value = std::move(runs.value->back().settings);
-  return result;
-}
-
-calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_std) {
-  const PipelineSettings& pipeline = settings.pipeline;
-  return {settings.mechanism,
-          pipeline.level,
-          filterSettings(settings.mechanism, pipeline),
-          pipeline.crank_sensor.place().ratio,
-          rocker_std,
-          inForce(pipeline.crank_sensor)};
-}
-
-/// Pieces of the recording, and more of them until no more are needed.
-calibration::Calibration calibrated(const BagInputs& inputs, const Settings& settings, double rocker_std,
-                                    CrankBag& bag) {
-  constexpr double kReading = 0.2;  // part of the time of a round
-  constexpr double kGain =
-      0.8;  // of the deviation: twice the blows leave 0.71 of noise, all of what they have in common
-  double before = kInfinity;
-  for (ReadPieces pieces;; pieces = pieces.more()) {
-    ProgressBar bar;
-    const Progress progress = std::ref(bar);
-    bag = readCrankBag(inputs, settings, pieces, piece(progress, 0.0, kReading));
-    if (!bag.problem.empty()) return {};
-    calibration::Calibration found =
-        calibration::calibrate(bag.samples, basisOf(settings, rocker_std), piece(progress, kReading, 1.0));
-    report(progress, 1.0);
-    const double worst = found.worstByBlows();
-    if (bag.whole || found.isSettled() || worst > kGain * before) return found;
-    before = worst;
-    std::cerr << "note: " << pieces.count << " pieces of " << pieces.length
-              << " s do not suffice, more of the recording is read\n";
-  }
-}
-
-CalibrationTexts calibrateCrank(const BagInputs& inputs, const Settings& settings, const Arguments& given,
-                                const std::string& source) {
-  CalibrationTexts result;
-  CrankBag bag;
-  const calibration::Calibration found = calibrated(inputs, settings, given.rocker_std, bag);
-  if (!bag.problem.empty()) {
-    result.problems = {bag.problem};
-    return result;
-  }
-  if (!bag.pitch_known && !settings.pipeline.pitch_joints.empty())
-    std::cerr << "note: not every pitch joint is on " << settings.input_topics.joint_states
-              << ": the hull's pitch is taken as hull_pitch_rad\n";
-  result.words = (found.problem.empty() ? "" : given.bags.front() + ": ") + textOf(found, given.verbose);
-  if (found.problem.empty()) result.yaml = yamlOf(found, source);
-  if (!result.yaml.empty()) result.picture = svgOf(found);
   return result;
 }
 
@@ -197,9 +129,11 @@ int run(int argc, const char* const* argv) {
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
   for (const std::string& warning : textsOf(warnings)) std::cerr << "warning: " << warning << '\n';
   given.boom_job.bags = given.bags;
+  given.crank_job.recording = given.bags.front();
   const std::string source = fs::path(given.bags.front()).filename().string();
-  const CalibrationTexts texts = given.boom ? calibrateBoom(*settings.value, given.boom_job, source)
-                                            : calibrateCrank(*recording.value, *settings.value, given, source);
+  const CalibrationTexts texts = given.boom
+                                     ? calibrateBoom(*settings.value, given.boom_job, source)
+                                     : calibrateCrank(*recording.value, *settings.value, given.crank_job, source);
   if (!texts.problems.empty()) return fail(texts.problems);
   (texts.yaml.empty() ? std::cerr : std::cout) << texts.words;
   if (texts.yaml.empty()) return kExitFailure;

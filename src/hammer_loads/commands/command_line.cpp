@@ -1,13 +1,11 @@
 #include "hammer_loads/commands/command_line.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <sstream>
-#include <string_view>
 
 #include "hammer_loads/settings/yaml_value.h"
 
@@ -19,17 +17,13 @@ CommandLine::CommandLine(const std::string& description, const std::string& name
 }
 
 std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
-  add_flag("--version", "print the version and end");
-  // Before parsing: it needs no other argument.
-  if (std::find(argv, argv + argc, std::string_view("--version")) != argv + argc) {
-    std::cout << "hammer_loads " HAMMER_LOADS_VERSION << '\n';
-    return finishOutput();
-  }
+  set_version_flag("--version", "hammer_loads " HAMMER_LOADS_VERSION, "print the version and end");
   try {
     CLI::App::parse(argc, argv);
     return std::nullopt;
-  } catch (const CLI::Success& help) {
-    return exit(help);
+  } catch (const CLI::Success& answer) {  // to --help or --version
+    exit(answer);
+    return finishOutput();
   } catch (const CLI::ParseError& error) {
     std::cerr << get_name() << ": " << onOneLine(error.what()) << " (--help shows the options)\n";
     return kExitWrongUsage;
@@ -54,8 +48,8 @@ int fail(const std::vector<std::string>& problems) {
   return kExitFailure;
 }
 
-void addParamsOption(CommandLine& line, std::vector<std::string>& files) {
-  line.add_option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
+CLI::Option* addParamsOption(CommandLine& line, std::vector<std::string>& files) {
+  return line.add_option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
       ->allow_extra_args(false)
       ->type_name("FILE.yaml");
 }
@@ -74,8 +68,8 @@ void addLevelOption(CommandLine& line, std::optional<Level>& level) {
       ->type_name("LEVEL");
 }
 
-void addUrdfOption(CommandLine& line, std::string& file) {
-  line.add_option("--urdf", file, "robot description; with it the boom's loads as well")->type_name("FILE.urdf");
+CLI::Option* addUrdfOption(CommandLine& line, std::string& file) {
+  return line.add_option("--urdf", file, "robot description; with it the boom's loads as well")->type_name("FILE.urdf");
 }
 
 int finishOutput() {

@@ -27,7 +27,7 @@ CLI::Validator within(double least, double most, const std::string& unit);
 int fail(const std::vector<std::string>& problems);
 
 /// Adds `--params FILE.yaml`, which may be repeated.
-void addParamsOption(CommandLine& line, std::vector<std::string>& files);
+CLI::Option* addParamsOption(CommandLine& line, std::vector<std::string>& files);
 
 /// Adds `--level`, limited to the levels of the model; without it `level` stays as it is.
 void addLevelOption(CommandLine& line, std::optional<Level>& level);
@@ -36,7 +36,7 @@ void addLevelOption(CommandLine& line, std::optional<Level>& level);
 int finishOutput();
 
 /// Adds `--urdf FILE`, the robot description that the boom is made from.
-void addUrdfOption(CommandLine& line, std::string& file);
+CLI::Option* addUrdfOption(CommandLine& line, std::string& file);
 
 /// Content of a file that is not empty, or the reason against it in one line.
 Checked<std::string> fileText(const std::string& file);

@@ -1,4 +1,6 @@
 /// count_cycles: load cycles of any series, one number a line on stdin, as CSV on stdout.
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -29,19 +31,12 @@ std::optional<double> valueOf(const std::string& text) {
   return whole && word ? std::make_optional(value) : std::nullopt;
 }
 
-/// Without spaces at both ends, so that an empty line is empty.
-std::string trimmed(const std::string& line) {
-  const std::size_t first = line.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
-}
-
 /// False after a line that is no number, with one line on stderr.
 template <typename Counter>
 bool countSeries(Counter& counter) {
   std::string line;
   for (std::uint64_t number = 1; std::getline(std::cin, line); ++number) {
-    const std::string text = trimmed(line);
+    const std::string text = boost::trim_copy_if(line, boost::is_any_of(" \t\r"));
     if (text.empty()) continue;
     const std::optional<double> value = valueOf(text);
     if (!value) {

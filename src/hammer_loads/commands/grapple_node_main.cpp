@@ -1,6 +1,5 @@
 /// grapple_node: the live grapple.
-#include "hammer_loads/commands/node_usage.h"
-#include "hammer_loads/grapple_ros/live_grapple.h"
+#include "hammer_loads/grapple_ros/grapple_node.h"
 #include "hammer_loads/ros/run_node.h"
 
 namespace {
@@ -30,6 +29,5 @@ Parameters (private; SI units, each explained in its file in the package's direc
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto code = hammer_loads::answerUsage(argc, argv, kUsage)) return *code;
-  return hammer_loads::runNode(argc, argv, "grapple", hammer_loads::makeGrappleNode);
+  return hammer_loads::runNode(argc, argv, kUsage, "grapple", hammer_loads::makeGrappleNode);
 }

@@ -13,8 +13,7 @@ int run(int argc, const char* const* argv) {
   CommandLine line("Path of the grapple's right jaw edge over the slider position", "grapple_table");
   std::vector<std::string> files;
   TableRequest request;
-  addParamsOption(line, files);
-  line.get_option("--params")->required()->description("the grapple; may be repeated, the last one wins");
+  addParamsOption(line, files)->required()->description("the grapple; may be repeated, the last one wins");
   const auto metres = [&](const char* name, std::optional<double>& value, const char* help) {
     return line.add_option(name, value, help)->check(within(-kInfinity, kInfinity, "m"));
   };

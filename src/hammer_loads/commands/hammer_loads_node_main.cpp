@@ -1,5 +1,4 @@
 /// hammer_loads_node: the live node.
-#include "hammer_loads/commands/node_usage.h"
 #include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/ros/run_node.h"
@@ -65,6 +64,5 @@ std::string usage() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto code = hammer_loads::answerUsage(argc, argv, usage().c_str())) return *code;
-  return hammer_loads::runNode(argc, argv, "hammer_loads", hammer_loads::makeHammerNode);
+  return hammer_loads::runNode(argc, argv, usage(), "hammer_loads", hammer_loads::makeHammerNode);
 }

@@ -9,10 +9,9 @@
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/life/ledger_run.h"
-#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/ros/bag_processing.h"
-#include "hammer_loads/ros/bag_runs.h"
-#include "hammer_loads/tables/table_schema.h"
+#include "hammer_loads/tables/table_writer.h"
 
 namespace hammer_loads {
 namespace {
@@ -38,8 +37,8 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   line.add_flag("--replace-run", given.replace_run, "in the ledger these runs take the place of what it has of them")
       ->needs("--ledger");
   line.add_flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
-  addParamsOption(line, given.params);
-  line.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
+  addParamsOption(line, given.params)
+      ->description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(line, given.urdf);
   for (const InputName& input : kInputs) addTopicOption(line, job.topics, input.topic);
   line.get_option("--pressures-topic")

@@ -8,9 +8,8 @@
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/grapple_ros/grapple_flow.h"
-#include "hammer_loads/ros/attach.h"
 #include "hammer_loads/ros/bag_inputs.h"
-#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/output.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
@@ -78,10 +77,9 @@ int run(int argc, const char* const* argv) {
                   "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
       ->required()
       ->expected(2, 1000000);
-  line.add_option("--params", given.params, "the grapple, over the shipped grapple_node.yaml; may be repeated")
+  addParamsOption(line, given.params)
       ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE.yaml");
+      ->description("the grapple, over the shipped grapple_node.yaml; may be repeated");
   line.add_option("--joint-states-topic", given.topic, "with the slider's joint")
       ->type_name("TOPIC")
       ->capture_default_str();

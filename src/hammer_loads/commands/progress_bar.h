@@ -4,30 +4,27 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <string>
+
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 
 /// Time as 1:23:45 or 2:07; rounded up, so that it is not over before 0:00.
 inline std::string timeText(double seconds) {
-  const auto whole = static_cast<long>(seconds) + (seconds > static_cast<double>(static_cast<long>(seconds)) ? 1 : 0);
-  char text[48];
-  if (whole >= 3600)
-    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-  else
-    std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
-  return text;
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole >= 3600) return format("%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  return format("%ld:%02ld", whole / 60, whole % 60);
 }
 
 /// Line of the bar with the remaining time, extrapolated from the elapsed one; not for the first 2 %, which are little
 /// information.
 inline std::string progressLine(double part, double seconds_so_far) {
   const int percent = static_cast<int>(100.0 * part);
-  char text[80];
-  std::snprintf(text, sizeof text, "[%-50.*s] %3d %%", percent / 2,
-                "##################################################", percent);
-  std::string line = text;
+  const std::string line =
+      format("[%-50.*s] %3d %%", percent / 2, "##################################################", percent);
   if (percent < 2) return line;
   if (percent >= 100) return line + "  " + timeText(seconds_so_far);
   return line + "  " + timeText(seconds_so_far * (1.0 - part) / part) + " left";

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <iostream>
 
-#include "hammer_loads/commands/node_usage.h"
 #include "hammer_loads/grapple/read_grapple.h"
 #include "hammer_loads/ros/ros_parameters.h"
+#include "hammer_loads/ros/run_node.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/util/constants.h"
 

@@ -4,9 +4,9 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "hammer_loads/commands/node_usage.h"
 #include "hammer_loads/ros/machine_player.h"
 #include "hammer_loads/ros/ros_parameters.h"
+#include "hammer_loads/ros/run_node.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {

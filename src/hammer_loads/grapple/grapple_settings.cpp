@@ -6,7 +6,7 @@
 
 #include "hammer_loads/grapple/read_grapple.h"
 #include "hammer_loads/settings/parameter_reader.h"
-#include "hammer_loads/settings/read_log.h"
+#include "hammer_loads/settings/readers.h"
 
 namespace hammer_loads {
 namespace {

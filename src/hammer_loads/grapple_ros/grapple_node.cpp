@@ -1,47 +1,154 @@
 #include "hammer_loads/grapple_ros/grapple_node.h"
 
-#include <utility>
+#include <ros/message_event.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/subscriber.h>
 
-#include "hammer_loads/ros/attach.h"
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hammer_loads/grapple_ros/grapple_flow.h"
+#include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/ros/diagnostics_publisher.h"
 #include "hammer_loads/ros/node_log.h"
+#include "hammer_loads/ros/output.h"
 #include "hammer_loads/ros/ros_parameters.h"
 #include "hammer_loads/settings/load.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
-GrappleNode::GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
-                         std::unique_ptr<BagLog> log)
-    : log_(std::move(log)),
-      flow_(settings),
-      run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
-      diagnostics_(node, private_node, flow_, *log_, clock_),
-      log_services_(
-          private_node, *log_, [] {}, [this] { beginRun(); }, [] {}) {
-  attachToNode(flow_.outputs(), private_node, *log_);
-  RunInfo info = flow_.outputs().run_info.message;
-  info.header.stamp = ros::Time::now();
-  run_info_.publish(info);
-  joint_states_ = node.subscribe("joint_states", kTopicQueue, &GrappleNode::onJointStates, this,
-                                 ros::TransportHints().tcpNoDelay());
-  topic_ = joint_states_.getTopic();
-}
+namespace {
 
-void GrappleNode::onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
-  const RecordClock::Tick tick = clock_.next(event.getReceiptTime());
-  if (tick.ran_back) {
-    beginRun();
-    log_->split();
+using diagnostic_msgs::DiagnosticStatus;
+
+std::string limitText(const SliderLimit& limit) { return format("%.13g, %s", limit.slider, nameOf(limit.kind)); }
+
+/// Published at `~diagnostic_period` (1 s) of wall time: rate, age, counts of accepted and refused samples by reason,
+/// with the slider positions that are allowed, log health.
+class GrappleDiagnostics {
+ public:
+  GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, BagLog& log,
+                     const RecordClock& clock)
+      : flow_(flow), publisher_(node, private_node, log, clock) {
+    publisher_.add("slider", this, &GrappleDiagnostics::describeSlider);
+    publisher_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
+    // Wall time: a stopped /clock is one of the things to report.
+    timer_ = node.createWallTimer(ros::WallDuration(publisher_.period()),
+                                  [this](const ros::WallTimerEvent&) { publisher_.publish(); });
   }
-  if (log_->logsInputs()) log_->write(topic_, tick.time, *event.getConstMessage());
-  const std::uint64_t foreign = flow_.messagesWithoutJoint();
-  flow_.jointStates(*event.getConstMessage(), tick.time);
-  if (flow_.messagesWithoutJoint() == foreign) diagnostics_.sliderArrived();
-}
 
-/// The next input begins a run, and its run_info replaces that of the run before.
-void GrappleNode::beginRun() {
-  flow_.reset();
-  log_->forgetLatched(run_info_.getTopic());
-}
+  /// An input arrived that has the slider joint; its age decides whether the slider is stale.
+  void sliderArrived() { last_slider_ = Clock::now(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void describeSlider(diagnostic_updater::DiagnosticStatusWrapper& status) {
+    const Clock::time_point now = Clock::now();
+    summarise(now, status);
+    const GrappleTracker& tracker = flow_.tracker();
+    status.add("accepted rate [Hz]",
+               static_cast<double>(flow_.accepted() - last_accepted_) / secondsBetween(last_report_, now));
+    if (last_slider_ != Clock::time_point{})
+      status.add("age of the last sample [s]", secondsBetween(last_slider_, now));
+    if (tracker.hasMotion()) status.add("slider position [m]", tracker.slider().position);
+    if (tracker.hasMotion()) status.add("det J [m4]", tracker.motion().determinant);
+    status.add("lower limit [m]", limitText(tracker.grapple().lowerLimit()));
+    status.add("upper limit [m]", limitText(tracker.grapple().upperLimit()));
+    status.add("accepted", flow_.accepted());
+    status.add("accepted without velocity", flow_.withoutVelocity());
+    status.add("accepted without acceleration", flow_.withoutAcceleration());
+    for (const RefusalCount& refusal : flow_.refusals()) {
+      status.add("refused: " + refusal.reason, refusal.count);
+      if (!refusal.last.empty()) status.add("last refused: " + refusal.reason, refusal.last);
+    }
+    last_accepted_ = flow_.accepted();
+    last_refused_ = flow_.refused();
+    last_without_velocity_ = flow_.withoutVelocity();
+    last_report_ = now;
+  }
+  void summarise(Clock::time_point now, diagnostic_updater::DiagnosticStatusWrapper& status) const {
+    const GrappleSettings& settings = flow_.settings();
+    const std::uint64_t accepted = flow_.accepted() - last_accepted_, refused = flow_.refused() - last_refused_;
+    const double age = secondsBetween(last_slider_, now);
+    if (last_slider_ == Clock::time_point{}) {
+      status.summary(DiagnosticStatus::WARN, "no sample of " + settings.slider_joint + " yet");
+    } else if (age > settings.stale_after) {
+      status.summaryf(DiagnosticStatus::ERROR, "stale: no slider sample for %.1f s, nothing is published", age);
+    } else if (refused > 0) {
+      status.summaryf(DiagnosticStatus::WARN, "%llu of %llu slider samples refused",
+                      static_cast<unsigned long long>(refused), static_cast<unsigned long long>(refused + accepted));
+    } else if (flow_.withoutVelocity() > last_without_velocity_) {
+      status.summary(DiagnosticStatus::WARN, "no slider velocity: no twist and no accel is published");
+    } else {
+      status.summary(DiagnosticStatus::OK, "working");
+    }
+  }
+
+  const GrappleFlow& flow_;
+  Clock::time_point last_slider_{}, last_report_{Clock::now()};
+  std::uint64_t last_accepted_{}, last_refused_{}, last_without_velocity_{};
+  DiagnosticsPublisher publisher_;
+  ros::WallTimer timer_;
+};
+
+/// In `joint_states`; out, for each jaw, `~jaw_edge/left`, `~jaw_edge/left_twist`, `~jaw_edge/left_accel`, then
+/// `~mechanism`, `~run_info` (latched), /diagnostics. One of each per accepted slider sample, with the sample's stamp.
+class GrappleNode final : public LiveNode {
+ public:
+  /// log: recording, unless nothing shall be logged yet.
+  GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
+              std::unique_ptr<BagLog> log)
+      : log_(std::move(log)),
+        flow_(settings),
+        run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
+        diagnostics_(node, private_node, flow_, *log_, clock_),
+        log_services_(
+            private_node, *log_, [] {}, [this] { beginRun(); }, [] {}) {
+    attachToNode(flow_.outputs(), private_node, *log_);
+    RunInfo info = flow_.outputs().run_info.message;
+    info.header.stamp = ros::Time::now();
+    run_info_.publish(info);
+    joint_states_ = node.subscribe("joint_states", kTopicQueue, &GrappleNode::onJointStates, this,
+                                   ros::TransportHints().tcpNoDelay());
+    topic_ = joint_states_.getTopic();
+  }
+
+ private:
+  /// The next input begins a run, and its run_info replaces that of the run before.
+  void beginRun() {
+    flow_.reset();
+    log_->forgetLatched(run_info_.getTopic());
+  }
+  void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
+    const RecordClock::Tick tick = clock_.next(event.getReceiptTime());
+    if (tick.ran_back) {
+      beginRun();
+      log_->split();
+    }
+    if (log_->logsInputs()) log_->write(topic_, tick.time, *event.getConstMessage());
+    const std::uint64_t foreign = flow_.messagesWithoutJoint();
+    flow_.jointStates(*event.getConstMessage(), tick.time);
+    if (flow_.messagesWithoutJoint() == foreign) diagnostics_.sliderArrived();
+  }
+
+  // A member stands before those that use it: the last members are destroyed first.
+  std::unique_ptr<BagLog> log_;
+  GrappleFlow flow_;
+  RecordClock clock_;
+  ros::Publisher run_info_;
+  GrappleDiagnostics diagnostics_;
+  LogServices log_services_;
+  ros::Subscriber joint_states_;
+  std::string topic_;  ///< topic of joint_states_
+};
+
+}  // namespace
 
 std::unique_ptr<LiveNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                           std::vector<std::string>& problems) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "hammer_loads/util/csv_cells.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/number_text.h"
 

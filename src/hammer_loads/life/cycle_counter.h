@@ -12,7 +12,6 @@
 
 #include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/life/four_point.h"
-#include "hammer_loads/life/load_grid.h"
 
 namespace hammer_loads::life {
 

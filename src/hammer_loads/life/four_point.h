@@ -9,7 +9,6 @@
 /// push(), give the rest of the count of the whole: pieces add exactly.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 

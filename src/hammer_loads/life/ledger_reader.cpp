@@ -1,6 +1,5 @@
 #include "hammer_loads/life/ledger_reader.h"
 
-#include <iterator>
 #include <map>
 #include <utility>
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "hammer_loads/life/ledger_schema.h"
-#include "hammer_loads/life/ledger_writer.h"
 
 namespace hammer_loads::life {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hammer_loads/life/database.h"
-#include "hammer_loads/life/ledger_machine.h"
 #include "hammer_loads/life/life_recorder.h"
+#include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/life/piece_sink.h"
 
 namespace hammer_loads::life {

@@ -1,10 +1,8 @@
 #include "hammer_loads/life/ledger_schema.h"
 
 #include <optional>
-#include <string>
 
 #include "hammer_loads/life/cycle_count.h"
-#include "hammer_loads/life/database.h"
 
 namespace hammer_loads::life {
 namespace {

@@ -1,9 +1,8 @@
-#include "hammer_loads/life/ledger_writer.h"
-
 #include <algorithm>
 #include <limits>
 #include <optional>
 
+#include "hammer_loads/life/ledger_schema.h"
 #include "hammer_loads/life/life_settings.h"
 
 namespace hammer_loads::life {

@@ -2,19 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <utility>
 
-#include "hammer_loads/util/number_text.h"
-
 namespace hammer_loads::life {
-
-std::string hotSpotChannel(const HotSpot& spot) { return "stress/" + spot.name; }
-
-std::string countedName(const std::string& channel, double bandwidth) {
-  return bandwidth > 0.0 ? channel + "_below_" + shortNumber(bandwidth) + "Hz" : channel;
-}
 
 std::int64_t dayOf(std::int64_t stamp) noexcept {
   constexpr std::int64_t kDay = 86400LL * 1000 * 1000 * 1000;

@@ -1,13 +1,18 @@
-/// The counted channels, and the S-N lines of their cycles.
+/// The counted channels and the S-N lines of their cycles; the machine of a ledger with them, and the figures of a
+/// count.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/life/damage.h"
-#include "hammer_loads/life/load_grid.h"
 
 namespace hammer_loads::life {
 
@@ -48,9 +53,6 @@ std::string hotSpotChannel(const HotSpot& spot);
 /// add.
 std::string countedName(const std::string& channel, double bandwidth);
 
-/// Slopes at which damage-equivalent loads are given: welded steel, below its knee (DNV-RP-C203), composites.
-constexpr double kSlopes[] = {3.0, 4.0, 5.0, 10.0};
-
 /// Unit of topic/field, topic/name/field or stress/NAME by the comment of the message's field; "-" for no unit and for
 /// an unknown name.
 inline std::string unitOf(const std::string& channel) {
@@ -62,5 +64,53 @@ inline std::string unitOf(const std::string& channel) {
   if (has("torque")) return "N m";
   return has("energy") ? "J" : "-";
 }
+
+struct LedgerChannel {
+  std::string name;
+  LoadGrid grid;
+  std::optional<SnCurve> curve;
+  std::optional<FkmMeanStress> mean_stress;
+  std::int64_t id{};  ///< number in the ledger; 0: it is not from one
+
+  bool hasCountsOf(const LedgerChannel& o) const { return name == o.name && grid == o.grid; }
+};
+
+/// The machine of the counts. Another identity or other channels or grids begin a new epoch: counts of different
+/// machines never mix. Curves and equivalent cycles only judge them: those of the last run hold.
+struct LedgerMachine {
+  std::string identity;  ///< identity of hammer and boom, such as a hash of their parameters; no path, host or time
+  std::vector<LedgerChannel> channels;
+  double equivalent_cycles_per_hour{};
+};
+
+/// Channels in the order of LifeRecorder::channels().
+LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& identity);
+
+/// One recording of one machine with one set of sensor parameters.
+struct RunId {
+  std::string name;          ///< equal whenever this recording is counted, with whatever sensor parameters
+  std::string parameters{};  ///< a digest of those of sensors; empty: not known
+  std::string refusal{};     ///< reason why it is not to be counted, one line; empty: it is
+
+  RunId(const char* of) : name(of) {}
+  RunId(std::string of) : name(std::move(of)) {}
+};
+
+/// Slopes at which damage-equivalent loads are given: welded steel, below its knee (DNV-RP-C203), composites.
+constexpr double kSlopes[] = {3.0, 4.0, 5.0, 10.0};
+constexpr std::size_t kSlopeCount = std::size(kSlopes);
+
+/// Ranges in the channel's unit.
+struct ChannelFigures {
+  std::array<Figure, kSlopeCount> equivalent_range;  ///< at kSlopes; NaN without any time
+  double largest_range{};
+  double cycles{};                        ///< half cycles of the residue included
+  std::optional<Figure> damage;           ///< by the channel's S-N curve
+  std::optional<Figure> remaining_hours;  ///< until the damage is 1
+};
+
+/// The figures of a count over some hours.
+ChannelFigures figuresOf(const CycleCount& count, const LedgerChannel& channel, double hours,
+                         double equivalent_cycles_per_hour);
 
 }  // namespace hammer_loads::life

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "hammer_loads/life/ledger_machine.h"
 #include "hammer_loads/life/life_recorder.h"
+#include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/util/checked.h"
 
 namespace hammer_loads::life {

@@ -1,9 +1,5 @@
 #include "hammer_loads/life/turn_loads.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace hammer_loads::life {
 namespace {
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <limits>
 #include <new>
 #include <utility>
@@ -189,10 +188,7 @@ std::vector<std::uint8_t> BagLog::describeGap() {
     gap.values.back().key = topic.name;
     gap.values.back().value = std::to_string(refused - topic.noted);
   }
-  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(gap));
-  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(stream, gap);
-  return bytes;
+  return bytesOf(gap);
 }
 
 /// Writes the gap ahead of the next message of the log, as soon as the queue has room again.

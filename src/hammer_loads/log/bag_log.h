@@ -1,4 +1,5 @@
-/// Bag writer of a node: takes messages without waiting for the disk, and recovers from faults of the disk.
+/// Bag writer of a node: takes messages without waiting for the disk, and recovers from faults of the disk; and the
+/// record times of the node's inputs.
 #pragma once
 
 #include <ros/message_traits.h>
@@ -16,7 +17,6 @@
 #include "hammer_loads/log/log_queue.h"
 #include "hammer_loads/log/log_settings.h"
 #include "hammer_loads/log/log_status.h"
-#include "hammer_loads/log/log_topic.h"
 #include "hammer_loads/log/log_writer.h"
 
 namespace hammer_loads {
@@ -93,6 +93,13 @@ class BagLog {
   void gapNoted();
 
   template <typename Message>
+  static std::vector<std::uint8_t> bytesOf(const Message& message) {
+    std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+    ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    ros::serialization::serialize(stream, message);
+    return bytes;
+  }
+  template <typename Message>
   static LogType typeOf(const Message& message) {
     using namespace ros::message_traits;
     return {DataType<Message>::value(message), MD5Sum<Message>::value(message), Definition<Message>::value(message)};
@@ -139,11 +146,30 @@ void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const
   const auto known = latched_.find(key);
   LogTopic& entry =
       known != latched_.end() ? *known->second : addTopic(latched_, key, topic, typeOf(message), true, caller);
-  const std::uint32_t size = ros::serialization::serializationLength(message);
-  std::vector<std::uint8_t> bytes(size);
-  ros::serialization::OStream stream(bytes.data(), size);
-  ros::serialization::serialize(stream, message);
-  latch(entry, time, std::move(bytes));
+  latch(entry, time, bytesOf(message));
 }
+
+/// Arrival times, made strictly increasing so that a log in time order is in the order of arrival. If simulated time
+/// runs back (a looped bag, a restarted simulation), the clock restarts. A wall clock that is set back has no effect,
+/// as only header stamps are used in computations.
+class RecordClock {
+ public:
+  struct Tick {
+    ros::Time time;   ///< record time of the input
+    bool ran_back{};  ///< a state by time must be forgotten
+  };
+
+  Tick next(const ros::Time& arrival) {
+    const bool ran_back = arrival < last_arrival_ && ros::Time::isSimTime();
+    last_arrival_ = arrival;
+    last_ = BagLog::nextRecordTime(arrival, ran_back ? ros::Time() : last_);
+    return {last_, ran_back};
+  }
+  /// Time of the last input.
+  const ros::Time& last() const { return last_; }
+
+ private:
+  ros::Time last_arrival_, last_;
+};
 
 }  // namespace hammer_loads

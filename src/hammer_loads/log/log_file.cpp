@@ -1,5 +1,3 @@
-#include "hammer_loads/log/log_file.h"
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -9,6 +7,8 @@
 #include <limits>
 #include <system_error>
 #include <utility>
+
+#include "hammer_loads/log/log_writer.h"
 
 namespace hammer_loads {
 namespace {

@@ -10,7 +10,7 @@
 #include <memory>
 #include <new>
 
-#include "hammer_loads/log/log_topic.h"
+#include "hammer_loads/log/log_status.h"
 
 namespace hammer_loads {
 

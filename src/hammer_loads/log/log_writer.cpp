@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "hammer_loads/util/format.h"
 
@@ -207,10 +206,14 @@ void LogWriter::split() {
 void LogWriter::writeLast(LogOrder& order) {
   if (order.topic == nullptr || !file_) return;
   if (repeat_) repeatLatched(&order.time);
-  if (!file_) return;
-  auto fault = file_->write(*order.topic, order.time, order.bytes.data(),
-                            static_cast<std::uint32_t>(order.bytes.size()), Clock::now());
+  if (file_) write(*order.topic, order.time, order.bytes);
+}
+
+/// Returns false after a fault, which has stopped the recording.
+bool LogWriter::write(const LogTopic& topic, const ros::Time& time, const std::vector<std::uint8_t>& bytes) {
+  auto fault = file_->write(topic, time, bytes.data(), static_cast<std::uint32_t>(bytes.size()), Clock::now());
   if (fault) stopFor(std::move(*fault));
+  return !fault;
 }
 
 /// Stops after a fault: the file is closed properly if possible, and the node continues without a log.
@@ -252,11 +255,7 @@ void LogWriter::latch(LogOrder& order) {
   place->bytes = std::move(order.bytes);
   if (!file_) return;
   order.topic->written.fetch_add(1, std::memory_order_relaxed);
-  if (repeat_) return;  // comes with the others
-  auto& bytes = place->bytes;
-  auto fault =
-      file_->write(*order.topic, order.time, bytes.data(), static_cast<std::uint32_t>(bytes.size()), Clock::now());
-  if (fault) stopFor(std::move(*fault));
+  if (!repeat_) write(*order.topic, order.time, place->bytes);  // else it comes with the others
 }
 
 void LogWriter::forget(const LogTopic* topic) {
@@ -267,12 +266,8 @@ void LogWriter::forget(const LogTopic* topic) {
 /// time: of the file's first message, so that the file does not begin with a gap; null: there is none yet.
 void LogWriter::repeatLatched(const ros::Time* time) {
   repeat_ = false;
-  for (Latched& latched : latched_) {
-    auto& bytes = latched.bytes;
-    auto fault = file_->write(*latched.topic, time != nullptr ? *time : latched.time, bytes.data(),
-                              static_cast<std::uint32_t>(bytes.size()), Clock::now());
-    if (fault) return stopFor(std::move(*fault));
-  }
+  for (const Latched& latched : latched_)
+    if (!write(*latched.topic, time != nullptr ? *time : latched.time, latched.bytes)) return;
 }
 
 }  // namespace hammer_loads

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "hammer_loads/pipeline/hull_deviation.h"
-#include "hammer_loads/settings/channel_names.h"
-#include "hammer_loads/util/functions.h"
+#include "hammer_loads/settings/readers.h"
+#include "hammer_loads/util/parts.h"
 
 namespace hammer_loads {
 namespace {

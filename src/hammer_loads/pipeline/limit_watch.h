@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "hammer_loads/life/ledger_machine.h"
 #include "hammer_loads/life/life_recorder.h"
+#include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/pipeline/misuse.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/settings/limits.h"

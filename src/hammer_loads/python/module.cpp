@@ -3,8 +3,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <array>
-#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -12,8 +10,7 @@
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/hammer/evaluate.h"
 #include "hammer_loads/life/cycle_counter.h"
-#include "hammer_loads/python/boom.h"
-#include "hammer_loads/python/hammer.h"
+#include "hammer_loads/python/models.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/format.h"
@@ -26,11 +23,7 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Text = std::optional<std::string>;
 
 /// Python's ValueError: the problems as the commands write them, a line each.
-[[noreturn]] void raise(const std::vector<std::string>& problems) {
-  std::string text;
-  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
-  throw py::value_error(text);
-}
+[[noreturn]] void raise(const std::vector<std::string>& problems) { throw py::value_error(joined(problems, "\n")); }
 
 /// A hammer or boom, or its problems as an exception.
 template <typename Model>
@@ -86,12 +79,12 @@ std::string textOf(const Hammer& hammer) {
 
 HullModel modelOf(const Hammer& hammer, const Text& word) {
   if (!word) return HullModel(hammer.mechanism(), hammer.level());
-  std::string words;
+  std::vector<std::string> words;
   for (const auto& [name, level] : kRigidLevelNames) {
     if (*word == name) return HullModel(hammer.mechanism(), level);
-    words += (words.empty() ? "" : ",") + std::string(name);
+    words.emplace_back(name);
   }
-  raise({"level: " + onOneLine(*word) + " not in {" + words + "}"});
+  raise({"level: " + onOneLine(*word) + " not in {" + joined(words, ",") + "}"});
 }
 
 /// A row for each column of the commands: wrench, then with pins those of kPinColumns.

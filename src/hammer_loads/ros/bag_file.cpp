@@ -1,5 +1,3 @@
-#include "hammer_loads/ros/bag_file.h"
-
 #include <fcntl.h>
 #include <rosbag/exceptions.h>
 #include <sys/stat.h>
@@ -10,6 +8,7 @@
 #include <cstring>
 
 #include "hammer_loads/log/bag_record.h"
+#include "hammer_loads/ros/bag_inputs.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,14 +1,18 @@
 #include "hammer_loads/ros/bag_inputs.h"
 
+#include <hammer_loads/RunInfo.h>
 #include <rosbag/exceptions.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
@@ -16,10 +20,9 @@ namespace {
 constexpr std::uint32_t kLongest = 10000000;  // [s]: no recording lasts as long
 
 bool beginsAsBag(const std::string& file) {
-  constexpr char kMagic[] = "#ROSBAG V";
-  char read[sizeof kMagic - 1]{};
-  std::ifstream(file, std::ios::binary).read(read, sizeof read);
-  return std::memcmp(read, kMagic, sizeof read) == 0;
+  std::string begin(9, '\0');
+  std::ifstream(file, std::ios::binary).read(begin.data(), 9);
+  return begin == "#ROSBAG V";
 }
 
 /// Opens a bag. Returns the reason why it cannot be opened; empty if it was.
@@ -40,16 +43,82 @@ std::string openProblem(std::unique_ptr<BagFile>& bag, const std::string& file) 
 
 /// Returns true if a file was opened before, by whatever name.
 bool isAmong(const std::vector<std::string>& files, std::size_t count, const std::string& file) {
-  struct stat one {
-  }, other{};
-  if (stat(file.c_str(), &one) != 0) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (stat(files[i].c_str(), &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino) return true;
-  }
-  return false;
+  std::error_code error;
+  return std::any_of(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(count),
+                     [&](const std::string& other) { return std::filesystem::equivalent(file, other, error); });
+}
+
+bool beginsWith(const std::string& text, const std::string& beginning) {
+  return text.compare(0, beginning.size(), beginning) == 0;
+}
+
+/// Outputs are messages of this package, loads and motion of geometry_msgs, and the mechanism's joints.
+bool isOutput(const std::string& topic, const BagTopic& found, const std::string& prefix) {
+  if (!beginsWith(topic, prefix)) return false;
+  return std::all_of(found.types.begin(), found.types.end(), [&](const std::string& type) {
+    return beginsWith(type, "hammer_loads/") || beginsWith(type, "geometry_msgs/") || topic == prefix + "mechanism";
+  });
 }
 
 }  // namespace
+
+BagMessages::BagMessages(const std::vector<std::unique_ptr<BagFile>>& bags, const BagQuery& query,
+                         const ChunkQuery& chunks) {
+  for (const auto& bag : bags) {
+    Source source{bag.get(), {}};
+    for (const auto& [id, connection] : bag->connections()) {
+      if (query(connection)) source.wanted.emplace(id, &connection);
+    }
+    for (const BagChunk& chunk : bag->chunks()) {
+      if (chunks && !chunks(chunk)) continue;
+      std::uint64_t count = 0;
+      for (const auto& [id, messages] : chunk.counts) count += source.wanted.count(id) * messages;
+      if (count > 0) places_.push_back({&chunk, sources_.size()});
+      size_ += count;
+    }
+    sources_.push_back(std::move(source));
+  }
+  std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.chunk->first, a.source, a.chunk->position) <
+           std::tie(b.chunk->first, b.source, b.chunk->position);
+  });
+}
+
+bool BagMessages::isLater(const std::unique_ptr<OpenChunk>& a, const std::unique_ptr<OpenChunk>& b) {
+  return std::tie(a->message().time, a->place) > std::tie(b->message().time, b->place);
+}
+
+void BagMessages::open(std::size_t place) {
+  if (spare_.empty()) spare_.push_back(std::make_unique<OpenChunk>());
+  std::unique_ptr<OpenChunk> chunk = std::move(spare_.back());
+  spare_.pop_back();
+  const Source& source = sources_[places_[place].source];
+  source.bag->read(*places_[place].chunk, source.wanted, chunk->read);
+  chunk->place = place;
+  chunk->at = 0;
+  if (chunk->read.messages.empty()) return spare_.push_back(std::move(chunk));
+  open_.push_back(std::move(chunk));
+  std::push_heap(open_.begin(), open_.end(), isLater);
+}
+
+void BagMessages::passMessage() {
+  std::pop_heap(open_.begin(), open_.end(), isLater);
+  if (++open_.back()->at < open_.back()->read.messages.size())
+    return std::push_heap(open_.begin(), open_.end(), isLater);
+  spare_.push_back(std::move(open_.back()));
+  open_.pop_back();
+}
+
+const BagMessage* BagMessages::next() {
+  if (given_) passMessage();
+  given_ = false;
+  while (next_place_ < places_.size() &&
+         (open_.empty() || places_[next_place_].chunk->first <= open_.front()->message().time))
+    open(next_place_++);
+  if (open_.empty()) return nullptr;
+  given_ = true;
+  return &open_.front()->message();
+}
 
 Checked<BagInputs> BagInputs::open(const std::vector<std::string>& files) {
   Checked<BagInputs> result;
@@ -80,18 +149,17 @@ void BagInputs::addTopics(const BagFile& bag) {
 }
 
 std::string BagInputs::topicList() const {
-  std::string list;
+  std::vector<std::string> list;
   for (const auto& [name, topic] : topics_)
-    list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + onOneLine(*topic.types.begin()) + ")";
-  return list.empty() ? "none" : list;
+    list.push_back(onOneLine(name) + " (" + onOneLine(*topic.types.begin()) + ")");
+  return list.empty() ? "none" : joined(list);
 }
 
 std::string BagInputs::topicsOfType(const std::string& type) const {
-  std::string list;
-  for (const auto& [name, topic] : topics_) {
-    if (topic.types.count(type) != 0) list += (list.empty() ? "" : ", ") + onOneLine(name);
-  }
-  return list.empty() ? "none" : list;
+  std::vector<std::string> list;
+  for (const auto& [name, topic] : topics_)
+    if (topic.types.count(type) != 0) list.push_back(onOneLine(name));
+  return list.empty() ? "none" : joined(list);
 }
 
 std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const {
@@ -116,6 +184,25 @@ std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const 
 
 BagMessages BagInputs::messagesOn(const std::set<std::string>& topics) const {
   return messages([&topics](const BagConnection& connection) { return topics.count(connection.topic) != 0; });
+}
+
+std::string whyBagMustStay(const std::string& file, const std::vector<std::string>& input_topics) {
+  const Checked<BagInputs> bag = BagInputs::open({file});
+  if (!bag.value) return "it is no readable bag of this package";
+  std::vector<std::string> prefixes;
+  for (const auto& [name, topic] : bag.value->topics()) {
+    const std::size_t slash = name.rfind('/');
+    const bool run_info = topic.types.count(ros::message_traits::datatype<RunInfo>()) != 0;
+    if (run_info && slash != std::string::npos && slash > 0) prefixes.push_back(name.substr(0, slash + 1));
+  }
+  for (const auto& [name, topic] : bag.value->topics()) {
+    const bool ours = std::any_of(prefixes.begin(), prefixes.end(), [&, &name = name, &topic = topic](const auto& p) {
+      return isOutput(name, topic, p);
+    });
+    if (!ours) return "it holds " + name + ", which is no output of this package";
+    if (std::count(input_topics.begin(), input_topics.end(), name) != 0) return "it holds " + name + ", an input";
+  }
+  return prefixes.empty() ? "it is no bag of this package: it holds no run_info" : "";
 }
 
 }  // namespace hammer_loads

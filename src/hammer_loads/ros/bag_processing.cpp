@@ -4,12 +4,10 @@
 #include <system_error>
 
 #include "hammer_loads/log/bag_writer.h"
-#include "hammer_loads/ros/attach.h"
 #include "hammer_loads/ros/bag_inputs.h"
-#include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/bag_tables.h"
-#include "hammer_loads/ros/bag_warnings.h"
 #include "hammer_loads/ros/hammer_inputs.h"
+#include "hammer_loads/ros/output.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/settings/yaml_value.h"
 
@@ -109,18 +107,12 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   return {};
 }
 
-/// Everything that one job works with once its inputs are known to be good.
-struct Work {
-  const BagInputs& inputs;
-  const BagJob& job;
-  const std::vector<BagRun>& runs;
-};
-
-void process(const Work& work, const Sinks& sinks, const std::function<void(double)>& progress, BagReport& report) {
+void process(const BagInputs& inputs, const BagJob& job, const std::vector<BagRun>& runs, const Sinks& sinks,
+             const std::function<void(double)>& progress, BagReport& report) {
   std::set<std::string> topics, heard;
-  for (const auto& [name, type] : wantedTopics(work.runs)) topics.insert(name);
-  HammerRuns hammer(work.runs, work.job, sinks, report);
-  BagMessages messages = work.inputs.messagesOn(topics);
+  for (const auto& [name, type] : wantedTopics(runs)) topics.insert(name);
+  HammerRuns hammer(runs, job, sinks, report);
+  BagMessages messages = inputs.messagesOn(topics);
   std::set<const BagConnection*> connections;  // saves to look up each message's topic
   const auto count = static_cast<double>(messages.size());
   double done = 0.0;
@@ -131,21 +123,21 @@ void process(const Work& work, const Sinks& sinks, const std::function<void(doub
     if (sinks.tables != nullptr && !sinks.tables->problem().empty()) return;
   }
   hammer.end();
-  warnOfPublishers(work.inputs, topics, report.warnings);
-  warnOfDefinitions(work.inputs, report.warnings);
-  warnOfLostMessages(work.inputs, report.warnings);
-  warnOfMissing(work.inputs, work.runs, heard, report.warnings);
+  warnOfPublishers(inputs, topics, report.warnings);
+  warnOfDefinitions(inputs, report.warnings);
+  warnOfLostMessages(inputs, report.warnings);
+  warnOfMissing(inputs, runs, heard, report.warnings);
 }
 
 /// Writes the bag and the tables that are wanted. Returns a problem in one line; empty if there is none.
-std::string write(const Work& work, const std::function<void(double)>& progress, BagReport& report) {
-  const BagJob& job = work.job;
+std::string write(const BagInputs& inputs, const BagJob& job, const std::vector<BagRun>& runs,
+                  const std::function<void(double)>& progress, BagReport& report) {
   try {
     std::optional<BagWriter> bag;
     if (!job.output.empty()) bag.emplace(job.output);
     std::optional<BagTables> tables;
     if (!job.tables.empty()) tables.emplace(job.tables, job.inputs);
-    process(work, {bag ? &*bag : nullptr, tables ? &*tables : nullptr}, progress, report);
+    process(inputs, job, runs, {bag ? &*bag : nullptr, tables ? &*tables : nullptr}, progress, report);
     if (tables) tables->finish(report.warnings);
     if (bag) bag->close();
     if (tables && !tables->problem().empty()) return job.tables + ": cannot be written: " + tables->problem();
@@ -167,16 +159,15 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     if (!runs.value) return runs.problems;
     report.notes = runs.notes;
     if (!job.output.empty()) report.prefix = job.output_prefix;
-    const Work work{*inputs.value, job, *runs.value};
     const bool crank = std::any_of(runs.value->begin(), runs.value->end(), [&](const BagRun& run) {
       return inputs.value->has(run.settings.input_topics.crank);
     });
     if (!crank)
       return {names + ": no topic " + runs.value->front().settings.input_topics.crank +
               ", is required; topics there: " + inputs.value->topicList()};
-    const std::string problem = typeProblem(*inputs.value, wantedTopics(work.runs));
+    const std::string problem = typeProblem(*inputs.value, wantedTopics(*runs.value));
     if (!problem.empty()) return {names + ": " + problem};
-    const std::string failure = write(work, progress, report);
+    const std::string failure = write(*inputs.value, job, *runs.value, progress, report);
     if (!failure.empty()) return {failure};
     if (isUseless(report)) return {names + ": " + noWrench(*inputs.value, runs.value->back(), report)};
     if (!job.tables.empty() && report.crank.contradictSince({}))

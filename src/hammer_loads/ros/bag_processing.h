@@ -1,5 +1,7 @@
-/// Processing of a recording by the same functions as live messages.
+/// Processing of a recording by the same functions as live messages, run by run.
 #pragma once
+
+#include <ros/time.h>
 
 #include <functional>
 #include <optional>
@@ -7,6 +9,7 @@
 #include <vector>
 
 #include "hammer_loads/life/piece_sink.h"
+#include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/ros/bag_report.h"
 #include "hammer_loads/ros/reference_table.h"
 #include "hammer_loads/settings/load.h"
@@ -34,5 +37,21 @@ struct BagJob {
 /// progress: part done in [0, 1]. Returns one line for each problem. Without a problem the report is complete;
 /// otherwise the output must not be used.
 std::vector<std::string> processBag(const BagJob& job, const std::function<void(double)>& progress, BagReport& report);
+
+/// Run of a node: messages from this record time until the next run begins are processed from an initial state.
+struct BagRun {
+  ros::Time from;
+  Settings settings;  ///< with the names of the topics read
+};
+
+/// One run with the job's parameters, or one for each run_info of a hammer_loads node, from its record time on; the
+/// first one also includes earlier messages. Notes state the parameters in use; `warnings` receives reasons to doubt
+/// them.
+Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings);
+
+/// Bags grouped by recording. A bag continues another one if it begins later with the run with which the other ends.
+/// Runs are identified by their run_info; a bag without one, or one that cannot be read, is a recording of its own.
+/// Splits are in the order of their times, recordings in the order of their first bags.
+std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string>& files);
 
 }  // namespace hammer_loads

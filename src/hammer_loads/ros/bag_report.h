@@ -1,13 +1,18 @@
-/// The report of process_bag.
+/// The report of process_bag, and what is missing or suspicious in a recording.
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "hammer_loads/pipeline/pipeline.h"
 
 namespace hammer_loads {
+
+class BagInputs;
+struct BagRun;
+class HammerBridge;
 
 struct BagWarning {
   std::string key;     ///< equal for equal causes
@@ -40,5 +45,31 @@ std::string textOf(const BagReport& report);
 
 /// One line: samples, turns, what was written.
 std::string summaryOf(const BagReport& report);
+
+/// Warnings by the pipeline's state at the end of a run: wrong units, joints without a message.
+/// joints_came: there were messages on their topic. run: number of the run.
+void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, std::vector<BagWarning>& warnings);
+
+/// Warns of several publishers on one of these topics. Transforms are excepted, since they usually have several.
+void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings);
+
+/// Warns of messages that the log of these bags has lost.
+void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings);
+
+/// Warns of messages of another version of this package, whose definition differs.
+void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warnings);
+
+/// Warns of topics that the runs need and that have no message.
+void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
+                   std::vector<BagWarning>& warnings);
+
+/// Warns if there is no wrench, or if there is no whole turn and most samples contradict the parameters.
+bool isUseless(const BagReport& report);
+
+/// Warnings that the crank's readings are not those of such a machine, in one line.
+std::string contradictionsOf(const std::vector<BagWarning>& warnings);
+
+/// Reason why a run gave no wrench of use, in one line.
+std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report);
 
 }  // namespace hammer_loads

@@ -1,16 +1,16 @@
-#include "hammer_loads/ros/bag_runs.h"
-
 #include <hammer_loads/RunInfo.h>
 
 #include <algorithm>
 #include <map>
 #include <tuple>
 
+#include "hammer_loads/ros/bag_processing.h"
 #include "hammer_loads/ros/hammer_inputs.h"
-#include "hammer_loads/settings/hammer_parameters.h"
+#include "hammer_loads/settings/readers.h"
 #include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
-#include "hammer_loads/tables/sha256.h"
+#include "hammer_loads/tables/digest.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
@@ -196,9 +196,7 @@ Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, 
   if (job.parameters || infos.runs.empty()) return runOfJob(job, infos, warnings);
   if (infos.topics.size() == 1) return recordedRuns(inputs, job, infos);
   Checked<std::vector<BagRun>> result;
-  std::string topics;
-  for (const std::string& topic : infos.topics) topics += (topics.empty() ? "" : ", ") + topic;
-  result.problems.push_back(inputs.names() + ": run_info of several hammers (" + topics +
+  result.problems.push_back(inputs.names() + ": run_info of several hammers (" + joined(infos.topics) +
                             "), --params FILE.yaml must give the parameters that apply");
   return result;
 }

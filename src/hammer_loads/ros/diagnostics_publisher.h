@@ -6,10 +6,10 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
+#include <chrono>
 #include <string>
 
 #include "hammer_loads/log/bag_log.h"
-#include "hammer_loads/log/record_clock.h"
 
 namespace hammer_loads {
 
@@ -50,5 +50,10 @@ class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
   double period_;
   std::string name_;
 };
+
+/// [s]
+inline double secondsBetween(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
 
 }  // namespace hammer_loads

@@ -1,8 +1,6 @@
-#include "hammer_loads/ros/fill_boom.h"
-
-#include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/ros/fill_messages.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/util/constants.h"
 

@@ -1,8 +1,7 @@
-#include "hammer_loads/ros/fill_hammer.h"
-
 #include <algorithm>
 #include <iterator>
 
+#include "hammer_loads/ros/fill_messages.h"
 #include "hammer_loads/ros/stamp.h"
 
 namespace hammer_loads {

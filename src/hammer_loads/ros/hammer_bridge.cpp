@@ -1,10 +1,8 @@
 #include "hammer_loads/ros/hammer_bridge.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "hammer_loads/ros/fill_boom.h"
-#include "hammer_loads/ros/fill_hammer.h"
+#include "hammer_loads/ros/fill_messages.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
 

@@ -8,14 +8,13 @@
 
 #include <functional>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "hammer_loads/pipeline/limit_watch.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/pipeline/reference.h"
-#include "hammer_loads/ros/fill_boom.h"
+#include "hammer_loads/ros/fill_messages.h"
 #include "hammer_loads/ros/frame_wrench.h"
 #include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/ros/life_flow.h"

@@ -1,23 +1,7 @@
-#include <nodelet/nodelet.h>
-
-#include <pluginlib/class_list_macros.hpp>
-
-#include "hammer_loads/ros/live_node.h"
+#include "hammer_loads/ros/live_nodelet.h"
 
 namespace hammer_loads {
-
-/// The live node within a nodelet manager: the same class, fed without serialisation.
-class HammerLoadsNodelet : public nodelet::Nodelet {
-  void onInit() override {
-    std::vector<std::string> problems;
-    node_ = makeHammerNode(getNodeHandle(), getPrivateNodeHandle(), problems);
-    for (const std::string& problem : problems) NODELET_FATAL("%s", problem.c_str());
-    if (!node_) throw std::runtime_error("bad parameters: nothing is published");
-  }
-
-  std::unique_ptr<LiveNode> node_;
-};
-
+class HammerLoadsNodelet : public LiveNodelet<makeHammerNode> {};
 }  // namespace hammer_loads
 
 PLUGINLIB_EXPORT_CLASS(hammer_loads::HammerLoadsNodelet, nodelet::Nodelet)

@@ -17,7 +17,6 @@
 #include <sensor_msgs/JointState.h>
 
 #include <deque>
-#include <string>
 
 #include "hammer_loads/ros/output.h"
 

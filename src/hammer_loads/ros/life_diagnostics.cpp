@@ -1,8 +1,7 @@
-#include "hammer_loads/ros/life_diagnostics.h"
-
 #include <cmath>
 
 #include "hammer_loads/life/life_settings.h"
+#include "hammer_loads/ros/node_diagnostics.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/stamp.h"
 
@@ -10,19 +9,20 @@ namespace hammer_loads {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-std::optional<Warning> ledgerWarning(const life::LiveLedger* ledger) {
-  if (ledger == nullptr) return std::nullopt;
-  const std::string problem = ledger->state().problem;
+std::optional<Warning> NodeDiagnostics::ledgerWarning() const {
+  if (ledger_ == nullptr) return std::nullopt;
+  const std::string problem = ledger_->state().problem;
   if (problem.empty()) return std::nullopt;
   return Warning{"ledger", "life_ledger: " + problem, true};
 }
 
-void describeLife(const LifeFlow& life, const life::LiveLedger* ledger,
-                  diagnostic_updater::DiagnosticStatusWrapper& status) {
+/// Since when, how often, saturation, state of the ledger.
+void NodeDiagnostics::describeLife(Status& status) {
+  const LifeFlow& life = bridge_.life();
   const LifeFollower& follower = life.follower();
   status.summary(DiagnosticStatus::OK, follower.since() ? "counting" : "waits for loads");
   for (const Warning& warning : life.warnings()) status.mergeSummary(DiagnosticStatus::WARN, warning.text);
-  if (const auto warning = ledgerWarning(ledger)) status.mergeSummary(DiagnosticStatus::WARN, warning->text);
+  if (const auto warning = ledgerWarning()) status.mergeSummary(DiagnosticStatus::WARN, warning->text);
   if (follower.since()) status.add("counting since [s]", seconds(*follower.since()));
   status.add("period [s]", seconds(life.period()));
   const std::vector<life::SampleTally> tallies = life.tallies();
@@ -34,11 +34,13 @@ void describeLife(const LifeFlow& life, const life::LiveLedger* ledger,
     if (tallies[i].above > 0) status.add(channel + ": above full scale", tallies[i].above);
     if (tallies[i].gaps > 0) status.add(channel + ": gaps", tallies[i].gaps);
   }
-  status.add("ledger", ledger == nullptr ? "none" : ledger->path());
-  if (ledger != nullptr) status.add("pieces not in the ledger yet", ledger->state().waiting);
+  status.add("ledger", ledger_ == nullptr ? "none" : ledger_->path());
+  if (ledger_ != nullptr) status.add("pieces not in the ledger yet", ledger_->state().waiting);
 }
 
-void describeLimits(const LimitWatch& watch, diagnostic_updater::DiagnosticStatusWrapper& status) {
+/// Each limit with value, standard deviation and bounds; WARN or ERROR where one is exceeded.
+void NodeDiagnostics::describeLimits(Status& status) {
+  const LimitWatch& watch = *bridge_.limits();
   status.summary(DiagnosticStatus::OK, "no limit is exceeded");
   for (std::size_t i = 0; i < watch.limits().size(); ++i) {
     const Limit& limit = watch.limits()[i];
@@ -57,7 +59,9 @@ void describeLimits(const LimitWatch& watch, diagnostic_updater::DiagnosticStatu
   }
 }
 
-void describeReference(const ReferenceComparison& reference, diagnostic_updater::DiagnosticStatusWrapper& status) {
+/// Agreement of the computed loads with the measured ones.
+void NodeDiagnostics::describeReference(Status& status) {
+  const ReferenceComparison& reference = bridge_.comparison();
   status.summary(DiagnosticStatus::OK, reference.received() > 0 ? "compared" : "no measured load");
   status.add("measured loads", reference.received());
   status.add("left out", reference.leftOut());

@@ -1,11 +1,10 @@
-#include "hammer_loads/ros/life_tables.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/life/life_settings.h"
+#include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/stamp.h"
-#include "hammer_loads/settings/channel_names.h"
+#include "hammer_loads/settings/readers.h"
 
 namespace hammer_loads {
 

@@ -5,16 +5,34 @@
 #include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "hammer_loads/ros/node_diagnostics.h"
+#include "hammer_loads/ros/stamp.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
+
+std::ofstream opened(const std::string& path, const char* header) {
+  std::ofstream file(path);
+  if (!(file << header << '\n')) throw std::runtime_error(path + ": cannot be written: " + std::strerror(errno));
+  return file;
+}
+
+/// All nanoseconds, which a double does not hold.
+std::string stampText(std::int64_t nanoseconds) {
+  constexpr std::int64_t kGiga = 1'000'000'000;
+  return format("%lld.%09lld", static_cast<long long>(nanoseconds / kGiga),
+                static_cast<long long>(nanoseconds % kGiga));
+}
 
 using simulation::CrankReading;
 using simulation::JointReading;
@@ -31,15 +49,26 @@ constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // for subscribe
 constexpr std::uint32_t kQueueSize = 100000;                    // 20 s at 5 kHz: a stalled subscriber loses no message
 constexpr std::uint32_t kOwnClockStart = 1700000000;            // [s]; fixed, so that the same seed gives the same bag
 
-ros::Time stampOf(std::int64_t nanoseconds) {
-  ros::Time stamp;
-  stamp.fromNSec(static_cast<std::uint64_t>(nanoseconds));
-  return stamp;
-}
-
 double seconds(steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 }  // namespace
+
+TruthFiles::TruthFiles(const std::string& prefix)
+    : samples_(opened(prefix + "_samples.csv", "stamp_s,force_x_N,force_z_N,torque_y_Nm")),
+      blows_(opened(prefix + "_blows.csv",
+                    "stamp_s,energy_J,tool_impulse_Ns,rocker_speed_before_rad_s,rocker_speed_after_rad_s")) {}
+
+void TruthFiles::write(const simulation::Session& session, std::int64_t start_stamp) {
+  const auto stamp = [start_stamp](double time) { return stampText(start_stamp + std::llround(time * 1e9)); };
+  for (const simulation::CrankTruth& truth : session.truth)
+    samples_ << stamp(truth.time)
+             << format(",%.9g,%.9g,%.9g\n", truth.load.force_x, truth.load.force_z,
+                       truth.load.torque_y + truth.drive_reaction_y);
+  for (const simulation::BlowTruth& blow : session.blows)
+    blows_ << stamp(blow.time)
+           << format(",%.9g,%.9g,%.9g,%.9g\n", blow.strike.energy, blow.strike.tool_impulse,
+                     blow.strike.rocker_speed_before, blow.strike.rocker_speed_after);
+}
 
 MachinePlayer::MachinePlayer(ros::NodeHandle node, const simulation::SimulatorSettings& settings)
     : settings_(settings),
@@ -141,8 +170,8 @@ void MachinePlayer::start() {
   const ros::Time begin = source_ == TimeSource::kOwnClock ? ros::Time(kOwnClockStart, 0)
                           : source_ == TimeSource::kClockTopic
                               ? ros::Time::now()
-                              : stampOf(static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
-  settings_.machine.start_stamp = newest_ = static_cast<std::int64_t>(begin.toNSec());
+                              : timeOf(static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
+  settings_.machine.start_stamp = newest_ = stampOf(begin);
   stream_.emplace(settings_.machine);
   if (!settings_.play.truth_prefix.empty()) truth_.emplace(settings_.play.truth_prefix);
 }
@@ -156,7 +185,7 @@ void MachinePlayer::publishClock(double time) {
 
 /// Since the start, of the batch after that one [s of the machine's time].
 double MachinePlayer::timeAfter(double last) {
-  if (source_ == TimeSource::kClockTopic) return (ros::Time::now() - stampOf(settings_.machine.start_stamp)).toSec();
+  if (source_ == TimeSource::kClockTopic) return (ros::Time::now() - timeOf(settings_.machine.start_stamp)).toSec();
   const SteadyTime now = steady_clock::now();
   const double passed = seconds(now - std::exchange(last_step_, now));
   const double batch = isFollowed(last) ? std::min(passed, kLongestBatch) : 0.0;
@@ -206,21 +235,21 @@ void MachinePlayer::publish(const Session& session) {
 
 void MachinePlayer::publishCrank(const CrankReading& reading) {
   newest_ = std::max(newest_, reading.stamp);
-  crank_message_.header.stamp = stampOf(reading.stamp);
+  crank_message_.header.stamp = timeOf(reading.stamp);
   crank_message_.position[0] = reading.angle;
   if (reading.speed) crank_message_.velocity[0] = *reading.speed;
   crank_publisher_.publish(crank_message_);
 }
 
 void MachinePlayer::publishJoints(const JointReading& reading) {
-  joint_message_.header.stamp = stampOf(reading.stamp);
+  joint_message_.header.stamp = timeOf(reading.stamp);
   joint_message_.position.assign(reading.position.begin(), reading.position.end());
   joint_message_.velocity.assign(reading.velocity.begin(), reading.velocity.end());
   joint_publisher_.publish(joint_message_);
 }
 
 void MachinePlayer::publishImu(const simulation::HullImuReading& reading) {
-  imu_message_.header.stamp = stampOf(reading.stamp);
+  imu_message_.header.stamp = timeOf(reading.stamp);
   const auto fill = [](geometry_msgs::Vector3& to, const std::array<double, 3>& from) {
     to.x = from[0], to.y = from[1], to.z = from[2];
   };
@@ -230,7 +259,7 @@ void MachinePlayer::publishImu(const simulation::HullImuReading& reading) {
 }
 
 void MachinePlayer::publishPressures(const simulation::PressureReading& reading) {
-  pressure_message_.header.stamp = stampOf(reading.stamp);
+  pressure_message_.header.stamp = timeOf(reading.stamp);
   for (std::size_t i = 0; i < pressure_publishers_.size(); ++i) {
     pressure_message_.fluid_pressure = (i % 2 == 0 ? reading.bore : reading.rod)[i / 2];
     pressure_publishers_[i].publish(pressure_message_);

@@ -1,4 +1,4 @@
-/// A simulated machine played onto topics, in real time or in simulated time.
+/// A simulated machine played onto topics, in real time or in simulated time; its truth as files.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -11,14 +11,29 @@
 
 #include <chrono>
 #include <cstdint>
+#include <fstream>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hammer_loads/simulation/machine_parameters.h"
 #include "hammer_loads/simulation/session.h"
-#include "hammer_loads/simulation/truth_files.h"
 
 namespace hammer_loads {
+
+/// PREFIX_samples.csv holds the load on the hull at the instants of the crank readings, PREFIX_blows.csv the blows.
+/// Stamps are those of the session [s]; a load is that of links and drive about D in axes of hammer_hull [N], [N m].
+class TruthFiles {
+ public:
+  /// Replaces the files. Throws std::runtime_error when one cannot be written.
+  explicit TruthFiles(const std::string& prefix);
+
+  /// Appends a session's truth. start_stamp: of t = 0 [ns].
+  void write(const simulation::Session& session, std::int64_t start_stamp);
+
+ private:
+  std::ofstream samples_, blows_;
+};
 
 /// Topics: crank (hammer_crank_joint) and joint_states, both sensor_msgs/JointState; of a hull on its boom hull_imu,
 /// sensor_msgs/Imu, and cylinder_pressures/NAME/bore and /rod, sensor_msgs/FluidPressure. Stamps are the instants of
@@ -64,7 +79,7 @@ class MachinePlayer {
   sensor_msgs::Imu imu_message_;
   sensor_msgs::FluidPressure pressure_message_;
   std::optional<simulation::SessionStream> stream_;
-  std::optional<simulation::TruthFiles> truth_;
+  std::optional<TruthFiles> truth_;
   SteadyTime last_step_;
   double left_out_{};  ///< wall time that the machine did not follow [s]
   ros::Subscriber diagnostics_;

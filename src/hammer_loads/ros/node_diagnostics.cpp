@@ -1,18 +1,11 @@
 #include "hammer_loads/ros/node_diagnostics.h"
 
-#include <string>
-
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/ros/life_diagnostics.h"
-#include "hammer_loads/ros/log_diagnostics.h"
-#include "hammer_loads/ros/steady_time.h"
+#include "hammer_loads/ros/node_log.h"
 
 namespace hammer_loads {
-namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-
-}  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
                                  const HammerInputs& inputs, BagLog& log, const RecordClock& clock,
@@ -26,9 +19,9 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   if (inputs.hull_imu.wanted) publisher_.add("hull imu", this, &NodeDiagnostics::describeImu);
   publisher_.add("model", this, &NodeDiagnostics::describeModel);
   publisher_.add("misuse", this, &NodeDiagnostics::describeMisuse);
-  publisher_.add("life", [this](Status& status) { describeLife(bridge_.life(), ledger_, status); });
-  if (bridge.limits()) publisher_.add("limits", [this](Status& status) { describeLimits(*bridge_.limits(), status); });
-  publisher_.add("reference", [this](Status& status) { describeReference(bridge_.comparison(), status); });
+  publisher_.add("life", this, &NodeDiagnostics::describeLife);
+  if (bridge.limits()) publisher_.add("limits", this, &NodeDiagnostics::describeLimits);
+  publisher_.add("reference", this, &NodeDiagnostics::describeReference);
   publisher_.add("log", [&log](Status& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ =
@@ -55,7 +48,7 @@ void NodeDiagnostics::report() {
 std::vector<Warning> NodeDiagnostics::warnings() const {
   std::vector<Warning> warnings = warningsOf(bridge_.pipeline());
   for (const Warning& warning : bridge_.life().warnings()) warnings.push_back(warning);
-  if (const auto warning = ledgerWarning(ledger_)) warnings.push_back(*warning);
+  if (const auto warning = ledgerWarning()) warnings.push_back(*warning);
   if (!bridge_.settings().hammer_given)
     warnings.push_back({"hammer", "no hammer file was given: the masses and lengths of the MO-100 are used", true});
   std::uint64_t missing = 0;

@@ -4,7 +4,7 @@
 #include <ros/node_handle.h>
 
 #include <chrono>
-#include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -43,6 +43,11 @@ class NodeDiagnostics {
   void describeImu(Status& status);
   void describeModel(Status& status);
   void describeMisuse(Status& status);
+  void describeLife(Status& status);
+  void describeLimits(Status& status);
+  void describeReference(Status& status);
+  /// Warning of pieces that the ledger cannot accept at present, if there are any.
+  std::optional<Warning> ledgerWarning() const;
 
   const HammerBridge& bridge_;
   const HammerInputs& inputs_;

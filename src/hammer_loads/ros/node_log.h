@@ -1,8 +1,13 @@
-/// The log of a node at its start.
+/// The log of a node: its start, requests to it, its part of the diagnostics.
 #pragma once
 
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
 #include <ros/console.h>
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+#include <std_srvs/Trigger.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,5 +28,32 @@ inline std::unique_ptr<BagLog> makeNodeLog(const LogSettings& settings, const st
   for (const std::string& reason : log->start()) ROS_ERROR("%s; the node runs without a log", reason.c_str());
   return log;
 }
+
+/// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request is empty: directory and names of the log come
+/// from the parameters. The answer states the action or the reason against it. A log that a full disk has stopped
+/// restarts by itself once there is room.
+class LogServices {
+ public:
+  /// finish: called before a log begins, is split or ends, so that the last messages of a run are in its file. begin:
+  /// called after a log has begun or was split, so that the file contains a run from its beginning. switched: called
+  /// after the log was started or stopped. The log must outlive this object.
+  LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> finish, std::function<void()> begin,
+              std::function<void()> switched);
+
+ private:
+  using Response = std_srvs::Trigger::Response;
+
+  void start(Response& response);
+  void stop(Response& response);
+  void split(Response& response);
+  void lookForRoom();
+
+  BagLog& log_;
+  std::function<void()> finish_, begin_, switched_;
+  ros::ServiceServer start_, stop_, split_;
+  ros::WallTimer timer_;
+};
+
+void describeLog(const BagLog& log, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace hammer_loads

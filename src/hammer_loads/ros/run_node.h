@@ -1,23 +1,49 @@
-/// Main loop of a node with a process of its own.
+/// Processes of nodes: answers to --help and --version, memory, main loop.
 #pragma once
 
+#include <malloc.h>
 #include <ros/init.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
 
 #include <csignal>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "hammer_loads/ros/steady_memory.h"
+#include "hammer_loads/ros/version.h"
 
 namespace hammer_loads {
+
+/// Answers --help and --version, which need no ROS master. Exit code where the first argument asks for one of them;
+/// nothing: the node may start.
+inline std::optional<int> answerUsage(int argc, char** argv, const std::string& usage) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first == "--version") {
+    std::cout << "hammer_loads " << packageVersion() << std::endl;
+  } else if (first == "--help" || first == "-h") {
+    std::cout << usage << std::flush;
+  } else {
+    return std::nullopt;
+  }
+  return std::cout ? 0 : 1;
+}
+
+/// Returns large blocks to the system when they are freed. Call it first in a program's main; a library must not change
+/// the heap of its process. By default glibc keeps freed blocks up to the size of the largest one freed so far. The
+/// buffers that grow with every bag then lie among small blocks and fragment the heap over hours (doc/reliability.md,
+/// log soak).
+inline void keepMemorySteady() noexcept {
+  constexpr int kLargeBlock = 128 * 1024;  // glibc's own initial value [byte]
+  mallopt(M_MMAP_THRESHOLD, kLargeBlock);
+}
 
 /// make: as makeHammerNode; null ends the program with code 1. Every problem is a line on stderr. Returns the exit
 /// code.
 template <typename Make>
-int runNode(int argc, char** argv, const char* name, Make make) {
+int runNode(int argc, char** argv, const std::string& usage, const char* name, Make make) {
+  if (const auto code = answerUsage(argc, argv, usage)) return *code;
   keepMemorySteady();
   ros::init(argc, argv, name);
   // roscpp ends cleanly on SIGINT only; a log must survive SIGTERM and a closed terminal as well.

@@ -1,11 +1,10 @@
-#include "hammer_loads/settings/hammer_parameters.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/linkage/machine_columns.h"
 #include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/readers.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 

@@ -3,15 +3,10 @@
 #include <dlfcn.h>
 
 #include <filesystem>
-#include <utility>
 
 #include "hammer_loads/hammer/choose_level.h"
-#include "hammer_loads/settings/channel_names.h"
-#include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
-#include "hammer_loads/settings/read_boom.h"
-#include "hammer_loads/settings/read_life.h"
-#include "hammer_loads/settings/read_log.h"
+#include "hammer_loads/settings/readers.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/format.h"
 

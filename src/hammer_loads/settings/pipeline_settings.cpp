@@ -1,5 +1,6 @@
 #include "hammer_loads/settings/pipeline_settings.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "hammer_loads/settings/parameter_reader.h"
@@ -115,6 +116,13 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   readBoom(reader, s);
   readHullMotion(reader, s);
   return s;
+}
+
+Eigen::Matrix3d rotationOf(double roll, double pitch, double yaw) {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
+          AngleAxisd(roll, Vector3d::UnitX()))
+      .toRotationMatrix();
 }
 
 }  // namespace hammer_loads

@@ -1,11 +1,9 @@
-#include "hammer_loads/settings/read_boom.h"
-
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <utility>
 
 #include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/readers.h"
 
 namespace hammer_loads {
 namespace {
@@ -120,6 +118,10 @@ constexpr std::array<const char*, 4> kOilKeys{"bulk_modulus_Pa", "damping_ratio"
                                               "rigid_tolerance"};
 constexpr std::array<const char*, 4> kSupportKeys{"support_front_x_m", "support_front_half_width_m", "support_rear_x_m",
                                                   "support_rear_half_width_m"};
+constexpr std::array<double Supports::*, 4> kSupportFields{&Supports::front_x, &Supports::front_half_width,
+                                                           &Supports::rear_x, &Supports::rear_half_width};
+constexpr std::array<const char*, 7> kOtherKeys{"root_link",     "tip_link",      "cylinders",     "sections",
+                                                "weighed_links", "link_mass_std", "link_com_std_m"};
 
 template <std::size_t N>
 bool anyGiven(ParameterReader& reader, const std::array<const char*, N>& keys) {
@@ -139,10 +141,8 @@ void readOil(ParameterReader& reader, bool cylinders, BoomParameters& p) {
 
 Supports readSupports(ParameterReader& reader) {
   Supports s;
-  s.front_x = reader.number("support_front_x_m", "m", NumberRule::any());
-  s.front_half_width = reader.number("support_front_half_width_m", "m", NumberRule::any());
-  s.rear_x = reader.number("support_rear_x_m", "m", NumberRule::any());
-  s.rear_half_width = reader.number("support_rear_half_width_m", "m", NumberRule::any());
+  for (std::size_t i = 0; i < kSupportKeys.size(); ++i)
+    s.*kSupportFields[i] = reader.number(kSupportKeys[i], "m", NumberRule::any());
   return s;
 }
 
@@ -167,22 +167,9 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
 }
 
 bool hasBoomKey(const ParameterMap& parameters) {
-  constexpr const char* kKeys[] = {"root_link",
-                                   "tip_link",
-                                   "cylinders",
-                                   "bulk_modulus_Pa",
-                                   "damping_ratio",
-                                   "mode_refresh_angle_rad",
-                                   "rigid_tolerance",
-                                   "sections",
-                                   "weighed_links",
-                                   "link_mass_std",
-                                   "link_com_std_m",
-                                   "support_front_x_m",
-                                   "support_front_half_width_m",
-                                   "support_rear_x_m",
-                                   "support_rear_half_width_m"};
-  return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return parameters.count(key) != 0; });
+  const auto given = [&](const char* key) { return parameters.count(key) != 0; };
+  const auto any = [&](const auto& keys) { return std::any_of(keys.begin(), keys.end(), given); };
+  return any(kOtherKeys) || any(kOilKeys) || any(kSupportKeys);
 }
 
 std::string boomYaml(const std::string& parameters) {

@@ -1,5 +1,3 @@
-#include "hammer_loads/settings/read_life.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,8 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "hammer_loads/life/life_settings.h"
+#include "hammer_loads/settings/readers.h"
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
@@ -96,12 +95,6 @@ void readHotSpot(ParameterReader& reader, const std::string& name, const std::ve
   if (grid) spots.push_back({name, std::move(influences), *grid, curve, mean});
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 /// The names of a list; none where it is none.
 std::vector<std::string> namesIn(const ParameterMap& parameters, const char* key) {
   const auto found = parameters.find(key);
@@ -116,7 +109,7 @@ void checkChannels(const life::LifeSettings& settings, const std::vector<std::st
   for (const life::CountedChannel& channel : settings.channels) {
     if (std::count(of_machine.begin(), of_machine.end(), channel.name) != 0) continue;
     reader.addProblem(channel.key + "_channel: " + quotedText(channel.name) +
-                      ", must be a load of this machine: " + listed(of_machine));
+                      ", must be a load of this machine: " + joined(of_machine));
   }
 }
 
@@ -153,6 +146,19 @@ life::LifeSettings readLifeSettings(ParameterReader& reader) {
     reader.addProblem("life_ledger: " + quotedText(ledger) + ", must be an absolute path, or none");
   if (ledger != "none") s.ledger = ledger;
   return s;
+}
+
+std::vector<std::string> channelNames(const Boom* boom) {
+  std::vector<std::string> names{"hull_wrench/force_x", "hull_wrench/force_z", "hull_wrench/torque_y"};
+  if (boom == nullptr) return names;
+  for (const std::string& joint : boom->chain().jointNames()) names.push_back("joint_loads/" + joint + "/total_torque");
+  for (const Cylinder& cylinder : boom->cylinders())
+    names.push_back("joint_loads/" + cylinder.parameters().name + "/force");
+  for (const Section& section : boom->sections()) {
+    for (const char* field : {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"})
+      names.push_back("section_loads/" + section.name() + "/" + field);
+  }
+  return names;
 }
 
 }  // namespace hammer_loads

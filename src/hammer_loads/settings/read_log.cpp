@@ -1,7 +1,6 @@
-#include "hammer_loads/settings/read_log.h"
-
 #include <array>
 
+#include "hammer_loads/settings/readers.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {

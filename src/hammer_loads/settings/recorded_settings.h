@@ -1,7 +1,9 @@
-/// Settings from a run_info, which another version of this package may have written.
+/// Settings from a run_info, which another version of this package may have written; parameters in force as texts.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "hammer_loads/settings/load.h"
 
@@ -15,5 +17,13 @@ Checked<Settings> loadRecorded(const std::string& config_directory, const std::s
 
 /// The parameters of a run_info; nothing, with the reason in `problems`, where it is no YAML map.
 std::optional<ParameterMap> recordedParameters(const std::string& parameters_yaml, std::vector<std::string>& problems);
+
+struct ParameterText {
+  std::string key, value;
+  std::optional<std::string> shipped;  ///< value in the shipped files, if one has the key
+};
+
+/// From Settings::yaml, sorted by key; equal values have equal texts. config_directory: of the shipped files.
+std::vector<ParameterText> parameterTexts(const std::string& config_directory, const std::string& yaml);
 
 }  // namespace hammer_loads

@@ -1,7 +1,6 @@
 #include "hammer_loads/simulation/elastic_links.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "hammer_loads/util/constants.h"
 

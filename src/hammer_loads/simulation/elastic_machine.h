@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "hammer_loads/simulation/blow_follower.h"
 #include "hammer_loads/simulation/elastic_links.h"
 #include "hammer_loads/simulation/struck_tool.h"
 #include "hammer_loads/simulation/working_machine.h"

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "hammer_loads/simulation/drive.h"
 #include "hammer_loads/util/constants.h"

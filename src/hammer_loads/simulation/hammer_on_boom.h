@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "hammer_loads/simulation/blow_follower.h"
 #include "hammer_loads/simulation/elastic_links.h"
 #include "hammer_loads/simulation/moving_links.h"
 #include "hammer_loads/simulation/normal_noise.h"

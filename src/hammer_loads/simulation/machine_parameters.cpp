@@ -4,9 +4,9 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/settings/readers.h"
 #include "hammer_loads/simulation/oil_boom.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"

@@ -1,6 +1,5 @@
 #include "hammer_loads/simulation/moving_links.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/simulation/chamber_oil.h"
 #include "hammer_loads/simulation/hammer_on_boom.h"
+#include "hammer_loads/simulation/oil_boom.h"
 
 namespace hammer_loads::simulation {
 

@@ -1,7 +1,6 @@
 #include "hammer_loads/simulation/session.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 

@@ -1,4 +1,4 @@
-/// Writer of tables into a SQLite file, in one transaction.
+/// Tables of process_bag's results (doc/tables.md) in a SQLite file, and the check whether a file is one.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,25 @@
 #include <vector>
 
 #include "hammer_loads/life/database.h"
-#include "hammer_loads/tables/table_schema.h"
 
 namespace hammer_loads {
+
+constexpr int kTablesApplication = 0x484C5242;  ///< "HLRB"
+constexpr int kTablesVersion = 1;
+
+/// A column that comes from a message's field.
+struct TableColumn {
+  std::string name;
+  bool is_integer{};
+  std::string unit, description;  ///< unit and description of the field's comment, "[unit] description"
+};
+
+/// Everything up to the first row, with a comment for each column (life::columnTexts): one transaction is begun. The
+/// same rows give the same bytes.
+std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow);
+
+/// Reason why an existing file must stay; empty: it is a file of these tables.
+std::string whyTablesMustStay(const std::string& file);
 
 /// No function throws: problem() returns the first error, after which all calls have no effect.
 class TableWriter {

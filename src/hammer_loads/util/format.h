@@ -21,11 +21,12 @@ std::string format(const char* pattern, Args... args) {
 /// Four digits; null where there is none.
 inline std::string jsonNumber(double value) { return std::isfinite(value) ? format("%.4g", value) : "null"; }
 
-/// With commas between them.
-inline std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
+/// Texts in a row, such as a std::vector or std::set of names.
+template <typename Texts>
+std::string joined(const Texts& texts, const char* between = ", ") {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
+  return all;
 }
 
 }  // namespace hammer_loads

@@ -1,9 +1,13 @@
-/// Numbers from text, and texts that read back as the same number.
+/// Numbers and cells from text, and texts that read back as the same number.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "hammer_loads/util/format.h"
 
@@ -26,6 +30,19 @@ inline std::string shortNumber(double value) {
     if (std::strtod(text.c_str(), nullptr) == value) break;
   }
   return text;
+}
+
+/// Cells of a line without the spaces around them; one empty cell for a blank line.
+inline std::vector<std::string> csvCells(const std::string& line) {
+  constexpr char kSpaces[] = " \t\r";
+  std::vector<std::string> cells;
+  std::istringstream rest(line + ',');  // the last cell may be empty
+  for (std::string cell; std::getline(rest, cell, ',');) {
+    cell.erase(0, std::min(cell.find_first_not_of(kSpaces), cell.size()));
+    cell.erase(cell.find_last_not_of(kSpaces) + 1);
+    cells.push_back(std::move(cell));
+  }
+  return cells;
 }
 
 }  // namespace hammer_loads
