@@ -13,7 +13,6 @@
 #include "hammer_loads/pipeline/crank_checks.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
-#include "hammer_loads/pipeline/unit_check.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/settings/readers.h"
 

@@ -9,7 +9,7 @@
 #include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/turn_loads.h"
-#include "hammer_loads/util/square.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::accuracy {
 

@@ -17,7 +17,7 @@
 #include "hammer_loads/calibration/boom_report.h"
 #include "hammer_loads/commands/calibrate.h"
 #include "hammer_loads/commands/progress_bar.h"
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/load.h"

@@ -15,7 +15,7 @@
 #include "hammer_loads/commands/calibrate.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/pipeline/filter_settings.h"
-#include "hammer_loads/pipeline/hull_gravity.h"
+#include "hammer_loads/pipeline/hull_state.h"
 #include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/settings/yaml_value.h"

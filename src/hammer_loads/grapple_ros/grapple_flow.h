@@ -18,8 +18,8 @@
 
 #include "hammer_loads/grapple/grapple_settings.h"
 #include "hammer_loads/grapple/grapple_tracker.h"
-#include "hammer_loads/pipeline/stamp_order.h"
 #include "hammer_loads/ros/output.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 

@@ -8,10 +8,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "hammer_loads/hammer/hammer_model.h"
-#include "hammer_loads/pipeline/hull_speed.h"
-#include "hammer_loads/pipeline/jump_guard.h"
-#include "hammer_loads/pipeline/overdue.h"
+#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/pipeline/reading_checks.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 #include "hammer_loads/util/stamp.h"
 

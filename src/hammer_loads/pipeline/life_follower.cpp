@@ -6,7 +6,7 @@
 
 #include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/settings/readers.h"
-#include "hammer_loads/util/parts.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

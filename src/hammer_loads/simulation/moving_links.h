@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
