@@ -31,8 +31,8 @@ struct ChainLoads {
   std::array<Wrench, kMaxLinks> beyond;      ///< by inertia and weight of a link and all beyond it, in the root's frame
 };
 
-/// Mass and inertia of each link with what is fixed to it beside the chain; the root has none: its own load goes into
-/// the ground.
+/// Mass and inertia of each link, including the bodies that are fixed to it beside the chain. The root has none, since
+/// its load goes into the ground.
 std::vector<RigidBody> bodiesOf(const Chain& chain);
 
 /// Bodies of bodiesOf() at a pose.

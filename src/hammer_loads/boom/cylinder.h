@@ -1,4 +1,5 @@
-/// A hydraulic cylinder that holds a joint, directly or through a bucket linkage: geometry, chambers, stiffness.
+/// A hydraulic cylinder that holds a joint, directly or through a bucket linkage: geometry, chambers,
+/// stiffness, faults.
 #pragma once
 
 #include <cstdint>

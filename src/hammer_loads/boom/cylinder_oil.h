@@ -1,4 +1,4 @@
-/// Oil of the cylinders: torques as read at the end of hoses, and friction of the seals.
+/// Oil and seals of the cylinders: torques as pressure sensors at the end of hoses read them, and the seals' friction.
 #pragma once
 
 #include <algorithm>

@@ -34,18 +34,18 @@ double alike(const std::vector<double>& left) {
   return std::max(1.0, sum);
 }
 
-/// Half the two-sided 95.4 % quantile of Student's distribution, which is one for many degrees of freedom: its
-/// expansion about the normal distribution's (Abramowitz and Stegun, 26.7.5) errs by less than 1 % from two degrees on.
+/// Half the two-sided 95.4 % quantile of Student's distribution; 1 for many degrees of freedom. The expansion about the
+/// normal distribution (Abramowitz and Stegun, 26.7.5) has an error below 1 % from two degrees of freedom on.
 double studentFactor(double degrees) {
   const double d = 1.0 / degrees;
   return 1.0 + d * (1.25 + d * (1.531 + d * (1.430 + d * 0.922)));
 }
 
-/// Variance of the relative error of a cylinder's forces in a recording. It is that of the moments (DerSimonian and
-/// Laird, 1986), as the scores' covariance is: information + variance * information squared. Satterthwaite's degrees of
-/// freedom (1946) are the number of recordings less one where all show as much; the prior counts as one more. Student's
-/// factor enlarges what few recordings show: two standard deviations then contain 90 % or more even where the scatter
-/// is ten times the prior.
+/// Variance of the relative error of a cylinder's forces in a recording, by the method of moments (DerSimonian and
+/// Laird, 1986). The covariance of the scores is information + variance * information squared. Satterthwaite's degrees
+/// of freedom (1946) are the number of recordings less one if all have the same information. The prior counts as one
+/// more degree. Student's factor enlarges the variance that few recordings show: two standard deviations then contain
+/// 90 % or more even if the scatter is ten times the prior.
 double scatterOf(const Eigen::VectorXd& scores, const Eigen::MatrixXd& information, double prior_std) {
   constexpr double kPriorDegrees = 1.0;
   const Eigen::MatrixXd square = information * information;
@@ -96,7 +96,7 @@ class Fitter {
     }
   }
 
-  /// Linear system about the values of the fit; a row that the model has no force for is zero.
+  /// Linear system about the values of the fit. A row for which the model has no force is zero.
   struct System {
     Eigen::VectorXd left, weight;
     Eigen::MatrixXd slopes;

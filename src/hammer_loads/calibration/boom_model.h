@@ -82,7 +82,7 @@ class BoomModel {
   std::optional<Boom> boomAt(const Eigen::VectorXd& x) const;
   /// Boom with the weight of a recording on its tip; empty for impossible values.
   std::optional<Boom> boomAt(const Eigen::VectorXd& x, std::size_t recording) const;
-  /// The first recording whose weight is known to be the same: its boom is that of this recording, too.
+  /// The first recording whose weight is known to be the same. Both recordings have the same boom.
   std::size_t firstWithWeightOf(std::size_t recording) const;
   /// Boom file with these values, weights left out; deviations as in the basis. Parts beyond sections are as much
   /// heavier as their links.

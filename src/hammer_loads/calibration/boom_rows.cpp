@@ -26,15 +26,16 @@ bool isOfLinks(BoomUnknown kind) {
          kind == BoomUnknown::kInertia;
 }
 
-/// False if the force of the row does not depend on the unknown: it is of another cylinder or recording.
+/// Returns false if the force of the row does not depend on the unknown, which belongs to another cylinder or
+/// recording.
 bool concerns(const Unknown& unknown, const BoomRow& row) {
   if (unknown.kind == BoomUnknown::kTipWeight) return unknown.of == row.recording;
   if (unknown.kind == BoomUnknown::kRecording && unknown.recording != row.recording) return false;
   return isOfLinks(unknown.kind) || unknown.kind == BoomUnknown::kZero || unknown.of == row.cylinder;
 }
 
-/// Booms of the recordings with values x. To make one takes as long as a hundred rows: recordings with the same weight
-/// share one, and steps of unknowns that no boom depends on use those at x.
+/// Booms of the recordings with values x. Making a boom takes as long as evaluating a hundred rows. Recordings with the
+/// same weight therefore share one, and steps of unknowns on which no boom depends use the booms at x.
 class BoomsAt {
  public:
   BoomsAt(const BoomModel& model, const Eigen::VectorXd& x, std::size_t recordings) : booms_(recordings) {

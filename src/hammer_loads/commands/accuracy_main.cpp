@@ -27,8 +27,8 @@ Settings withKnownZero(Settings settings) {
   return settings;
 }
 
-std::string said(const accuracy::LifeFigure& f) { return format("%.1f, %.1f %%", 100.0 * f.own, 100.0 * f.common); }
-std::string cells(const accuracy::LifeFigure& f) { return format(" %+.1f %% | ", 100.0 * f.error) + said(f) + " |"; }
+std::string stated(const accuracy::LifeFigure& f) { return format("%.1f, %.1f %%", 100.0 * f.own, 100.0 * f.common); }
+std::string cells(const accuracy::LifeFigure& f) { return format(" %+.1f %% | ", 100.0 * f.error) + stated(f) + " |"; }
 
 /// Errors of the damage-equivalent ranges, on which fatigue is judged, as a table in Markdown: hull force z, the worst
 /// joint's torque and bending at the worst cut, by the machine and its sensors. For machines with an elastic connecting
@@ -45,7 +45,7 @@ std::string lifeMarkdown(const std::vector<accuracy::BoomRow>& boom, const std::
     const accuracy::LifeFigure &life = r.errors.life, &with_touch = r.errors.life_with_touch;
     if (r.level != Level::kRocker)
       text += format("| %s, level %s | none | %+.1f %%; with the touch %+.1f %% | %s | | | | |\n", r.machine.c_str(),
-                     nameOf(r.level), 100.0 * life.error, 100.0 * with_touch.error, said(life).c_str());
+                     nameOf(r.level), 100.0 * life.error, 100.0 * with_touch.error, stated(life).c_str());
   }
   return text +
          "| *others: towers of wind turbines, simulated* | | | | | | 5 to 10 % | |\n"

@@ -1,5 +1,5 @@
-/// Receivers of the pieces of runs; that of a live node is loaded on demand, so that a node without a ledger needs no
-/// SQLite.
+/// Receivers of the pieces of runs. The receiver of a live node is loaded on demand, so that a node without a ledger
+/// does not need SQLite.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// Crank angle that keeps full precision beside the blow, position over many turns, and motion.
+/// Crank angle with full precision near the blow, crank position over many revolutions, and crank motion.
 #pragma once
 
 #include <cmath>

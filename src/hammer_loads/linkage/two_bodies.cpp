@@ -5,7 +5,6 @@
 
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {

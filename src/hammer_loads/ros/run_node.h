@@ -16,8 +16,8 @@
 
 namespace hammer_loads {
 
-/// Answers --help and --version, which need no ROS master. Exit code where the first argument asks for one of them;
-/// nothing: the node may start.
+/// Answers --help and --version, which need no ROS master. Returns the exit code if the first argument is one of them;
+/// returns nothing if the node may start.
 inline std::optional<int> answerUsage(int argc, char** argv, const std::string& usage) {
   const std::string first = argc > 1 ? argv[1] : "";
   if (first == "--version") {

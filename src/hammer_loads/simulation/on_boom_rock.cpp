@@ -66,7 +66,8 @@ Load HammerOnBoom::rockLoad(const State& held) const {
   return {force.real(), force.imag(), r.imag() * force.real() - r.real() * force.imag()};
 }
 
-/// At the dead centre crank and rocker are free of each other: a coordinate more, which the linkage takes back.
+/// At the dead centre crank and rocker move independently of each other. This adds a coordinate, which the linkage
+/// removes again after the blow.
 void HammerOnBoom::blow() {
   const double u_before = links_.rockerAngle({0.0, true, false}).first;
   const double u_after = links_.rockerAngle({0.0, false, false}).first;

@@ -1,4 +1,4 @@
-/// Digests of texts, numbers and files: FNV-1a of 64 bit, which tells them apart, and SHA-256, which no forgery meets.
+/// Digests of texts, numbers and files: FNV-1a of 64 bit, against mistakes, and SHA-256, also against forgery.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ inline std::string digestOf(const std::string& text) {
 /// SHA-256 of texts in hexadecimal, each with its length, so that different lists have different digests.
 std::string sha256Of(const std::vector<std::string>& texts);
 
-/// SHA-256 of the bytes of the files, one behind the other. Throws std::runtime_error where one cannot be read.
+/// SHA-256 of the files' bytes in sequence. Throws std::runtime_error if a file cannot be read.
 std::string sha256OfFiles(const std::vector<std::string>& files);
 
 }  // namespace hammer_loads

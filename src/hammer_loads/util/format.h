@@ -21,7 +21,7 @@ std::string format(const char* pattern, Args... args) {
 /// Four digits; null where there is none.
 inline std::string jsonNumber(double value) { return std::isfinite(value) ? format("%.4g", value) : "null"; }
 
-/// Texts in a row, such as a std::vector or std::set of names.
+/// Joins texts, such as a std::vector or std::set of names, with `between` as separator.
 template <typename Texts>
 std::string joined(const Texts& texts, const char* between = ", ") {
   std::string all;
