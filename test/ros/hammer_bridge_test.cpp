@@ -4,8 +4,16 @@
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <functional>
 #include <map>
+#include <tuple>
 
+#include "hammer_loads/bench/estimate_errors.h"
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/ros/stamp.h"
 #include "support/counting_new.h"
 #include "support/session_player.h"
 
@@ -143,6 +151,121 @@ TEST(WhoListens, WantsTheTurnsAloneGetsTheSameAndNoSampleIsComputed) {
     }
   });
   EXPECT_EQ(once_a_turn, 6U);
+}
+
+/// A message of a sensor: its stamp, its place in a burst and the call that gives it to a bridge.
+struct Arrival {
+  std::int64_t stamp;
+  int topic;
+  std::function<void(HammerBridge&)> give;
+};
+
+/// All messages of a machine on its boom with IMU and pressures, in the order of their stamps; at one stamp the crank
+/// is last.
+std::vector<Arrival> messagesOf(const simulation::Session& session) {
+  std::vector<Arrival> messages;
+  for (const simulation::JointReading& r : session.joints) {
+    sensor_msgs::JointState m = SentMessages().joints;
+    m.header.stamp = timeOfNs(r.stamp);
+    m.position.assign(r.position.begin(), r.position.end()), m.velocity.assign(r.velocity.begin(), r.velocity.end());
+    messages.push_back({r.stamp, 0, [m](HammerBridge& bridge) { bridge.jointStates(m, m.header.stamp); }});
+  }
+  for (const simulation::HullImuReading& r : session.imu) {
+    sensor_msgs::Imu m;
+    m.header.stamp = timeOfNs(r.stamp);
+    m.linear_acceleration.x = r.specific_force[0], m.linear_acceleration.z = r.specific_force[2];
+    m.angular_velocity.y = r.rate[1];
+    messages.push_back({r.stamp, 1, [m](HammerBridge& bridge) { bridge.hullImu(m, m.header.stamp); }});
+  }
+  for (const simulation::PressureReading& r : session.pressures) {
+    for (std::size_t i = 0; i < r.bore.size(); ++i) {
+      for (const auto& [chamber, pressure] :
+           {std::pair{Chamber::kBore, r.bore[i]}, std::pair{Chamber::kRod, r.rod[i]}}) {
+        sensor_msgs::FluidPressure m;
+        m.header.stamp = timeOfNs(r.stamp);
+        m.fluid_pressure = pressure;
+        const auto give = [m, i, chamber = chamber](HammerBridge& bridge) {
+          bridge.cylinderPressure(i, chamber, m, m.header.stamp);
+        };
+        messages.push_back({r.stamp, 2 + 2 * static_cast<int>(i) + static_cast<int>(chamber), give});
+      }
+    }
+  }
+  constexpr int kLast = 100;
+  for (const simulation::CrankReading& r : session.crank) {
+    sensor_msgs::JointState m = SentMessages().crank;
+    m.header.stamp = timeOfNs(r.stamp);
+    m.position = {r.angle}, m.velocity = {*r.speed};
+    messages.push_back({r.stamp, kLast, [m](HammerBridge& bridge) { bridge.crank(m, m.header.stamp); }});
+  }
+  std::stable_sort(messages.begin(), messages.end(), [](const Arrival& a, const Arrival& b) {
+    return std::pair{a.stamp, a.topic} < std::pair{b.stamp, b.topic};
+  });
+  return messages;
+}
+
+/// A node that is held up gets what has come meanwhile topic by topic.
+TEST(Bursts, LeaveTheJointTorquesAsGoodAsMessagesInOrderAndGiveNoWarning) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 6.0;
+  machine.crank.rate = 500.0;
+  machine.hammer.drive_reaction_ratio = 1.0;
+  machine.on_boom.on = true;
+  machine.on_boom.imu = {1000.0, 0.0, 0.0, 0.0, 0.1, 0.003};
+  machine.on_boom.pressures = {250.0, 2e4, 6e6};
+  const simulation::Session session = simulation::recordSession(machine);
+  std::map<std::int64_t, const simulation::OnBoomTruth*> truth;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) truth[session.crank[i].stamp] = &session.on_boom[i];
+  std::vector<Arrival> messages = messagesOf(session);
+  const Settings settings = test::settingsWith("boom: compliant\nhull_motion: imu\nboom_stiffness: identified\n");
+  struct Played {
+    std::array<accuracy::SignalError, 3> torque;
+    std::vector<std::string> warnings;
+  };
+  const auto play = [&] {
+    Played played;
+    HammerBridge bridge(settings);
+    bridge.outputs().joint_loads.attach([&](const JointLoads& m, const ros::Time&) {
+      const auto at = truth.find(stampOf(m.header.stamp));
+      if (at == truth.end() || at->first < machine.start_stamp + 3'000'000'000) return;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double weight = m.joint[i + 1].weight_torque;
+        played.torque[i].add(m.joint[i + 1].total_torque - weight, -at->second->hold[static_cast<int>(i)] - weight);
+      }
+    });
+    for (const Arrival& message : messages) message.give(bridge);
+    for (const Warning& warning : warningsOf(bridge.pipeline())) played.warnings.push_back(warning.text);
+    return played;
+  };
+  const Played in_order = play();
+  for (const std::int64_t held_up : {40'000'000, 300'000'000}) {  // [ns]
+    std::stable_sort(messages.begin(), messages.end(), [held_up](const Arrival& a, const Arrival& b) {
+      return std::tuple{a.stamp / held_up, a.topic, a.stamp} < std::tuple{b.stamp / held_up, b.topic, b.stamp};
+    });
+    const Played in_bursts = play();
+    EXPECT_EQ(in_bursts.warnings, in_order.warnings);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double ordered = in_order.torque[i].rms(), burst = in_bursts.torque[i].rms();
+      std::printf("torque %zu: %.2f %% rms, in bursts %.2f %%\n", i, 100.0 * ordered, 100.0 * burst);
+      EXPECT_GT(in_bursts.torque[i].count, 1300);
+      EXPECT_LT(burst, 1.1 * ordered);
+    }
+  }
+}
+
+/// Stamps of a clock that is an hour ahead, and those of a crank that has stopped, wait for nothing.
+TEST(Bursts, WaitForOneSecondAtMost) {
+  ReadingQueue<int> queue;
+  std::vector<int> passed;
+  const auto pass = [&](StampNs, int reading) { passed.push_back(reading); };
+  const StampNs second = 1'000'000'000, crank = 10 * second;
+  queue.add(crank, 0, crank, pass);
+  for (int i = 1; i <= 5; ++i) queue.add(crank + i * second / 5, i, crank, pass);
+  EXPECT_EQ(passed, std::vector<int>{0});
+  queue.add(crank + 6 * second / 5, 6, crank, pass);
+  EXPECT_EQ(passed, (std::vector<int>{0, 1, 2, 3, 4, 5, 6}));
+  queue.add(crank + 3600 * second, 7, crank, pass);
+  EXPECT_EQ(passed.back(), 7);
 }
 
 /// Says which pieces came.

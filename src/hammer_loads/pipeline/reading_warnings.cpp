@@ -101,6 +101,14 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
     warnings.push_back({"imu",
                         "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead. Check the topic.",
                         true, true});
+  constexpr double kOftenMissed = 0.1;
+  const double missed = static_cast<double>(hull.imuCounts().missed) / static_cast<double>(counts.accepted);
+  if (imu && hull.imuCounts().accepted > 0 && missed > kOftenMissed)
+    warnings.push_back({"imu late",
+                        format("hull_imu: no reading in time for %.0f %% of the crank samples; weight by pitch there. "
+                               "Check its rate and delay.",
+                               100.0 * std::min(missed, 1.0)),
+                        false});
   const ImuTrust& trust = hull.imuTrust();
   const auto& weight = hull.gravity();
   if (trust.isFrozen()) {

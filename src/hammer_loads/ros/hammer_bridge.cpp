@@ -68,6 +68,8 @@ void HammerBridge::begin(const Settings& settings) {
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
   pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
   beginCount();
+  ahead_ = {};
+  crank_stamp_.reset();
   reference_ = {};
   goes_on_ = false;
   mechanism_period_ = -1;
@@ -108,16 +110,41 @@ void HammerBridge::beginRun(const ros::Time& record_time) {
   outputs_.run_info.send(record_time);
 }
 
+auto HammerBridge::toJoints() {
+  return [this](StampNs stamp, const sensor_msgs::JointState& joints) {
+    pipeline_->boomJoints(stamp, joints.name, joints.position, joints.velocity);
+  };
+}
+
+auto HammerBridge::toImu() {
+  return [this](StampNs stamp, const ImuReading& reading) { pipeline_->hullImu(stamp, reading); };
+}
+
+auto HammerBridge::toPressure(std::size_t cylinder, Chamber chamber) {
+  return [=](StampNs stamp, double pressure) { pipeline_->cylinderPressure(stamp, cylinder, chamber, pressure); };
+}
+
+template <typename Each>
+void HammerBridge::forEachQueue(const Each& each) {
+  each(ahead_.joints, toJoints());
+  each(ahead_.imu, toImu());
+  const std::size_t cylinders = settings_.boom ? settings_.boom->cylinders().size() : 0;
+  for (std::size_t i = 0; i < cylinders; ++i)
+    for (const Chamber chamber : {Chamber::kBore, Chamber::kRod})
+      each(ahead_.pressures[i][static_cast<std::size_t>(chamber)], toPressure(i, chamber));
+}
+
 void HammerBridge::hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time) {
   beginRun(record_time);
   const geometry_msgs::Vector3 &a = message.linear_acceleration, &w = message.angular_velocity;
-  pipeline_->hullImu(stampOf(message.header.stamp), {{a.x, a.y, a.z}, {w.x, w.y, w.z}});
+  ahead_.imu.add(stampOf(message.header.stamp), {{a.x, a.y, a.z}, {w.x, w.y, w.z}}, crank_stamp_, toImu());
 }
 
 void HammerBridge::cylinderPressure(std::size_t cylinder, Chamber chamber, const sensor_msgs::FluidPressure& message,
                                     const ros::Time& record_time) {
   beginRun(record_time);
-  pipeline_->cylinderPressure(stampOf(message.header.stamp), cylinder, chamber, message.fluid_pressure);
+  ahead_.pressures[cylinder][static_cast<std::size_t>(chamber)].add(
+      stampOf(message.header.stamp), message.fluid_pressure, crank_stamp_, toPressure(cylinder, chamber));
 }
 
 void HammerBridge::reference(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) {
@@ -134,13 +161,16 @@ void HammerBridge::transforms(const tf2_msgs::TFMessage& message, bool is_static
 
 void HammerBridge::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   beginRun(record_time);
-  pipeline_->boomJoints(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+  ahead_.joints.add(stampOf(message.header.stamp), message, crank_stamp_, toJoints());
 }
 
 void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   beginRun(record_time);
-  const SampleResult& result =
-      pipeline_->crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+  const StampNs stamp = stampOf(message.header.stamp);
+  if (std::find(message.name.begin(), message.name.end(), settings_.pipeline.crank_joint) != message.name.end())
+    crank_stamp_ = stamp;
+  if (crank_stamp_) forEachQueue([&](auto& queue, const auto& pass) { queue.passUpTo(*crank_stamp_, pass); });
+  const SampleResult& result = pipeline_->crankJoint(stamp, message.name, message.position, message.velocity);
   life_->follow(message, record_time);
   if (watch_) watch_();
   last_record_time_ = record_time;
@@ -166,6 +196,7 @@ void HammerBridge::sendMechanism(const SampleResult& result, const ros::Time& re
 }
 
 void HammerBridge::end() {
+  forEachQueue([](auto& queue, const auto& pass) { queue.passAll(pass); });
   const SampleResult& result = pipeline_->end();
   life_->end();
   if (watch_) watch_();

@@ -6,6 +6,7 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -18,12 +19,13 @@
 #include "hammer_loads/ros/frame_wrench.h"
 #include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/ros/life_flow.h"
+#include "hammer_loads/ros/reading_queue.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 
 /// Owns the pipeline and the outputs. Its outputs depend on its inputs and settings alone. record_time: of an
-/// input, passed on to the outputs that it causes.
+/// input, passed on to the outputs that it causes. Readings that are ahead of the crank wait for its samples.
 class HammerBridge {
  public:
   explicit HammerBridge(const Settings& settings);
@@ -73,6 +75,20 @@ class HammerBridge {
     std::size_t output;  ///< in outputs_.boom_wrench
   };
 
+  /// Readings that are ahead of the crank.
+  struct Ahead {
+    ReadingQueue<sensor_msgs::JointState> joints;
+    ReadingQueue<ImuReading> imu;
+    std::array<std::array<ReadingQueue<double>, 2>, kMaxJoints> pressures;  ///< by cylinder and chamber
+  };
+
+  /// Calls each(queue, pass) for every queue; pass(stamp, reading) gives a reading to the pipeline.
+  template <typename Each>
+  void forEachQueue(const Each& each);
+  auto toJoints();
+  auto toImu();
+  auto toPressure(std::size_t cylinder, Chamber chamber);
+
   void prepareOutputs();
   void beginCount();
   void beginRun(const ros::Time& record_time);
@@ -84,6 +100,8 @@ class HammerBridge {
 
   Settings settings_;
   std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
+  Ahead ahead_;
+  std::optional<StampNs> crank_stamp_;  ///< header stamp of the last crank sample of the run
   HammerOutputs outputs_;
   std::optional<CylinderJoints> cylinder_joints_;  ///< joints of the boom's cylinders, in the mechanism's message
   std::optional<LifeFlow> life_;                   ///< life of the pipeline, replaced with each count
