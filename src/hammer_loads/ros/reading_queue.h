@@ -1,7 +1,6 @@
 /// Readings that arrive before the crank sample to which they belong.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,12 +17,13 @@ namespace hammer_loads {
 template <typename Reading>
 class ReadingQueue {
  public:
-  /// Takes a reading. crank: stamp of the last crank sample; none: there was no sample yet. pass(stamp, reading):
-  /// called for each reading that does not wait any more. Readings wait for 1 s at most: further ahead are stamps of
-  /// another clock, or the crank has stopped.
+  /// Takes a reading. crank: stamp of the last crank sample; none: there was no sample yet, and all readings but the
+  /// first one wait. pass(stamp, reading): called for each reading that does not wait any more. Readings wait for 1 s
+  /// at most: further ahead are stamps of another clock, or the crank has stopped.
   template <typename Pass>
   void add(StampNs stamp, const Reading& reading, std::optional<StampNs> crank, const Pass& pass) {
-    const bool is_ahead = !crank || (passed_ >= *crank && stamp > *crank && seconds(stamp - *crank) <= kLongestWait);
+    const bool is_beyond = !crank || (stamp > *crank && seconds(stamp - *crank) <= kLongestWait);
+    const bool is_ahead = is_beyond && passed_ && (!crank || *passed_ >= *crank);
     const bool in_order = waiting_.empty() || stamp > waiting_.back().stamp;
     if (!is_ahead || !in_order) passAll(pass);
     if (is_ahead) {
@@ -37,7 +37,7 @@ class ReadingQueue {
   /// Passes on what a crank sample at this stamp needs.
   template <typename Pass>
   void passUpTo(StampNs crank, const Pass& pass) {
-    passWhile([&](const Waiting&) { return passed_ < crank; }, pass);
+    passWhile([&](const Waiting&) { return *passed_ < crank; }, pass);
   }
   template <typename Pass>
   void passAll(const Pass& pass) {
@@ -62,8 +62,8 @@ class ReadingQueue {
     waiting_.erase(waiting_.begin(), next);
   }
 
-  std::vector<Waiting> waiting_;                         ///< in the order of their stamps
-  StampNs passed_{std::numeric_limits<StampNs>::min()};  ///< stamp of the last reading passed on
+  std::vector<Waiting> waiting_;   ///< in the order of their stamps
+  std::optional<StampNs> passed_;  ///< stamp of the last reading passed on
 };
 
 }  // namespace hammer_loads
