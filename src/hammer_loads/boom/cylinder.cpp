@@ -150,8 +150,8 @@ Cylinder::Reach Cylinder::worstReach(const Chain& chain) const {
     if (miss > worst.miss) worst = {miss, angle, length};
   };
   judge(lower), judge(upper);
-  if (linkage_) {  // the extremes between two steps are off by 1e-6 of a length
-    constexpr int kSteps = 1000;
+  if (linkage_) {                 // the extremes between two steps are off by 1e-6 of a length
+    constexpr int kSteps = 1000;  // Numerical: kSteps
     for (int i = 1; i < kSteps; ++i) judge(lower + (upper - lower) * i / kSteps);
     return worst;
   }
@@ -235,6 +235,7 @@ std::uint16_t cylinderFlags(const Cylinder& cylinder, const CylinderPosition& po
                             double total_torque) noexcept {
   if (position.zero_moment_arm) return kZeroMomentArm;
   constexpr double kVacuum = -1.0e5;  // [Pa]
+  // Limit: kVacuum
   const ChamberPressures p = chamberPressures(cylinder, position, steady_torque, total_torque);
   const double relief = cylinder.parameters().relief_pressure;
   const bool empty = p.bore < kVacuum || p.rod < kVacuum;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kFullWeight = 3.0;  // standard deviations of what is left
 constexpr int kMostRounds = 40;
-constexpr double kSettled = 1e-3;               // in standard deviations
+constexpr double kSettled = 1e-3;  // in standard deviations
+// Numerical: kMostRounds, kSettled
 constexpr std::size_t kNeighbouringRows = 100;  // range of rows that may have a common error: 20 s
 
 /// Variance of a sum of neighbours over that of as many strangers: 1 + 2 sum of the autocorrelation. Pairs of lags are
@@ -47,7 +48,7 @@ double studentFactor(double degrees) {
 /// more degree. Student's factor enlarges the variance that few recordings show: two standard deviations then contain
 /// 90 % or more even if the scatter is ten times the prior.
 double scatterOf(const Eigen::VectorXd& scores, const Eigen::MatrixXd& information, double prior_std) {
-  constexpr double kPriorDegrees = 1.0;
+  constexpr double kPriorDegrees = 1.0;  // Prior: kPriorDegrees
   const Eigen::MatrixXd square = information * information;
   const double prior = prior_std * prior_std;
   if (!(square.trace() > 0.0)) return prior;

@@ -28,7 +28,7 @@ Eigen::VectorXd weightsOf(const BoomFit& fit, const std::vector<BoomRow>& rows, 
 /// Gradient of any function of x; by differences over a tenth of each unknown's deviation.
 template <typename Function>
 Eigen::VectorXd gradientOf(const Function& function, const Eigen::VectorXd& x) {
-  constexpr double kStep = 0.1;
+  constexpr double kStep = 0.1;  // Numerical: kStep
   Eigen::VectorXd gradient(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     Eigen::VectorXd up = x, down = x;

@@ -22,6 +22,8 @@ struct BoomBasis {
   RobotDescription urdf;
   BoomParameters parameters;
   Eigen::Vector3d g_B{0.0, 0.0, -kStandardGravity};  ///< gravity in the root's axes [m/s2]
+  // Prior: mass_std, com_std, inertia_std, zero_std, offset_std, recording_std, recording_gain_std, gain_std,
+  // friction_std, friction_force_std, viscous_std
   double mass_std{0.25};      ///< standard, of each link's mass, relative: drawings lack hoses, oil, valves [-]
   double com_std{0.10};       ///< standard, of each link's centre of mass in x and z each [m]
   double inertia_std{0.30};   ///< standard, of each link's inertia, relative [-]

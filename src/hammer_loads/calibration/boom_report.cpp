@@ -165,6 +165,7 @@ std::string yamlOf(const BoomCalibration& c, const std::string& given, const std
 
 std::string svgOf(const BoomCalibration& c) {
   constexpr double kWidth = 900.0, kPanel = 220.0, kTop = 70.0;
+  // Numerical: kWidth, kPanel, kTop
   const double height = kTop + kPanel * static_cast<double>(c.cylinders.size()) + 10.0;
   std::string svg = format(
       "%s xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" font-family=\"sans-serif\" "

@@ -10,6 +10,7 @@ namespace {
 constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
 constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
 constexpr double kStep = 0.05;           // step of differences, in standard deviations before the recording
+// Numerical: kStep
 
 /// True if the rod moves in one direction throughout the readings of the point.
 bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point) {

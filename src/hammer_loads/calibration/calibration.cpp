@@ -19,7 +19,9 @@ constexpr std::size_t kLeastBlows = 12;
 constexpr std::size_t kRoughBlows = 40;  // blows of the first fit
 constexpr double kUsuallyNeeded = 60.0;  // blows
 constexpr int kCurveParts = 72;
+// Numerical: kCurveParts
 constexpr double kUnknownAngleNoise = 5e-4;  // first guess for a sensor without counts [rad]
+// Prior: kUnknownAngleNoise
 
 Free toFind(bool centred) {
   Free free = Free::Constant(true);

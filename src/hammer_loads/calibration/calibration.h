@@ -13,8 +13,9 @@ namespace hammer_loads::calibration {
 struct CalibrationBasis {
   const Mechanism& mechanism;
   Level level;
-  CrankFilterSettings filter;         ///< settings of the filter by the parameters in force
-  double ratio{1.0};                  ///< encoder turns per crank turn [-]
+  CrankFilterSettings filter;  ///< settings of the filter by the parameters in force
+  double ratio{1.0};           ///< encoder turns per crank turn [-]
+  // Prior: rocker_inertia_std
   double rocker_inertia_std{0.02};    ///< relative, of the given rocker inertia [-]
   Globals in_force{Globals::Zero()};  ///< to compare with: zero and eccentricities of the parameters in force
 };

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/util/median.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kFinest = kTwoPi / 65536.0;  // [rad]; a finer sensor has no counts
-constexpr double kRounding = 2e-6;            // rounding of a step between readings in single precision [rad]
-constexpr double kMultipleTolerance = 1e-3;   // part of a count: single-precision sensors round
-constexpr double kGap = 4.5;                  // periods without a sample: what lies between is not known
+constexpr double kRounding = 2e-6;   // rounding of a step between readings in single precision [rad]
+constexpr double kGap = 4.5;         // periods without a sample: what lies between is not known
 constexpr double kDisorder = 0.005;  // part of the stamps that repeat or change places, from which on they are re-timed
 constexpr std::size_t kRetimeHalfWidth = 200;   // samples on either side that show a sample's own time
 constexpr double kHalfSegment = 3.05;           // [rad] on either side of the blow
@@ -26,7 +25,7 @@ double commonPart(double a, double b) {
   while (small > 0.0) {
     const double rest = std::abs(large - small * std::nearbyint(large / small));
     large = small;
-    small = rest < std::max(kRounding, kMultipleTolerance * small) ? 0.0 : rest;
+    small = rest < std::max(kRounding, kCountTolerance * small) ? 0.0 : rest;
   }
   return large;
 }
@@ -37,7 +36,7 @@ double commonCount(const std::vector<RecordedSample>& samples) {
   double common = 0.0, most = 1.0;  // multiples: the more of them a step has, the better it shows the count
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step = std::abs(CrankAngle::wrapToPi(samples[i].reading - samples[i - 1].reading));
-    if (step < 0.1 * kFinest) continue;
+    if (step < 0.1 * kFinestCount) continue;
     const double multiples = common > 0.0 ? std::nearbyint(step / common) : 0.0;
     const bool fits =
         multiples >= 1.0 && std::abs(step - multiples * common) < std::min(0.1 * common, kRounding * (multiples + 1.0));
@@ -45,7 +44,7 @@ double commonCount(const std::vector<RecordedSample>& samples) {
     if (fits) continue;
     common = common == 0.0 ? step : commonPart(common, step);
     most = 1.0;
-    if (common < (1.0 - kMultipleTolerance) * kFinest) return 0.0;
+    if (common < (1.0 - kCountTolerance) * kFinestCount) return 0.0;
   }
   return common > 0.0 && common < 0.25 * kTwoPi ? kTwoPi / std::nearbyint(kTwoPi / common) : 0.0;
 }

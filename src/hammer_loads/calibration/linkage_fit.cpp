@@ -79,6 +79,7 @@ class Problem {
   }
   int df(const Eigen::VectorXd& x, Eigen::MatrixXd& J) const {
     constexpr double kLengthStep = 1e-6;  // [m]
+    // Numerical: kLengthStep
     Eigen::VectorXd up(values()), down(values());
     for (int i = 0; i < Unknowns::kCount; ++i) {
       Eigen::VectorXd moved = x;

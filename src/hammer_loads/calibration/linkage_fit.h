@@ -34,6 +34,7 @@ struct LinkageUnknowns {
 struct LinkageBasis {
   /// Measured with a tape [m]; nothing: not known.
   std::array<std::optional<double>, LinkageUnknowns::kCount> measured;
+  // Prior: tape_std
   double tape_std{0.01};  ///< standard, of each of them [m]
   double sense{1.0};
 };

@@ -21,6 +21,8 @@ constexpr double kMostAngle = 0.2;     // [rad]: what seems larger is the model'
 constexpr double kFlawStd = 0.1;       // [rad]: standard, of a flaw before the recording; a larger one meets limits
 constexpr double kFrictionStd = 0.3;  // standard, of a recording's friction, relative to that of all: warmth of the oil
 constexpr double kAngleStep = 1e-3;   // [rad]: step of differences
+// Prior: kFlawStd, kFrictionStd
+// Numerical: kAngleStep
 constexpr std::size_t kFewestRows = 5;  // of a cylinder in a recording
 
 /// Ways in which the sensor of a joint differs in one recording from itself in the others.
@@ -31,11 +33,8 @@ constexpr std::array<std::pair<Flaw, const char*>, 2> kFlaws{
 /// Spread of all values but one about their median, as a standard deviation: a faulty recording shifts all others
 /// alike.
 double spreadWithout(std::vector<double> values, std::size_t one) {
-  constexpr double kMedianToStd = 1.4826;
   values.erase(values.begin() + static_cast<std::ptrdiff_t>(one));
-  const double middle = medianOf(values);
-  for (double& value : values) value = std::abs(value - middle);
-  return kMedianToStd * medianOf(values);
+  return stdByMedian(values, medianOf(values));
 }
 
 /// Rows of one recording in the linear system of a fit.

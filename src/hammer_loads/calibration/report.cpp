@@ -108,12 +108,12 @@ std::string nextStepOf(const Calibration& c) {
 /// In lines of some 110 characters, the second and later ones indented. A line ends behind a comma, colon or semicolon,
 /// so that a key stays beside its value.
 std::string wrapped(const std::string& text) {
-  constexpr std::size_t kMost = 110;
+  constexpr std::size_t kLongestLine = 110;  // Numerical: kLongestLine
   std::string lines, line;
   for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end) {
     end = text.find_first_of(",:;", begin);
     end = end == std::string::npos ? text.size() : end + 1;
-    if (!line.empty() && line.size() + end - begin > kMost) lines += line + "\n", line = "   ";
+    if (!line.empty() && line.size() + end - begin > kLongestLine) lines += line + "\n", line = "   ";
     line += text.substr(begin, end - begin);
   }
   return lines + line + "\n";
@@ -136,7 +136,7 @@ double tickStep(double least) {
 
 /// A curve on a scale of its own, in degrees.
 struct ResidualPanel {
-  static constexpr double kLeft = 80.0, kRight = 740.0, kHeight = 180.0;
+  static constexpr double kLeft = 80.0, kRight = 740.0, kHeight = 180.0;  // Numerical: kLeft, kRight, kHeight
   double top;
   const ResidualCurve& curve;
   const char *title, *colour;
@@ -240,7 +240,7 @@ std::string yamlOf(const Calibration& c, const std::string& source) {
 }
 
 std::string svgOf(const Calibration& c) {
-  constexpr double kBetween = 50.0, kTop = 70.0, kBottom = 50.0;
+  constexpr double kBetween = 50.0, kTop = 70.0, kBottom = 50.0;  // Numerical: kBetween, kTop, kBottom
   const ResidualPanel before{kTop, c.before, "with the parameters in force", "#c0392b"};
   const ResidualPanel after{kTop + ResidualPanel::kHeight + kBetween, c.after, "with the values found", "#1f5fa8"};
   std::string svg = format(

@@ -114,10 +114,9 @@ double noiseOverStep(const Trace& trace) {
     const double change = std::abs(trace.value[i] - trace.value[i - 1]);
     if (!(change > 0.0)) continue;
     step = std::min(step, change);
-    bends.push_back(std::abs(trace.value[i] - 2.0 * trace.value[i - 1] + trace.value[i - 2]));
+    bends.push_back(trace.value[i] - 2.0 * trace.value[i - 1] + trace.value[i - 2]);  // variance: six readings'
   }
-  constexpr double kMedianToStd = 1.4826, kOfBends = 2.4495;  // normal distribution; variance of a second difference: 6
-  return bends.empty() ? 0.0 : kMedianToStd * medianOf(bends) / kOfBends / step;
+  return bends.empty() ? 0.0 : stdByMedian(bends, 0.0) / std::sqrt(6.0) / step;
 }
 
 constexpr double kFits = 0.5;    // part of the force, rms: errors of nominal masses, friction and zeros are below it
@@ -226,7 +225,6 @@ std::vector<std::string> noisySensors(const Chain& chain, const std::vector<Boom
 
 std::vector<std::string> brokenSensors(const Chain& chain, const std::vector<const BoomRecording*>& recordings,
                                        const std::vector<std::string>& names) {
-  constexpr double kDegrees = 180.0 / kPi;
   std::vector<std::string> lines;
   for (std::size_t j = 0; j < static_cast<std::size_t>(chain.joints()); ++j) {
     const char* joint = chain.jointNames()[j].c_str();
@@ -237,7 +235,7 @@ std::vector<std::string> brokenSensors(const Chain& chain, const std::vector<con
       if (const auto leap = firstLeap(trace))
         lines.push_back(
             format("%s: its sensor leaps by %.2g deg after %.1f s of %s: faulty there, leave that recording out", joint,
-                   kDegrees * leap->size, leap->time, names[r].c_str()));
+                   leap->size / kDegree, leap->time, names[r].c_str()));
       const Event stay = longestStay(trace);
       if (stay.size > kStays && noise > kNoiseOverStep)
         lines.push_back(

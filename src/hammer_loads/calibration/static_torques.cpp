@@ -70,6 +70,7 @@ std::vector<std::vector<StaticTorque>> staticTorques(const BoomModel& model, con
   const Eigen::MatrixXd value = weightTorques(model, fit.x, poses);
   std::vector<Eigen::MatrixXd> slopes;
   constexpr double kStep = 0.1;  // step of differences, in standard deviations before the recording
+  // Numerical: kStep
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
     Eigen::VectorXd up = fit.x, down = fit.x;
     up[i] += kStep, down[i] -= kStep;

@@ -64,6 +64,11 @@ class CrankSensor {
   bool centred_{true};
 };
 
+/// Readings finer than this are those of a sensor without counts [rad].
+constexpr double kFinestCount = kTwoPi / 65536.0;
+/// Tolerance of a multiple, as part of a count: sensors in single precision round by 4e-4 of 2 pi/4096.
+constexpr double kCountTolerance = 1e-3;
+
 /// An encoder counts down to the last whole count, so a reading means the middle of its count. The count is read off
 /// the readings: the largest whole part of a turn of which all their differences are multiples. Until there are enough
 /// readings, the count is the given one or 2 pi/4096. Readings finer than 2 pi/65536 are those of a sensor without
@@ -108,21 +113,19 @@ class Encoder {
   bool isKnown() const noexcept { return agreeing_ >= kEnoughToKnow; }
   /// Returns true if the readings contradict the given count.
   bool contradictsGiven() const noexcept {
-    return given_ && (isFiner() || (isKnown() && std::abs(count_ / assumed_ - 1.0) > kMultipleTolerance));
+    return given_ && (isFiner() || (isKnown() && std::abs(count_ / assumed_ - 1.0) > kCountTolerance));
   }
 
  private:
-  static constexpr double kUsual = kTwoPi / 4096.0;
-  static constexpr double kFinest = kTwoPi / 65536.0;
-  static constexpr double kMultipleTolerance = 1e-3;  // of a count; single-precision sensors round by 4e-4 of 2 pi/4096
+  static constexpr double kUsual = kTwoPi / 4096.0;  // Prior: kUsual
   static constexpr int kEnough = 2;
-  static constexpr double kSame = kMultipleTolerance * kFinest;
+  static constexpr double kSame = kCountTolerance * kFinestCount;
   static constexpr int kEnoughStrays = 4;
   static constexpr int kEnoughToKnow = 24;  // differences: all even or all multiples of three by chance: 1e-7
 
   static bool isMultiple(double difference, double count) noexcept {
     const double counts = difference / count, whole = std::nearbyint(counts);
-    return whole >= 1.0 && std::abs(counts - whole) <= kMultipleTolerance;
+    return whole >= 1.0 && std::abs(counts - whole) <= kCountTolerance;
   }
 
   static double between(double one, double other) noexcept { return std::abs(CrankAngle::wrapToPi(one - other)); }
@@ -162,13 +165,13 @@ class Encoder {
   /// The largest whole part of a turn that divides both the count so far and the difference (Euclid). False: none.
   bool reduceTo(double difference) noexcept {
     double large = count_, small = difference;
-    for (int i = 0; i < 64 && small > 0.5 * kFinest; ++i) {
+    for (int i = 0; i < 64 && small > 0.5 * kFinestCount; ++i) {
       const double rest = std::abs(large - small * std::nearbyint(large / small));
       large = small;
-      small = rest < kMultipleTolerance * small ? 0.0 : rest;
+      small = rest < kCountTolerance * small ? 0.0 : rest;
     }
     const double whole = kTwoPi / std::nearbyint(kTwoPi / large);
-    if (small > 0.0 || large < (1.0 - kMultipleTolerance) * kFinest || !isMultiple(difference, whole)) return false;
+    if (small > 0.0 || large < (1.0 - kCountTolerance) * kFinestCount || !isMultiple(difference, whole)) return false;
     count_ = whole;
     return true;
   }

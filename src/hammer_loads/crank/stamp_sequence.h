@@ -68,6 +68,7 @@ class ControllerTask {
     }
   }
 
+  // Numerical: kMillisecond, kTolerance
   static constexpr std::int64_t kMillisecond = 1000000;                                          ///< [ns]
   static constexpr std::array<std::int64_t, 11> kPeriods{2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20};  ///< [ms]
   static constexpr double kRecognised = 0.5;  ///< by chance once in exp(100)
