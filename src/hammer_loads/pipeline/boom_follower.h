@@ -153,6 +153,8 @@ class BoomFollower {
   /// Name of the contact to which state().hold_down.least belongs, such as "front edge" or a cylinder's name; empty
   /// when unknown.
   const std::string& firstToGive() const noexcept;
+  /// Returns true while pressures of the cylinders are in use.
+  bool pressuresCount() const noexcept { return pressures_.accepted() > 0 && !trust_.isLost(); }
 
  private:
   static Wrench onTip(const HullWrench& w) noexcept;
@@ -170,7 +172,6 @@ class BoomFollower {
   Eigen::Matrix3d tipCovarianceAsGiven() const noexcept;
   void weighUnexplained(const ImuReading& reading, double step) noexcept;
   WrenchSpread spreadWithRock(const WrenchSpread& of_crank) const noexcept;
-  bool pressuresCount() const noexcept { return pressures_.accepted() > 0 && !trust_.isLost(); }
   void takeMeasured(const BoomSample& sample, double step) noexcept;
   void useMeasured() noexcept;
   void followContact(StampNs stamp) noexcept;

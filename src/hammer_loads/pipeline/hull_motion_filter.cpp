@@ -181,6 +181,7 @@ void HullMotionFilter::take(const StampedImuReading& next) noexcept {
   z_.read(r.specific_force.z(), step, now.load, by_load, counts);
   turning_.read(r.rate.y(), step, now.load, by_blow, counts);
   if (!(x_.isFinite() && z_.isFinite() && turning_.isFinite())) beginAnew();
+  if (readings_ > 0) interval_ = step;
   last_ = next;
   at_last_ = now;
   readings_ = std::min(readings_ + 1, 2);
@@ -197,7 +198,8 @@ std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcep
                                               future[1].swing(h, impulse, lasting),
                                               future[2].swing(h, impulse, lasting)};
   };
-  forEachStep(stamp, swings, [&](const DrivenSignal::Step& one) {
+  const double ahead = std::min(step, 2.0 * interval_);
+  forEachStep(last_.stamp + std::llround(ahead / kSecondsPerNs), swings, [&](const DrivenSignal::Step& one) {
     for (DrivenSignal::Future& signal : future) signal.advance(one);
   });
   const DrivenSignal::Value x = future[0].at(now.load), z = future[1].at(now.load), turns = future[2].at(now.load);

@@ -69,7 +69,8 @@ class HullMotionFilter {
   /// Takes a crank sample and the load of the step that it ends. beside: other loads on the hull at the sample. A step
   /// without pieces resets the motion.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
-  /// Motion at a stamp, from the second reading with a known load until the last one is max_age old.
+  /// Motion at a stamp, from the second reading with a known load until the last one is max_age old. The slow part of
+  /// the motion is held from where the reading after the next one is due: a longer prediction diverges.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
   /// Readings up to a stamp that no crank sample has followed yet.
   std::ptrdiff_t waiting(StampNs stamp) const noexcept { return waiting_.upTo(stamp); }
@@ -97,6 +98,7 @@ class HullMotionFilter {
   HullWrench beside_;
   RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< mean square
   int readings_{};
+  double interval_{};  ///< between the last two readings [s]
   double greatest_load_{};
 };
 

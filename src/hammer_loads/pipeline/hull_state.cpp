@@ -237,10 +237,13 @@ void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWren
   find(sample);
 }
 
-std::optional<StampedImuReading> HullState::newImuReading(StampNs sample, bool stamps_jitter) noexcept {
+std::optional<StampedImuReading> HullState::newImuReading(StampNs sample, bool stamps_jitter,
+                                                          double most_age) noexcept {
   if (imu_counts_.accepted == imu_taken_ || imu_trust_.isLost()) return std::nullopt;
   imu_taken_ = imu_counts_.accepted;
-  if (stamps_jitter) return imu_.newest();
+  const bool is_late = imu_.overdue(sample) > 0.0;
+  if (is_late && seconds(sample - imu_.newest().stamp) > most_age) return std::nullopt;
+  if (is_late || stamps_jitter) return imu_.newest();
   const std::optional<ImuReading> reading = imu_.reading(sample);
   return reading ? std::make_optional(StampedImuReading{sample, *reading}) : std::nullopt;
 }

@@ -172,8 +172,9 @@ class HullState {
     return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
   }
   /// The IMU's reading at the sample in the hull's axes, if there is a new one since the last call. If its stamps
-  /// jitter, which would distort the interpolation, it is the last reading itself.
-  std::optional<StampedImuReading> newImuReading(StampNs sample, bool stamps_jitter) noexcept;
+  /// jitter, which would distort the interpolation, or if it is late, it is the last reading itself. A late one that is
+  /// older than most_age [s] is left out.
+  std::optional<StampedImuReading> newImuReading(StampNs sample, bool stamps_jitter, double most_age) noexcept;
   /// Takes the wrench on the hull at a sample and its duration [s], for the motion of an unmeasured hull.
   void carry(const HullWrench& load, double duration) noexcept;
   /// Takes the vibration of the boom at the sample; null: not known. Call after carry().

@@ -14,6 +14,7 @@ constexpr double kBounces = 200.0;            // [rad/s2] of a slow crank whose 
 
 constexpr double kAtWork = 0.3;      // part of the nominal speed at which blows are struck
 constexpr double kLeadOfZero = 0.6;  // part of the zero's time at the blow that acts on the vibration
+constexpr double kLateImu = 5e-3;    // [s]: with pressures, readings of the IMU that are older do more harm than good
 
 }  // namespace
 
@@ -122,12 +123,13 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
   const WrenchSpread spread =
       wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
+  const double most_age = boom_->pressuresCount() ? kLateImu : look_back::kLine;
+  const std::optional<StampedImuReading> imu = hull_.newImuReading(result_.stamp, boom_->imuStampsJitter(), most_age);
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
-  result_.boom =
-      &boom_->sample({result_.stamp, motion, spread, constantErrors(result_.load_columns),
-                      hammerErrors(result_.load_columns), hull_.newImuReading(result_.stamp, boom_->imuStampsJitter()),
-                      imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
-                     step);
+  result_.boom = &boom_->sample(
+      {result_.stamp, motion, spread, constantErrors(result_.load_columns), hammerErrors(result_.load_columns), imu,
+       imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
+      step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_hold_down_force);

@@ -57,6 +57,28 @@ std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
                        std::acos(std::clamp(along, -1.0, 1.0)) / kDegree);
 }
 
+/// samples: crank samples that were accepted.
+void warnOfImu(const HullState& hull, std::uint64_t samples, std::vector<Warning>& warnings) {
+  constexpr double kOftenMissed = 0.1;
+  const ImuTrust& trust = hull.imuTrust();
+  const double missed = static_cast<double>(hull.imuCounts().missed) / static_cast<double>(samples);
+  if (hull.imuCounts().accepted == 0) {
+    warnings.push_back({"imu",
+                        "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead. Check the topic.",
+                        true, true});
+  } else if (trust.isFrozen()) {
+    warnings.push_back({"imu", "hull_imu: not used, its readings stand still. Check the driver.", true});
+  } else if (trust.isLost()) {
+    warnings.push_back({"imu", "hull_imu: not used, " + faultOf(trust, hull.gravity()), true});
+  } else if (missed > kOftenMissed) {
+    warnings.push_back({"imu late",
+                        format("hull_imu: no reading in time for %.0f %% of the crank samples; weight by pitch there. "
+                               "Check its rate and delay.",
+                               100.0 * std::min(missed, 1.0)),
+                        false});
+  }
+}
+
 }  // namespace
 
 void warnOfReadings(const CrankFollower& crank, const CrankFilter& filter, std::vector<Warning>& warnings) {
@@ -96,26 +118,8 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
                                "Check pitch_signs and pitch_offset_rad.",
                                pitch / kDegree),
                         true});
-  const bool imu = pipeline.settings().hull_motion == HullMotionSource::kImu;
-  if (imu && hull.imuCounts().accepted == 0)
-    warnings.push_back({"imu",
-                        "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead. Check the topic.",
-                        true, true});
-  constexpr double kOftenMissed = 0.1;
-  const double missed = static_cast<double>(hull.imuCounts().missed) / static_cast<double>(counts.accepted);
-  if (imu && hull.imuCounts().accepted > 0 && missed > kOftenMissed)
-    warnings.push_back({"imu late",
-                        format("hull_imu: no reading in time for %.0f %% of the crank samples; weight by pitch there. "
-                               "Check its rate and delay.",
-                               100.0 * std::min(missed, 1.0)),
-                        false});
-  const ImuTrust& trust = hull.imuTrust();
-  const auto& weight = hull.gravity();
-  if (trust.isFrozen()) {
-    warnings.push_back({"imu", "hull_imu: not used, its readings stand still. Check the driver.", true});
-  } else if (trust.isLost()) {
-    warnings.push_back({"imu", "hull_imu: not used, " + faultOf(trust, weight), true});
-  }
+  if (pipeline.settings().hull_motion == HullMotionSource::kImu || hull.imuCounts().accepted > 0)
+    warnOfImu(hull, counts.accepted, warnings);
 }
 
 }  // namespace hammer_loads
