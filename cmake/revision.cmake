@@ -2,6 +2,7 @@
 # Writes the revision of the source to a header, at every build; an unchanged header keeps its time, so that nothing is
 # compiled again. Known to git: as `git describe` has it, with -dirty for changes not committed. From `git archive`: the
 # commit; from scripts/deb: as `git describe` had it. Else, also in the midst of a checkout of something else: unknown.
+cmake_minimum_required(VERSION 3.16)
 set(revision "")
 find_program(git git)
 if(git)
