@@ -153,15 +153,16 @@ TEST(WhoListens, WantsTheTurnsAloneGetsTheSameAndNoSampleIsComputed) {
   EXPECT_EQ(once_a_turn, 6U);
 }
 
-/// A message of a sensor: its stamp, its place in a burst and the call that gives it to a bridge.
+constexpr int kImu = 1, kCrank = 100;  // topics; the crank is last
+
+/// A message of a sensor: its stamp, its topic, by which bursts are ordered, and the call that gives it to a bridge.
 struct Arrival {
   std::int64_t stamp;
   int topic;
   std::function<void(HammerBridge&)> give;
 };
 
-/// All messages of a machine on its boom with IMU and pressures, in the order of their stamps; at one stamp the crank
-/// is last.
+/// All messages of a session on a boom, topic by topic.
 std::vector<Arrival> messagesOf(const simulation::Session& session) {
   std::vector<Arrival> messages;
   for (const simulation::JointReading& r : session.joints) {
@@ -175,7 +176,7 @@ std::vector<Arrival> messagesOf(const simulation::Session& session) {
     m.header.stamp = timeOfNs(r.stamp);
     m.linear_acceleration.x = r.specific_force[0], m.linear_acceleration.z = r.specific_force[2];
     m.angular_velocity.y = r.rate[1];
-    messages.push_back({r.stamp, 1, [m](HammerBridge& bridge) { bridge.hullImu(m, m.header.stamp); }});
+    messages.push_back({r.stamp, kImu, [m](HammerBridge& bridge) { bridge.hullImu(m, m.header.stamp); }});
   }
   for (const simulation::PressureReading& r : session.pressures) {
     for (std::size_t i = 0; i < r.bore.size(); ++i) {
@@ -191,16 +192,12 @@ std::vector<Arrival> messagesOf(const simulation::Session& session) {
       }
     }
   }
-  constexpr int kLast = 100;  // of the messages of one stamp
   for (const simulation::CrankReading& r : session.crank) {
     sensor_msgs::JointState m = SentMessages().crank;
     m.header.stamp = timeOfNs(r.stamp);
     m.position = {r.angle}, m.velocity = {*r.speed};
-    messages.push_back({r.stamp, kLast, [m](HammerBridge& bridge) { bridge.crank(m, m.header.stamp); }});
+    messages.push_back({r.stamp, kCrank, [m](HammerBridge& bridge) { bridge.crank(m, m.header.stamp); }});
   }
-  std::stable_sort(messages.begin(), messages.end(), [](const Arrival& a, const Arrival& b) {
-    return std::pair{a.stamp, a.topic} < std::pair{b.stamp, b.topic};
-  });
   return messages;
 }
 
@@ -213,8 +210,6 @@ class MessagesOnBoom : public ::testing::Test {
 
     double worst() const { return std::max({torque[0].rms(), torque[1].rms(), torque[2].rms()}); }
   };
-
-  static constexpr int kImu = 1, kCrank = 100;  ///< Arrival::topic
 
   MessagesOnBoom() {
     machine_.duration = 6.0;
@@ -259,7 +254,7 @@ class MessagesOnBoom : public ::testing::Test {
   std::vector<Arrival> messages_;
 };
 
-/// A node that is held up gets what has come meanwhile topic by topic.
+/// A node that is held up receives the messages of that time topic by topic.
 TEST_F(MessagesOnBoom, GiveTheSameTorquesInBurstsAsInOrder) {
   const Played in_order = playInOrder();
   for (const std::int64_t held_up : {40'000'000, 300'000'000}) {  // [ns]
@@ -272,7 +267,7 @@ TEST_F(MessagesOnBoom, GiveTheSameTorquesInBurstsAsInOrder) {
   }
 }
 
-/// By a bus: its stamps are those of the measurement.
+/// A bus delays a topic; the stamps are those of the measurement.
 TEST_F(MessagesOnBoom, CostLittleWhereOneTopicIsLate) {
   const Played in_order = playInOrder();
   const auto lateBy = [&](int topic, std::int64_t late) {
@@ -291,16 +286,15 @@ TEST_F(MessagesOnBoom, CostLittleWhereOneTopicIsLate) {
 
 /// Stamps of a clock that is an hour ahead, and those of a crank that has stopped, wait for nothing.
 TEST(ReadingQueue, HoldsReadingsForOneSecondAtMost) {
-  ReadingQueue<int> queue;
   std::vector<int> passed;
-  const auto pass = [&](StampNs, int reading) { passed.push_back(reading); };
+  ReadingQueue<int> queue([&passed](StampNs, int reading) { passed.push_back(reading); });
   const StampNs second = 1'000'000'000, crank = 10 * second;
-  queue.add(crank, 0, crank, pass);
-  for (int i = 1; i <= 5; ++i) queue.add(crank + i * second / 5, i, crank, pass);
+  queue.add(crank, 0, crank);
+  for (int i = 1; i <= 5; ++i) queue.add(crank + i * second / 5, i, crank);
   EXPECT_EQ(passed, std::vector<int>{0});
-  queue.add(crank + 6 * second / 5, 6, crank, pass);
+  queue.add(crank + 6 * second / 5, 6, crank);
   EXPECT_EQ(passed, (std::vector<int>{0, 1, 2, 3, 4, 5, 6}));
-  queue.add(crank + 3600 * second, 7, crank, pass);
+  queue.add(crank + 3600 * second, 7, crank);
   EXPECT_EQ(passed.back(), 7);
 }
 

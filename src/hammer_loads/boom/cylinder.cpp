@@ -150,8 +150,9 @@ Cylinder::Reach Cylinder::worstReach(const Chain& chain) const {
     if (miss > worst.miss) worst = {miss, angle, length};
   };
   judge(lower), judge(upper);
-  if (linkage_) {                 // the extremes between two steps are off by 1e-6 of a length
-    constexpr int kSteps = 1000;  // Numerical: kSteps
+  if (linkage_) {
+    // Numerical: kSteps
+    constexpr int kSteps = 1000;  // the extremes between two steps are off by 1e-6 of a length
     for (int i = 1; i < kSteps; ++i) judge(lower + (upper - lower) * i / kSteps);
     return worst;
   }

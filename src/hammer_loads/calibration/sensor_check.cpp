@@ -114,7 +114,7 @@ double noiseOverStep(const Trace& trace) {
     const double change = std::abs(trace.value[i] - trace.value[i - 1]);
     if (!(change > 0.0)) continue;
     step = std::min(step, change);
-    bends.push_back(trace.value[i] - 2.0 * trace.value[i - 1] + trace.value[i - 2]);  // variance: six readings'
+    bends.push_back(trace.value[i] - 2.0 * trace.value[i - 1] + trace.value[i - 2]);  // variance: six times a reading's
   }
   return bends.empty() ? 0.0 : stdByMedian(bends, 0.0) / std::sqrt(6.0) / step;
 }

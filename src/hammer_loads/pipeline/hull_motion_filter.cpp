@@ -198,7 +198,7 @@ std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcep
                                               future[1].swing(h, impulse, lasting),
                                               future[2].swing(h, impulse, lasting)};
   };
-  const double ahead = std::min(step, 2.0 * interval_);
+  const double ahead = step - std::max(0.0, overdue(step, interval_));
   forEachStep(last_.stamp + std::llround(ahead / kSecondsPerNs), swings, [&](const DrivenSignal::Step& one) {
     for (DrivenSignal::Future& signal : future) signal.advance(one);
   });

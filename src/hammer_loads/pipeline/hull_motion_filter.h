@@ -70,7 +70,7 @@ class HullMotionFilter {
   /// without pieces resets the motion.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
   /// Motion at a stamp, from the second reading with a known load until the last one is max_age old. The slow part of
-  /// the motion is held from where the reading after the next one is due: a longer prediction diverges.
+  /// the motion is predicted until the reading is overdue and held after that, since a longer prediction diverges.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
   /// Readings up to a stamp that no crank sample has followed yet.
   std::ptrdiff_t waiting(StampNs stamp) const noexcept { return waiting_.upTo(stamp); }

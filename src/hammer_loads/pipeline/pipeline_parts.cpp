@@ -14,7 +14,7 @@ constexpr double kBounces = 200.0;            // [rad/s2] of a slow crank whose 
 
 constexpr double kAtWork = 0.3;      // part of the nominal speed at which blows are struck
 constexpr double kLeadOfZero = 0.6;  // part of the zero's time at the blow that acts on the vibration
-constexpr double kLateImu = 5e-3;    // [s]: with pressures, readings of the IMU that are older do more harm than good
+constexpr double kLateImu = 5e-3;    // [s]: beside pressures, older readings of the IMU make the torques worse
 
 }  // namespace
 

@@ -19,6 +19,25 @@ std::string hullFrame(const Settings& settings) {
 
 }  // namespace
 
+HammerBridge::Ahead::Ahead(Pipeline& pipeline)
+    : joints([&pipeline](StampNs stamp, const sensor_msgs::JointState& m) {
+        pipeline.boomJoints(stamp, m.name, m.position, m.velocity);
+      }),
+      imu([&pipeline](StampNs stamp, const ImuReading& reading) { pipeline.hullImu(stamp, reading); }) {
+  const std::size_t cylinders = pipeline.boom() ? pipeline.boom()->boom().cylinders().size() : 0;
+  for (std::size_t i = 0; i < cylinders; ++i)
+    for (const Chamber chamber : {Chamber::kBore, Chamber::kRod})
+      pressures.emplace_back([&pipeline, i, chamber](StampNs stamp, double pressure) {
+        pipeline.cylinderPressure(stamp, i, chamber, pressure);
+      });
+}
+
+template <typename Each>
+void HammerBridge::Ahead::forEach(const Each& each) {
+  each(joints), each(imu);
+  for (ReadingQueue<double>& pressure : pressures) each(pressure);
+}
+
 HammerBridge::HammerBridge(const Settings& settings) : settings_(settings) {
   prepareOutputs();
   std::vector<std::string> frames;
@@ -68,7 +87,7 @@ void HammerBridge::begin(const Settings& settings) {
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
   pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
   beginCount();
-  ahead_ = {};
+  ahead_.emplace(*pipeline_);
   crank_stamp_.reset();
   reference_ = {};
   goes_on_ = false;
@@ -110,41 +129,17 @@ void HammerBridge::beginRun(const ros::Time& record_time) {
   outputs_.run_info.send(record_time);
 }
 
-auto HammerBridge::toJoints() {
-  return [this](StampNs stamp, const sensor_msgs::JointState& joints) {
-    pipeline_->boomJoints(stamp, joints.name, joints.position, joints.velocity);
-  };
-}
-
-auto HammerBridge::toImu() {
-  return [this](StampNs stamp, const ImuReading& reading) { pipeline_->hullImu(stamp, reading); };
-}
-
-auto HammerBridge::toPressure(std::size_t cylinder, Chamber chamber) {
-  return [=](StampNs stamp, double pressure) { pipeline_->cylinderPressure(stamp, cylinder, chamber, pressure); };
-}
-
-template <typename Each>
-void HammerBridge::forEachQueue(const Each& each) {
-  each(ahead_.joints, toJoints());
-  each(ahead_.imu, toImu());
-  const std::size_t cylinders = settings_.boom ? settings_.boom->cylinders().size() : 0;
-  for (std::size_t i = 0; i < cylinders; ++i)
-    for (const Chamber chamber : {Chamber::kBore, Chamber::kRod})
-      each(ahead_.pressures[i][static_cast<std::size_t>(chamber)], toPressure(i, chamber));
-}
-
 void HammerBridge::hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time) {
   beginRun(record_time);
   const geometry_msgs::Vector3 &a = message.linear_acceleration, &w = message.angular_velocity;
-  ahead_.imu.add(stampOf(message.header.stamp), {{a.x, a.y, a.z}, {w.x, w.y, w.z}}, crank_stamp_, toImu());
+  ahead_->imu.add(stampOf(message.header.stamp), {{a.x, a.y, a.z}, {w.x, w.y, w.z}}, crank_stamp_);
 }
 
 void HammerBridge::cylinderPressure(std::size_t cylinder, Chamber chamber, const sensor_msgs::FluidPressure& message,
                                     const ros::Time& record_time) {
   beginRun(record_time);
-  ahead_.pressures[cylinder][static_cast<std::size_t>(chamber)].add(
-      stampOf(message.header.stamp), message.fluid_pressure, crank_stamp_, toPressure(cylinder, chamber));
+  const std::size_t queue = 2 * cylinder + static_cast<std::size_t>(chamber);
+  ahead_->pressures[queue].add(stampOf(message.header.stamp), message.fluid_pressure, crank_stamp_);
 }
 
 void HammerBridge::reference(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) {
@@ -161,7 +156,7 @@ void HammerBridge::transforms(const tf2_msgs::TFMessage& message, bool is_static
 
 void HammerBridge::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   beginRun(record_time);
-  ahead_.joints.add(stampOf(message.header.stamp), message, crank_stamp_, toJoints());
+  ahead_->joints.add(stampOf(message.header.stamp), message, crank_stamp_);
 }
 
 void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time& record_time) {
@@ -169,7 +164,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   const StampNs stamp = stampOf(message.header.stamp);
   if (std::find(message.name.begin(), message.name.end(), settings_.pipeline.crank_joint) != message.name.end())
     crank_stamp_ = stamp;
-  if (crank_stamp_) forEachQueue([&](auto& queue, const auto& pass) { queue.passUpTo(*crank_stamp_, pass); });
+  if (crank_stamp_) ahead_->forEach([this](auto& queue) { queue.passUpTo(*crank_stamp_); });
   const SampleResult& result = pipeline_->crankJoint(stamp, message.name, message.position, message.velocity);
   life_->follow(message, record_time);
   if (watch_) watch_();
@@ -196,7 +191,7 @@ void HammerBridge::sendMechanism(const SampleResult& result, const ros::Time& re
 }
 
 void HammerBridge::end() {
-  forEachQueue([](auto& queue, const auto& pass) { queue.passAll(pass); });
+  ahead_->forEach([](auto& queue) { queue.passAll(); });
   const SampleResult& result = pipeline_->end();
   life_->end();
   if (watch_) watch_();

@@ -6,7 +6,6 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -75,19 +74,17 @@ class HammerBridge {
     std::size_t output;  ///< in outputs_.boom_wrench
   };
 
-  /// Readings that are ahead of the crank.
+  /// Queues of the readings that are ahead of the crank.
   struct Ahead {
+    explicit Ahead(Pipeline& pipeline);
+
+    template <typename Each>
+    void forEach(const Each& each);
+
     ReadingQueue<sensor_msgs::JointState> joints;
     ReadingQueue<ImuReading> imu;
-    std::array<std::array<ReadingQueue<double>, 2>, kMaxJoints> pressures;  ///< by cylinder and chamber
+    std::vector<ReadingQueue<double>> pressures;  ///< bore and rod of each cylinder, in turn
   };
-
-  /// Calls each(queue, pass) for every queue; pass(stamp, reading) gives a reading to the pipeline.
-  template <typename Each>
-  void forEachQueue(const Each& each);
-  auto toJoints();
-  auto toImu();
-  auto toPressure(std::size_t cylinder, Chamber chamber);
 
   void prepareOutputs();
   void beginCount();
@@ -99,8 +96,8 @@ class HammerBridge {
   void send(const TurnEnd& end, const ros::Time& record_time);
 
   Settings settings_;
-  std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
-  Ahead ahead_;
+  std::optional<Pipeline> pipeline_;    ///< replaced with each run, in its place
+  std::optional<Ahead> ahead_;          ///< replaced with each run
   std::optional<StampNs> crank_stamp_;  ///< header stamp of the last crank sample of the run
   HammerOutputs outputs_;
   std::optional<CylinderJoints> cylinder_joints_;  ///< joints of the boom's cylinders, in the mechanism's message

@@ -1,7 +1,9 @@
 /// Readings that arrive before the crank sample to which they belong.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "hammer_loads/util/stamp.h"
@@ -9,39 +11,41 @@
 namespace hammer_loads {
 
 /// Queue of the readings of one topic that are ahead of the crank. A node that is held up receives its messages in
-/// bursts, topic by topic: the readings of some tenths of a second, then the crank samples of that time. Each reading
-/// is passed on with the first crank sample that is not older, except for one reading beyond the last sample, between
-/// which and the one before it the pipeline interpolates. The order within the topic is kept.
+/// bursts, topic by topic: the readings of some tenths of a second, then the crank samples of that time. A reading
+/// waits for the first crank sample that is not older. One reading beyond the last crank sample does not wait, so that
+/// the pipeline can interpolate. The order within the topic is kept.
 ///
 /// The result depends on stamps and order of arrival alone, so that a recording gives the same.
 template <typename Reading>
 class ReadingQueue {
  public:
+  using Pass = std::function<void(StampNs, const Reading&)>;
+
+  /// pass: called for each reading that does not wait any more.
+  explicit ReadingQueue(Pass pass) : pass_(std::move(pass)) {}
+
   /// Takes a reading. crank: stamp of the last crank sample; none: there was no sample yet, and all readings but the
-  /// first one wait. pass(stamp, reading): called for each reading that does not wait any more. Readings wait for 1 s
-  /// at most: further ahead are stamps of another clock, or the crank has stopped.
-  template <typename Pass>
-  void add(StampNs stamp, const Reading& reading, std::optional<StampNs> crank, const Pass& pass) {
+  /// first one wait. Readings wait for 1 s at most: further ahead are stamps of another clock, or the crank has
+  /// stopped.
+  void add(StampNs stamp, const Reading& reading, std::optional<StampNs> crank) {
     const bool is_beyond = !crank || (stamp > *crank && seconds(stamp - *crank) <= kLongestWait);
-    const bool is_ahead = is_beyond && passed_ && (!crank || *passed_ >= *crank);
+    const bool waits = is_beyond && passed_ && (!crank || *passed_ >= *crank);
     const bool in_order = waiting_.empty() || stamp > waiting_.back().stamp;
-    if (!is_ahead || !in_order) passAll(pass);
-    if (is_ahead) {
+    if (!waits || !in_order) passAll();
+    if (waits) {
       waiting_.push_back({stamp, reading});
-      passWhile([&](const Waiting& first) { return seconds(stamp - first.stamp) > kLongestWait; }, pass);
+      passWhile([stamp](const Waiting& first) { return seconds(stamp - first.stamp) > kLongestWait; });
     } else {
       passed_ = stamp;
-      pass(stamp, reading);
+      pass_(stamp, reading);
     }
   }
   /// Passes on what a crank sample at this stamp needs.
-  template <typename Pass>
-  void passUpTo(StampNs crank, const Pass& pass) {
-    passWhile([&](const Waiting&) { return *passed_ < crank; }, pass);
+  void passUpTo(StampNs crank) {
+    passWhile([this, crank](const Waiting&) { return *passed_ < crank; });
   }
-  template <typename Pass>
-  void passAll(const Pass& pass) {
-    passWhile([](const Waiting&) { return true; }, pass);
+  void passAll() {
+    passWhile([](const Waiting&) { return true; });
   }
 
  private:
@@ -52,16 +56,17 @@ class ReadingQueue {
     Reading reading;
   };
 
-  template <typename Goes, typename Pass>
-  void passWhile(const Goes& goes, const Pass& pass) {
+  template <typename Goes>
+  void passWhile(const Goes& goes) {
     auto next = waiting_.begin();
     for (; next != waiting_.end() && goes(*next); ++next) {
       passed_ = next->stamp;
-      pass(next->stamp, next->reading);
+      pass_(next->stamp, next->reading);
     }
     waiting_.erase(waiting_.begin(), next);
   }
 
+  Pass pass_;
   std::vector<Waiting> waiting_;   ///< in the order of their stamps
   std::optional<StampNs> passed_;  ///< stamp of the last reading passed on
 };
