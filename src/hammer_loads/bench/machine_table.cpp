@@ -148,8 +148,7 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
   pipeline.crank_sensor = *CrankSensor::make(place).value;
 }
 
-MachineRow rowOf(const Settings& settings, const Kind& kind, double rate, std::uint64_t seed) {
-  const MachineSettings machine = machineOf(settings, kind, rate, seed);
+MachineRow rowOf(const Settings& settings, const Kind& kind, const MachineSettings& machine) {
   const simulation::Session session = simulation::recordSession(machine);
   HammerParameters hammer = settings.mechanism.parameters();
   hammer.drive_inertia = kind.inertia_guess * machine.drive.inertia;
@@ -157,7 +156,7 @@ MachineRow rowOf(const Settings& settings, const Kind& kind, double rate, std::u
   pipeline.crank_stamps = kind.stamps;
   if (kind.calibrated) applyCalibration(session, machine, hammer, pipeline);
   const SessionRun run = runSession(session, machine.start_stamp, *Mechanism::make(hammer).value, pipeline);
-  return {kind.name, rate, machine.crank.speed,
+  return {kind.name, machine.crank.rate, machine.crank.speed,
           judgeAtStamps(run, session, machine, kind.shift + 0.5 * machine.crank.driver.tick)};
 }
 
@@ -182,8 +181,13 @@ std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoi
   std::vector<MachineRow> rows;
   for (const std::vector<Kind>& all : {kinds(), sensorKinds()}) {
     for (const Kind& kind : all) {
-      for (const double rate : kind.rates)
-        if (choice.has(kind.name + format(" %.0f", rate))) rows.push_back(rowOf(settings, kind, rate, choice.seed));
+      for (const double rate : kind.rates) {
+        if (!choice.has(kind.name + format(" %.0f", rate))) continue;
+        MachineSettings machine = machineOf(settings, kind, rate, choice.seed);
+        if (!choice.speeds && !machine.crank.speed) continue;
+        machine.crank.speed = machine.crank.speed && choice.speeds;
+        rows.push_back(rowOf(settings, kind, machine));
+      }
     }
   }
   return rows;

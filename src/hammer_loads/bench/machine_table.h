@@ -18,6 +18,7 @@ void makeTypical(simulation::MachineSettings& machine);
 struct MachineChoice {
   std::string rows;           ///< regular expression that name and rate of a machine contain; empty: all of them
   std::uint64_t seed{kSeed};  ///< seed of the machines' random numbers
+  bool speeds{true};          ///< false: only machines whose speeds are measured, without them
   static constexpr std::uint64_t kSeed = 77;
 
   bool has(const std::string& name) const;
