@@ -65,6 +65,28 @@ TEST_F(FilterTrouble, AShockOfTheHullDoesNotMakeEverySampleABeginning) {
   }
 }
 
+/// A motion of the hull that no machine has leaves no state; the filter, whose tables are read at its angle, begins
+/// anew.
+TEST(HullShock, IsSurvivedOfAnySize) {
+  HammerParameters uncertain = test::mo100LinkageParameters();
+  uncertain.deviations = usualDeviations(uncertain);
+  const Mechanism mechanism = test::mechanismOf(uncertain);
+  for (const double acceleration : {1e9, 1e15, 1e100, 1e300, kInfinity}) {
+    CrankFilter f(ShaftModel(mechanism, Level::kLinkage), 0.6, test::filterSettings(kFineCount));
+    f.start({0.5, kEvenSpeed});
+    double angle = 0.5;
+    const auto turn = [&](int samples) {
+      for (int i = 0; i < samples; ++i) f.update(1e-3, {angle += 1e-3 * kEvenSpeed, kEvenSpeed});
+    };
+    turn(20);
+    f.setHullMotion({{}, 0.0, acceleration});
+    turn(3);
+    f.setHullMotion({});
+    turn(50);
+    EXPECT_NEAR(f.state().speed, kEvenSpeed, 1.0) << acceleration;
+  }
+}
+
 /// What no torque does within a sample a rod that gives may do. What the filter allows for anyway changes nothing.
 TEST_F(FilterTrouble, AKickThatARodExplainsIsFollowed) {
   constexpr double kStep = 1e-3, kKicked = 0.015;  // [s], [rad]

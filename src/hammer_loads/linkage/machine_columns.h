@@ -102,10 +102,10 @@ class ColumnTable {
       after_.push_back(at(CrankAngle{kWidth * i, Side::kAfterBlow}));
     }
   }
-  /// angle: not mirrored.
+  /// angle: not mirrored. Beyond half a turn it extrapolates; an angle that is not a number has no columns.
   Point at(CrankAngle angle) const noexcept {
     const double place = std::abs(angle.offset) / kWidth;
-    const int i = std::min(static_cast<int>(place), kPoints - 1);
+    const int i = static_cast<int>(std::min(kPoints - 1.0, place));  // kPoints - 1 where place is not a number
     const Point* from = (angle.side == Side::kBeforeBlow ? before_ : after_).data() + i;
     return from[0] + (place - i) * (from[1] - from[0]);
   }
