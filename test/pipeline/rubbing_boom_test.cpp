@@ -192,7 +192,7 @@ TEST(FalseNames, SealsThatRubAreNoLateStampNoRockAndNoExchange) {
     const bool on_rock = machine.on_boom.rock.stiffness > 0.0;
     EXPECT_EQ(namesOf(machine, session, false, true), "") << seed;
     EXPECT_EQ(namesOf(machine, session, true, true), "") << seed;
-    EXPECT_EQ(namesOf(machine, session, true, false), on_rock ? "rock; " : "") << seed;
+    EXPECT_EQ(namesOf(machine, session, true, false), on_rock ? "rock; boom loads; " : "") << seed;
   }
 }
 

@@ -10,7 +10,7 @@ struct OverBus {
   double oil, hold_down_force;  // 0: the hull hangs free
 };
 
-accuracy::BoomErrors over(const OverBus& line, double rate, double count, unsigned seed = 73) {
+accuracy::BoomErrors over(const OverBus& line, double rate, double count, unsigned seed = 73, bool imu = true) {
   simulation::MachineSettings machine = test::machineOnBoom(line.oil, 100.0, line.pose);
   machine.seed = seed;
   if (line.hold_down_force > 0.0) machine.on_boom.rock = {3e7, 3.0, line.hold_down_force};
@@ -18,8 +18,10 @@ accuracy::BoomErrors over(const OverBus& line, double rate, double count, unsign
   machine.on_boom.pressures.rate = rate;
   machine.on_boom.pressures.count = count;
   machine.on_boom.bus_delay = line.bus;
-  return test::errorsOf("over a bus", simulation::recordSession(machine),
-                        "boom_stiffness: identified\nlevel: rocker\nhull_motion: imu\n", {true, true});
+  return test::errorsOf(
+      "over a bus", simulation::recordSession(machine),
+      std::string("boom_stiffness: identified\nlevel: rocker\nhull_motion: ") + (imu ? "imu\n" : "model\n"),
+      {imu, true});
 }
 
 /// A hose takes the more of a swing the faster it is, which no delay does; and a line through two late readings goes on
@@ -35,6 +37,18 @@ TEST(SensorsOverBus, LeaveTheTorquesOfABoomThatIsIdentified) {
     EXPECT_TRUE(e.warned_of_pressure_stamps);
     EXPECT_FALSE(e.warned_of_rock);
   }
+}
+
+/// Without an IMU nothing shows the hose's delay, and the torques are 10 to 95 % off.
+TEST(SensorsOverBus, LeaveNoTorquesByPressuresAlone) {
+  const OverBus line{5e-3, 1e-3, test::kUsualPose, 1.0, 0.0};
+  const accuracy::BoomErrors alone = over(line, 100.0, 39e3, 73, false);
+  EXPECT_GT(alone.part(alone.withheld), 0.95);
+  EXPECT_TRUE(alone.warned_of_loads);
+  EXPECT_GT(alone.leastWrenchCovered(), 0.85) << "the hammer's own loads are published";
+  const accuracy::BoomErrors with_imu = over(line, 100.0, 39e3);
+  EXPECT_EQ(with_imu.withheld, 0U);
+  EXPECT_FALSE(with_imu.warned_of_loads);
 }
 
 /// Stamps that jitter are no delay.

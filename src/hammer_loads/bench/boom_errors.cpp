@@ -89,6 +89,10 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   addWrench(truth, result);
   moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
   const BoomState& boom = *result.boom;
+  unknown += boom.contact_unknown;
+  frequency = boom.frequency.size() > 0 ? boom.frequency[0] : 0.0;
+  withheld += boom.useless;
+  if (boom.useless) return;
   for (int j = 0; j < 3; ++j) {
     const double weight = boom.loads.weight[j + 1], total = boom.loads.total[j + 1];
     torque[j].add(total - weight, -truth.hold[j] - weight);
@@ -104,8 +108,6 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   }
   contact.add(boom.contact.force.z(), truth.rock.force_z);
   lost_as_shown += boom.hold_down_force_lost == (truth.rock.force_z < kLeastContact);
-  unknown += boom.contact_unknown;
-  frequency = boom.frequency.size() > 0 ? boom.frequency[0] : 0.0;
 }
 
 BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mechanism, const PipelineSettings& settings,
@@ -127,6 +129,7 @@ BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mecha
     errors.warned_of_pressure_stamps |= std::string(warning.key) == "pressure stamps";
     errors.warned_of_pressure_fit |= std::string(warning.key) == "pressure fit";
     errors.warned_of_damping |= std::string(warning.key) == "boom damping";
+    errors.warned_of_loads |= std::string(warning.key) == "boom loads";
     errors.warned_of_imu_stamps |= std::string(warning.key) == "imu stamps";
   }
   return errors;

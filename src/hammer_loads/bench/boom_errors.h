@@ -17,13 +17,14 @@ struct BoomErrors {
   SignalError force_x, force_z, moment, torque[3], section[3], contact;
   LifeError life_force_z, life_torque[3], life_section[3];  ///< errors of loads with weight, as they are counted
   std::size_t samples{}, refused{}, within{}, blows{};
+  std::size_t withheld{};                 ///< samples without the boom's loads
   std::size_t wrench_within[3]{};         ///< number of force x, force z, moment within two standard deviations
   double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]
   double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
   std::size_t sections_within{};          ///< bending moments within two deviations
   std::size_t lost_as_shown{};            ///< samples with a correct flag of a lost hold-down force
   bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_pressure_fit{}, warned_of_imu_stamps{},
-      warned_of_damping{};
+      warned_of_damping{}, warned_of_loads{};
   std::size_t unknown{};  ///< samples at which the rock's force is reported as unknown
   double energy_sum{};    ///< sum of the blows' relative errors
   double frequency{};     ///< frequency of the lowest mode at the end [Hz]
@@ -44,8 +45,12 @@ struct BoomErrors {
     return part(*std::min_element(std::begin(wrench_within), std::end(wrench_within)));
   }
   double part(std::size_t count) const { return static_cast<double>(count) / static_cast<double>(samples); }
-  double sectionsCovered() const { return part(sections_within) / 3.0; }
-  double covered() const { return part(within) / 3.0; }
+  /// Returns the part of three torques in each sample that has them; NaN where none has.
+  double partOfTorques(std::size_t count) const {
+    return static_cast<double>(count) / (3.0 * static_cast<double>(samples - withheld));
+  }
+  double sectionsCovered() const { return partOfTorques(sections_within); }
+  double covered() const { return partOfTorques(within); }
   double energy() const { return energy_sum / static_cast<double>(std::max<std::size_t>(1, blows)); }  ///< mean
   /// Largest ratio of the torques' deviations to their errors, as root mean squares.
   double widest() const {

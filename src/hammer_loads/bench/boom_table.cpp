@@ -13,6 +13,7 @@ namespace hammer_loads::accuracy {
 namespace {
 
 constexpr unsigned kPoses = 8;
+constexpr double kAll = 1.0 - 1e-9;                    // part of the samples
 constexpr double kAway = 0.06;                         // [rad]
 constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
 
@@ -114,13 +115,16 @@ void takeWorst(const BoomErrors& e, BoomRow& row) {
   row.covered_wrench = std::min(row.covered_wrench, e.leastWrenchCovered());
   row.energy = std::max(row.energy, std::abs(e.energy()));
   row.contact = std::max(row.contact, e.contact.rmsOfRange());
-  row.covered = std::min(row.covered, e.covered());
+  if (e.withheld < e.samples) row.covered = std::min(row.covered, e.covered());
+  row.withheld += e.part(e.withheld) / kPoses;
   takeWorse(e.life_force_z, row.life_force);
   for (const LifeError& joint : e.life_torque) takeWorse(joint, row.life_torque);
   for (const LifeError& cut : e.life_section) takeWorse(cut, row.life_section);
 }
 
-std::string percent(double part) { return std::isfinite(part) ? format("%.1f %%", 100.0 * part) : "not known"; }
+std::string percent(double part, const char* unknown = "withheld") {
+  return std::isfinite(part) ? format("%.1f %%", 100.0 * part) : unknown;
+}
 
 }  // namespace
 
@@ -138,6 +142,10 @@ std::vector<BoomRow> boomTable() {
         takeWorst(boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, way.sensors, kJudgedFrom,
                              kJudgedTo),
                   row);
+      if (row.withheld > kAll) {
+        row.torque = row.section = row.covered = row.contact = kNaN;
+        row.life_torque = row.life_section = {kNaN, kNaN, kNaN};
+      }
       if (!(kind.hold_down_force > 0.0) || !way.sensors.pressures) row.contact = kNaN;
       rows.push_back(row);
     }
@@ -148,14 +156,17 @@ std::vector<BoomRow> boomTable() {
 std::string markdown(const std::vector<BoomRow>& rows) {
   std::string text =
       "| machine | sensors | joint torques | bending | hull moment | Fx | Fz | worst sample of Fz | force | worst "
-      "sample of the force | energy | rock's force | torques within two standard deviations | smallest of Fx, Fz, "
-      "moment within two standard deviations |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "sample of the force | energy | rock's force | torques withheld | torques within two standard deviations | "
+      "smallest of Fx, Fz, moment within two standard deviations "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const BoomRow& r : rows) {
     text += format("| %s | %s |", r.machine.c_str(), r.sensors.c_str());
     for (const double part :
-         {r.torque, r.section, r.moment, r.force_x, r.force_z, r.worst_z, r.force, r.worst_force, r.energy, r.contact})
+         {r.torque, r.section, r.moment, r.force_x, r.force_z, r.worst_z, r.force, r.worst_force, r.energy})
       text += ' ' + percent(part) + " |";
-    text += format(" %.0f %% | %.0f %% |\n", 100.0 * r.covered, 100.0 * r.covered_wrench);
+    text += ' ' + percent(r.contact, "not known") + format(" | %.0f %% | ", 100.0 * r.withheld) +
+            (std::isfinite(r.covered) ? format("%.0f %%", 100.0 * r.covered) : "withheld") +
+            format(" | %.0f %% |\n", 100.0 * r.covered_wrench);
   }
   return text;
 }
@@ -164,13 +175,15 @@ std::string json(const std::vector<BoomRow>& rows) {
   std::string text = "[";
   for (const BoomRow& r : rows)
     text += format(
-        "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %.4g, \"section\": %.4g, \"moment\": %.4g, "
-        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g, \"rms_x\": "
+        "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %s, \"section\": %s, \"moment\": %.4g, "
+        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %s, "
+        "\"withheld_torque\": %.4g, \"rms_x\": "
         "%.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g, \"life_force\": %s, "
         "\"life_torque\": %s, \"life_section\": %s}",
-        &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), r.torque, r.section, r.moment, r.force_z,
-        r.worst_z, r.energy, jsonNumber(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force,
-        r.covered_wrench, json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());
+        &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), jsonNumber(r.torque).c_str(),
+        jsonNumber(r.section).c_str(), r.moment, r.force_z, r.worst_z, r.energy, jsonNumber(r.contact).c_str(),
+        jsonNumber(r.covered).c_str(), r.withheld, r.force_x, r.force, r.worst_force, r.covered_wrench,
+        json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());
   return text + "\n]";
 }
 

@@ -9,7 +9,7 @@
 namespace hammer_loads::accuracy {
 
 /// Errors as parts of one: root mean squares over those of the truth, of sections and the rock's force over its range,
-/// of Fz over its peak. Each the worst of the poses.
+/// of Fz over its peak. Each the worst of the poses, of the samples that are published.
 struct BoomRow {
   std::string machine, sensors;
   double torque{};   ///< error of the worst joint, without weight
@@ -21,6 +21,7 @@ struct BoomRow {
   double energy{};                ///< mean of the blows
   double contact{};               ///< error of the rock's force; NaN without rock or pressures
   double covered{1.0};            ///< torques within two deviations, the least
+  double withheld{};              ///< part of the samples without joint torques, as their deviations are too large
   /// Errors of the damage-equivalent range at slope kLifeSlope, > 0 too large: hull force z, torque of the worst joint
   /// with weight, bending at the worst cut.
   LifeFigure life_force{}, life_torque{}, life_section{};

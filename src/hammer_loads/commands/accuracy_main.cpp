@@ -28,7 +28,10 @@ Settings withKnownZero(Settings settings) {
 }
 
 std::string stated(const accuracy::LifeFigure& f) { return format("%.1f, %.1f %%", 100.0 * f.own, 100.0 * f.common); }
-std::string cells(const accuracy::LifeFigure& f) { return format(" %+.1f %% | ", 100.0 * f.error) + stated(f) + " |"; }
+std::string cells(const accuracy::LifeFigure& f) {
+  if (std::isnan(f.error)) return " withheld | |";
+  return format(" %+.1f %% | ", 100.0 * f.error) + stated(f) + " |";
+}
 
 /// Errors of the damage-equivalent ranges, on which fatigue is judged, as a table in Markdown: hull force z, the worst
 /// joint's torque and bending at the worst cut, by the machine and its sensors. For machines with an elastic connecting

@@ -151,6 +151,9 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
   addConstants(sample);
+  worth_.add(state_.loads.total, state_.loads.weight, state_.deviations.torque,
+             state_.measured || state_.contact_unknown);
+  state_.useless = worth_.isUseless(sample.stamp);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
 }
 
@@ -264,6 +267,7 @@ void BoomFollower::fillModes() noexcept {
 }
 
 void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_hold_down_force) noexcept {
+  worth_.endTurn(last_stamp_);
   if (!known_) return;
   if (pulse && pulse->frequency > 0.0 && follow_vibration_) {
     BoomChoice& choice = state_.choice;

@@ -19,6 +19,7 @@
 #include "hammer_loads/pipeline/measured_torques.h"
 #include "hammer_loads/pipeline/mode_observer.h"
 #include "hammer_loads/pipeline/sensor_trust.h"
+#include "hammer_loads/pipeline/torque_worth.h"
 #include "hammer_loads/pipeline/vibration_bound.h"
 #include "hammer_loads/pipeline/wrench_path.h"
 
@@ -65,15 +66,17 @@ struct BoomState {
   BoomDeviations deviations;  ///< standard deviations of loads and steel; NaN where the crank has no covariance
   BoomDeviations common;      ///< the part of them by constants of crank sensor, hammer and boom
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
-  bool zero_moment_arm{};       ///< a cylinder does not hold its joint: no modes, taken as rigid
-  JointVector frequency;        ///< natural frequencies, per mode [Hz]; none when vibration is not followed
-  JointVector frequency_std;    ///< standard [Hz]
-  JointVector damping;          ///< damping ratio of each mode [-]
-  bool identified{};            ///< frequencies and damping follow the sensors
-  JointVector contact_torque;   ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
-  Wrench contact;               ///< contact load BY the rock ON the tip, axes of the tip; zero where it is not measured
-  bool measured{};              ///< the cylinders' forces are those of measured pressures
-  bool contact_unknown{};       ///< the IMU shows contact with the rock, but no pressures measure its force
+  bool zero_moment_arm{};      ///< a cylinder does not hold its joint: no modes, taken as rigid
+  JointVector frequency;       ///< natural frequencies, per mode [Hz]; none when vibration is not followed
+  JointVector frequency_std;   ///< standard [Hz]
+  JointVector damping;         ///< damping ratio of each mode [-]
+  bool identified{};           ///< frequencies and damping follow the sensors
+  JointVector contact_torque;  ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
+  Wrench contact;              ///< contact load BY the rock ON the tip, axes of the tip; zero where it is not measured
+  bool measured{};             ///< the cylinders' forces are those of measured pressures
+  bool contact_unknown{};      ///< the IMU shows contact with the rock, but no pressures measure its force
+  /// The sensors do not fit the model, and standard deviations are as large as the torques: loads are not published.
+  bool useless{};
   bool hold_down_force_lost{};  ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;          ///< along hull z; infinite without modes
   Boom::TipVibration tip;       ///< zero for a rigid boom
@@ -112,6 +115,8 @@ class BoomFollower {
   TipVelocity drivenTip() const noexcept;
   /// Force along z that would explain the IMU's residuals, root mean square over a second [N].
   double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
+  /// Largest standard deviation of a joint torque over the torque, root mean squares over the last turn [-].
+  double torqueUncertainty() const noexcept { return worth_.ratio(); }
   /// Call once per turn, with the crank's deviations.
   void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }
   /// Call once per turn, with its pulse and its mean hold-down force [N]. It takes some 0.1 ms.
@@ -192,6 +197,7 @@ class BoomFollower {
   MeasuredTorques measured_;
   PressureTrust trust_;
   int lost_sensors_{};  ///< number of sensors that cannot be used
+  TorqueWorth worth_;
   HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;

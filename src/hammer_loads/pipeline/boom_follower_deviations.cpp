@@ -32,8 +32,12 @@ Eigen::Matrix3d BoomFollower::tipCovariance() const noexcept {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints> by_mode(3, modes.count);
   for (int row = 0; row < 3; ++row)
     by_mode.row(row) = modalForce(modes, boom_.tipJacobian().row(2 * row).transpose()).transpose();
-  const double consistency = std::max(1.0, identifier->oilSurprise());
-  return consistency * (by_mode * identifier->accelerationCovariance() * by_mode.transpose());
+  JointMatrix of_modes = std::max(1.0, identifier->oilSurprise()) * identifier->accelerationCovariance();
+  if (state_.useless) {  // the vibration is not known better than its torques
+    const JointVector usual = boom_.vibration().usualSwing().cwiseProduct(modes.omega.cwiseAbs2());
+    of_modes.diagonal() += square(std::min(1.0, worth_.ratio())) * usual.cwiseAbs2();
+  }
+  return by_mode * of_modes * by_mode.transpose();
 }
 
 /// Deviations by stiffness and damping of the oil and by errors of the hammer's load.

@@ -127,6 +127,14 @@ void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warnin
   }
 }
 
+/// Returns why loads are useless, and what to do.
+const char* causeOf(const BoomFollower& follower, const BoomState& boom) {
+  if (boom.contact_unknown) return "rock contact that is not measured. Add cylinder_pressures";
+  const std::optional<ModeIdentifier>& identifier = follower.boom().vibration().identifier();
+  return identifier && identifier->knowsLag() ? "pressures that do not fit. Check boom file, stamps and hoses"
+                                              : "pressures whose delay is not known. Add hull_imu";
+}
+
 void warnOfVibration(const BoomFollower& follower, const BoomState* boom, bool imu_lost,
                      std::vector<Warning>& warnings) {
   const Vibration& vibration = follower.boom().vibration();
@@ -158,6 +166,11 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
              "cylinder_pressures.",
              follower.unexplainedForce()),
          true});
+  if (boom != nullptr && boom->useless)
+    warnings.push_back({"boom loads",
+                        format("joint_loads: withheld, deviations are %.2g times the loads by %s.",
+                               follower.torqueUncertainty(), causeOf(follower, *boom)),
+                        true});
   const bool fault = boom != nullptr && boom->fault,
              runs_away = fault && boom->fault->kind == JointFault::Kind::kRunAway;
   if (follower.runaways() > 0)

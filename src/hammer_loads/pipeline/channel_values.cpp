@@ -26,7 +26,7 @@ void channelValues(const SampleResult& result, const Boom* boom, double* values,
   double* value = values + kHullChannels;
   const auto joints = static_cast<std::size_t>(boom->chain().joints());
   const std::size_t cylinders = boom->cylinders().size(), sections = boom->sections().size();
-  if (result.boom == nullptr || result.boom->fault) {
+  if (result.boom == nullptr || result.boom->fault || result.boom->useless) {
     for (double* all : {values, deviations, common})
       std::fill_n(all + kHullChannels, joints + cylinders + kSectionChannels * sections, kNaN);
     return;

@@ -218,10 +218,12 @@ void HammerBridge::send(const WrenchOutput& output, const ros::Time& record_time
 
 void HammerBridge::sendBoom(const ros::Time& record_time) {
   const BoomFollower& boom = *pipeline_->boom();
-  outputs_.joint_loads.send(record_time, [&](JointLoads& m) { fillJointLoads(boom.state(), m); });
-  if (!boom.boom().sections().empty())
-    outputs_.section_loads.send(record_time, [&](SectionLoads& m) { fillSections(boom.state(), m); });
-  outputs_.joint_reactions.send(record_time, [&](JointReactions& m) { fillReactions(boom.state(), m); });
+  if (!boom.state().useless) {
+    outputs_.joint_loads.send(record_time, [&](JointLoads& m) { fillJointLoads(boom.state(), m); });
+    if (!boom.boom().sections().empty())
+      outputs_.section_loads.send(record_time, [&](SectionLoads& m) { fillSections(boom.state(), m); });
+    outputs_.joint_reactions.send(record_time, [&](JointReactions& m) { fillReactions(boom.state(), m); });
+  }
   outputs_.boom_vibration.send(record_time, [&](BoomVibration& m) { fillVibration(boom, m); });
 }
 

@@ -219,6 +219,8 @@ void NodeDiagnostics::describeBoom(Status& status) {
     status.summary(DiagnosticStatus::WARN, "no joint loads" + text);
   } else if (state.fault && state.fault->kind == JointFault::Kind::kRunAway) {
     status.summary(DiagnosticStatus::WARN, "no joint loads: the vibration was implausible and was reset");
+  } else if (state.useless) {
+    status.summary(DiagnosticStatus::WARN, "no joint loads: their standard deviations are as large as the loads");
   } else if (state.zero_moment_arm) {
     status.summary(DiagnosticStatus::WARN, "a cylinder has a zero moment arm: the boom is taken as rigid");
   } else {

@@ -1,0 +1,63 @@
+/// Check whether the standard deviations of the joint torques exceed the torques.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
+#include "hammer_loads/util/functions.h"
+#include "hammer_loads/util/stamp.h"
+
+namespace hammer_loads {
+
+/// Standard deviation of each joint's torque over the torque beside the weight, root mean squares over a revolution.
+/// The worst joint has 0.02 to 0.34 where the sensors fit the model, 0.6 to 6 with an IMU alone on rock and 0.4 to 6
+/// with pressures alone over a bus (machines of doc/accuracy.md). Torques are useless where this ratio is large and
+/// sensors are the cause. It is judged once a revolution, and holds until the hammer stands.
+class TorqueWorth {
+ public:
+  /// At each sample, [N m]: loads on the joints together, the part of the weight, standard deviation. by_sensors:
+  /// pressures show the torques, or an IMU shows a force that is not measured.
+  void add(const JointVector& total, const JointVector& weight, const JointVector& deviation,
+           bool by_sensors) noexcept {
+    if (load_.size() != total.size()) load_ = deviation_ = JointVector::Zero(total.size());
+    load_ += (total - weight).cwiseAbs2();
+    deviation_ += deviation.cwiseAbs2();
+    by_sensors_ = by_sensors_ || by_sensors;
+  }
+  /// At the end of a revolution. A sum over a time in which the hammer stood changes nothing.
+  void endTurn(StampNs stamp) noexcept {
+    if (isRecent(std::exchange(ended_, stamp), stamp)) {
+      ratio_ = worst();
+      useless_.follow(by_sensors_ ? ratio_ : 0.0);
+    }
+    load_.setZero(), deviation_.setZero();
+    by_sensors_ = false;
+  }
+  /// Returns the ratio of the worst joint in the last revolution [-]; 0 before.
+  double ratio() const noexcept { return ratio_; }
+  bool isUseless(StampNs stamp) const noexcept { return useless_.isEngaged() && isRecent(ended_, stamp); }
+
+ private:
+  static constexpr double kUseless = 0.6;
+  static constexpr double kSmall = 0.1;  ///< part of the largest joint's torque: a smaller one gives no verdict
+
+  static bool isRecent(StampNs turn, StampNs stamp) noexcept { return seconds(stamp - turn) < look_back::kFiveTurns; }
+  double worst() const noexcept {
+    double worst = 0.0;
+    for (Eigen::Index j = 0; j < load_.size(); ++j)
+      if (load_[j] > square(kSmall) * load_.maxCoeff()) worst = std::max(worst, deviation_[j] / load_[j]);
+    return std::sqrt(worst);
+  }
+
+  JointVector load_, deviation_;  ///< sums of squares [N2 m2]
+  bool by_sensors_{};
+  StampNs ended_{};
+  double ratio_{};
+  Latch useless_{kUseless};
+};
+
+}  // namespace hammer_loads
