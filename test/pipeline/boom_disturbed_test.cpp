@@ -144,13 +144,12 @@ TEST_P(Mistaken, SensorsLeaveNothingBehind) {
     if (from < 4.0) {
       EXPECT_LT(with.worstTorque(), worstTorqueWithout(rock) + 0.15) << rock;
     }
-    EXPECT_GT(with.covered(), 0.85) << rock;
-    EXPECT_GT(with.sectionsCovered(), 0.85) << rock;
+    expectHonest(with);
   }
 }
 
-/// A bus that takes 10 ms, more than can be allowed for: beside an IMU they are not used; alone they are all that shows
-/// the vibration, and deviations are as wide.
+/// A bus that takes 10 ms, more than can be allowed for: beside an IMU they are not used; alone they show that the
+/// loads are not known, as an IMU alone does on rock.
 TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
   for (const bool rock : {false, true}) {
     for (const bool imu : {false, true}) {
@@ -167,11 +166,11 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
       if (!imu && !rock) {
         EXPECT_TRUE(late.warned_of_pressure_fit) << "how late does not show";
       }
-      if (imu) {
-        EXPECT_LT(late.worstTorque(), without.worstTorque() + 0.15) << rock;
+      if (imu && !rock) {
+        EXPECT_LT(late.worstTorque(), without.worstTorque() + 0.15);
       }
-      EXPECT_GT(late.covered(), 0.85) << rock << imu;
-      EXPECT_GT(late.sectionsCovered(), 0.85) << rock << imu;
+      EXPECT_EQ(late.withheld == late.samples, rock || !imu);
+      expectHonest(late);
     }
   }
 }

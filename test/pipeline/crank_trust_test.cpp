@@ -157,15 +157,6 @@ TEST(CrankTrust, NamesASpeedOfTheWrongSign) {
   EXPECT_TRUE(played.counts.contradictSince({}));
 }
 
-TEST(CrankTrust, AZeroFarOffIsWithheldAndNamedBySize) {
-  const simulation::Session session = workingSession();
-  for (const double off : {-0.5, -0.3, 0.35, 0.5}) {
-    const Played played = play(session, "{}", [off](CrankReading& r) { r.angle += off; });
-    EXPECT_LT(2 * (played.wrenches - played.at_rest), played.samples) << off;
-    EXPECT_NE(textOfWarning(played, "zero off").find("crank_zero_rad"), std::string::npos);
-  }
-}
-
 /// What was withheld stays counted; what it was then is not said of the hammer now.
 TEST(CrankTrust, ACrankThatAgreesAgainIsNamedAsThat) {
   simulation::MachineSettings machine = simulation::workingMo100();

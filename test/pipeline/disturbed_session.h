@@ -35,6 +35,13 @@ inline BoomErrors errorsOf(const Session& session, const char* keys, const Senso
   return e;
 }
 
+/// Loads are withheld, or within their deviations.
+inline void expectHonest(const BoomErrors& e) {
+  if (e.withheld == e.samples) return;
+  EXPECT_GT(e.covered(), 0.85);
+  EXPECT_GT(e.sectionsCovered(), 0.85);
+}
+
 /// Readings that follow an instant.
 template <typename Reading>
 Reading* after(std::vector<Reading>& readings, double time) {

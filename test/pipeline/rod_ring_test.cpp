@@ -201,13 +201,6 @@ TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
   EXPECT_EQ(ringOf({}, Level::kLinkage, Ranges::kLeftOut, 1000.0, {}, exact).said, 0.0);
 }
 
-/// The lever changes within a step of 5 ms.
-TEST(RodRing, IsTheSameByRareReadings) {
-  const double often = ringOf({1e9, 0.3, 0.0}, Level::kLinkage).said,
-               rarely = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, Ranges::kLeftOut, 200.0).said;
-  EXPECT_NEAR(rarely, often, 0.35 * often);
-}
-
 /// Rock that throws the rocker back with half its speed: a rigid mechanism reads a quarter off the crank. It says that
 /// it does not know; level elastic does.
 TEST(RodRing, RigidLevelsKnowNoRestitutionOnLivelyRock) {

@@ -181,18 +181,6 @@ TEST(Blows, BlankTurnGoesThroughTheMirroredBranchSmoothly) {
   expectAllAccountedFor(machine.energy());
 }
 
-TEST(Blows, BlankShareIsThatOfTheBlows) {
-  MachineSettings s = flawedRun();
-  s.duration = 60.0;
-  s.drive.stop_time = 60.0;
-  s.blow.blank_share = 0.1;
-  const Session session = recordSession(s);
-  const double passed = static_cast<double>(session.truth.back().turn);
-  const double blows = static_cast<double>(session.blows.size());
-  const double blank = 0.5 * (passed - blows);  // each is two dead centres
-  EXPECT_NEAR(blank / (blank + blows), 0.1, 4.0 * std::sqrt(0.09 / (blank + blows)));
-}
-
 TEST(Coupling, MotorSwingsAgainstTheCrankAtItsFrequency) {
   MachineSettings s = flawedRun();
   s.drive.coupling_frequency = 60.0;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 #include <vector>
 
 #include "hammer_loads/util/constants.h"
@@ -32,37 +31,6 @@ TEST(Stamps, FlawsOfTheMessagesLeaveMachineAndReadingsAsTheyAre) {
     ASSERT_EQ(plain.crank[i].speed, other.crank[i].speed);
     ASSERT_EQ(plain.taken[i], other.taken[i]);
   }
-}
-
-TEST(Stamps, NoiseHasItsDeviationOrOnlyDelays) {
-  for (const bool late : {false, true}) {
-    MachineSettings s = flawedRun();
-    s.crank.stamp_noise = 2e-4;
-    s.crank.stamps_late = late;
-    const Session session = recordSession(s);
-    double sum = 0.0, squares = 0.0, least = 1.0;
-    for (std::size_t i = 0; i < session.crank.size(); ++i) {
-      const double error = since(s, session.crank[i]) - session.taken[i];
-      sum += error, squares += error * error, least = std::min(least, error);
-    }
-    const double n = static_cast<double>(session.crank.size());
-    EXPECT_NEAR(std::sqrt(squares / n), 2e-4, 2e-4 * 4.0 / std::sqrt(2.0 * n));
-    EXPECT_NEAR(sum / n, late ? 2e-4 * std::sqrt(2.0 / 3.14159265) : 0.0, 4.0 * 2e-4 / std::sqrt(n));
-    if (late) {
-      EXPECT_GE(least, -1e-9);
-    }
-  }
-}
-
-TEST(Stamps, DuplicatesComeTwice) {
-  MachineSettings s = flawedRun();
-  s.crank.duplicate_share = 0.05;
-  const Session session = recordSession(s);
-  std::set<std::int64_t> stamps;
-  for (const CrankReading& reading : session.crank) stamps.insert(reading.stamp);
-  const double share = static_cast<double>(session.crank.size() - stamps.size()) / static_cast<double>(stamps.size());
-  EXPECT_NEAR(share, 0.05, 4.0 * std::sqrt(0.05 / 8000.0));
-  EXPECT_EQ(session.crank.size(), session.truth.size());
 }
 
 /// The truth of a header stamp is that of a reading really taken then.

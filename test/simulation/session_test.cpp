@@ -33,30 +33,6 @@ void expectSame(const Session& a, const Session& b) {
 
 TEST(Session, GivesEqualReadingsForOneSeed) { expectSame(recordSession(quietRun()), recordSession(quietRun())); }
 
-TEST(Session, ChangesTheNoiseAloneWithTheSeed) {
-  MachineSettings other = quietRun();
-  other.seed = 2;
-  const Session a = recordSession(quietRun()), b = recordSession(other);
-  EXPECT_NE(a.crank[100].stamp, b.crank[100].stamp);
-  ASSERT_EQ(a.blows.size(), b.blows.size());
-  EXPECT_NEAR(a.blows.back().time, b.blows.back().time, 1e-6);
-}
-
-TEST(Session, SpeedNoiseHasItsDeviation) {
-  const Session session = recordSession(quietRun());
-  double sum = 0.0, squares = 0.0, fourth = 0.0;
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const double error = *session.crank[i].speed - session.truth[i].speed;
-    sum += error;
-    squares += error * error;
-    fourth += error * error * error * error;
-  }
-  const double n = static_cast<double>(session.crank.size()), variance = squares / n;
-  EXPECT_NEAR(sum / n, 0.0, 4.0 * 0.15 / std::sqrt(n));
-  EXPECT_NEAR(std::sqrt(variance), 0.15, 0.15 * 4.0 / std::sqrt(2.0 * n));
-  EXPECT_NEAR(fourth / n / (variance * variance), 3.0, 4.0 * std::sqrt(24.0 / n));  // Gaussian
-}
-
 TEST(Session, JointsGiveTheTruthsPitch) {
   const MachineSettings s = quietRun();
   const Session session = recordSession(s);

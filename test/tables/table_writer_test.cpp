@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "hammer_loads/tables/digest.h"
 #include "settings/temporary_file.h"
 
 namespace hammer_loads {
@@ -47,6 +48,11 @@ TEST(TableWriter, WritesNullForWhatIsNotKnown) {
   EXPECT_EQ(row("SELECT name FROM channels WHERE unit IS NULL AND classes IS NULL"), Rows{"it's"});
   EXPECT_EQ(row("SELECT turn || '|' || stamp_ns || '|' || flags FROM blows WHERE energy IS NULL"),
             Rows{"3|1700000000000000001|4"});
+}
+
+TEST(Sha256, DistinguishesWhereATextEnds) {
+  EXPECT_NE(sha256Of({"ab", "c"}), sha256Of({"a", "bc"}));
+  EXPECT_NE(sha256Of({"abc"}), sha256Of({"abc", ""}));
 }
 
 }  // namespace

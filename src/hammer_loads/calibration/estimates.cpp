@@ -248,8 +248,7 @@ void addRemarks(double curve_square, Calibration& result) {
   }
   say.push_back(
       "rocker against drive inertia: only their ratio shows; a rocker given 2 % too heavy makes the drive 2 % too "
-      "heavy; "
-      "friction in the pins passes for inertia; masses and centres of mass hardly show");
+      "heavy; friction in the pins passes for inertia; masses and centres of mass hardly show");
   say.push_back(
       "a tool that the rocker meets before the dead centre looks like a zero that is off: which of the two "
       "does not show where every blow comes equally early; the zero written is then that of the blow");
@@ -257,8 +256,7 @@ void addRemarks(double curve_square, Calibration& result) {
   if (result.facts.retimed) {
     say.push_back(
         "the stamps repeat or change places: taken at equal intervals in their order of arrival; a constant shift of "
-        "all "
-        "stamps does not show");
+        "all stamps does not show");
   }
   if (curve_square > 2.0) {
     say.push_back(format(

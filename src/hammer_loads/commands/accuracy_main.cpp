@@ -39,8 +39,7 @@ std::string cells(const accuracy::LifeFigure& f) {
 std::string lifeMarkdown(const std::vector<accuracy::BoomRow>& boom, const std::vector<accuracy::ElasticRow>& elastic) {
   std::string text =
       "| machine | sensors | hull force z | stated: of revolutions, of constants | joint torque | stated | bending | "
-      "stated |\n"
-      "|---|---|---|---|---|---|---|---|\n";
+      "stated |\n|---|---|---|---|---|---|---|---|\n";
   for (const accuracy::BoomRow& r : boom)
     text += "| " + r.machine + " | " + r.sensors + " |" + cells(r.life_force) + cells(r.life_torque) +
             cells(r.life_section) + "\n";

@@ -136,7 +136,7 @@ class BoomFollower {
     return boom_.vibration().followsReadings() ? Known::kFollowed : Known::kGiven;
   }
   /// Measured pressures show the rock's force on the hull.
-  bool contactKnown() const noexcept { return known_ && source() == Known::kMeasured; }
+  bool contactKnown() const noexcept { return known_ && source() == Known::kMeasured && !state_.useless; }
   const Boom& boom() const noexcept { return boom_; }
   /// Angle of a cylinder's joint at the last sample [rad].
   double jointAngle(std::size_t cylinder) const noexcept {

@@ -167,30 +167,25 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
   const double all = filter.consistency(), before = filter.strikeConsistency();
   if (pipeline.crankTrust().isLost() || !std::isfinite(all))
     return "crank: the estimate is lost before each blow. Check crank_zero_rad, the hammer file and the coupling of "
-           "the "
-           "encoder.";
+           "the encoder.";
   if (!strike)
     return format(
         "crank: readings differ from the model after the blow (%.2g times the variance); deviations are too small. "
-        "Check "
-        "the coupling.",
+        "Check the coupling.",
         all);
   if (filter.rodEvidence().gives())
     return format(
         "crank: readings differ from the model (%.2g times the variance): rod or pins may be elastic. Check hammer "
-        "file, "
-        "coupling.",
+        "file, coupling.",
         all);
   if (std::max(all, before) > mismatch::kSeen)
     return format(
         "crank: readings differ from the model (%.2g times the variance, before the blow %.2g). Check crank_zero_rad, "
-        "hammer "
-        "file, coupling.",
+        "hammer file, coupling.",
         all, before);
   return format(
       "crank: readings differed from the model again and again (now %.2g times the variance). Check crank_zero_rad, "
-      "hammer "
-      "file.",
+      "hammer file.",
       all);
 }
 
@@ -201,8 +196,7 @@ bool mostIsWithheld(const SampleCounts& counts) { return counts.refusedFor(Refus
 std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
   return format(
       "crank: %s samples withheld while readings contradicted the model; now they agree (%.2g times the variance). "
-      "Check "
-      "the start.",
+      "Check the start.",
       count(withheld).c_str(), filter.consistency());
 }
 

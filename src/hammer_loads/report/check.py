@@ -30,8 +30,8 @@ WARNINGS = {
     "stamps": {LOOK: ["stamps", "task", "jitter", "whole stamps", "lost messages", "publishers"]},
     "hull pitch": {LOOK: ["pitch"]},
     "joints": {LOOK: ["pitch joints", "joint states", "boom joints"]},
-    "hull IMU": {LOOK: ["imu", "imu stamps", "rock"]},
-    "pressures": {LOOK: ["pressures", "pressure stamps", "pressure fit", "cylinder stiffness"]},
+    "hull IMU": {LOOK: ["imu", "imu late", "imu stamps", "rock"]},
+    "pressures": {LOOK: ["pressures", "pressure stamps", "pressure fit", "cylinder stiffness", "boom loads"]},
     "consistency": {WRONG: ["inconsistent before", "lost"]},
 }
 BY_KEY = {key: (name, status) for name, of in WARNINGS.items() for status, keys in of.items() for key in keys}

@@ -26,9 +26,9 @@ ALL = {CRANK, BOOM}
 
 # A key that is not here puts everything measured in doubt.
 CONCERNS = {
-    "pitch joints": {CRANK, BOOM}, "imu": {CRANK, BOOM}, "joint states": {CRANK, BOOM},
+    "pitch joints": {CRANK, BOOM}, "imu": {CRANK, BOOM}, "imu late": {CRANK, BOOM}, "joint states": {CRANK, BOOM},
     "boom stiffness": {BOOM}, "pressures": {BOOM}, "pressure stamps": {BOOM}, "pressure fit": {BOOM}, "rock": {BOOM},
-    "boom joints": {BOOM},
+    "boom joints": {BOOM}, "boom loads": {BOOM}, "boom vibration": {BOOM},
     "cylinder stiffness": set(), "boom damping": set(),  # found, and allowed for
     "lost messages": {COUNTS}, "publishers": ALL | {COUNTS}, "definitions": {COUNTS}, "ledger": set(),
 }

@@ -33,8 +33,7 @@ std::string boomConflict(BoomModel model, bool boom_file, bool description) {
 std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, bool vibrates) {
   if (vibrates && pipeline.boom_acceleration == BoomAcceleration::kDifference)
     return "boom_acceleration: difference, must be none with a boom that may be compliant: where the joints' sensors "
-           "see "
-           "the vibration, it would count twice";
+           "see the vibration, it would count twice";
   if (!vibrates && pipeline.boom_stiffness == BoomStiffness::kIdentified)
     return "boom_stiffness: identified, must be given without a boom on its cylinders' oil (boom: compliant or auto, "
            "and a boom file)";
