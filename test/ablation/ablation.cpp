@@ -16,16 +16,8 @@ namespace {
 
 constexpr int kDrawings = 20;
 
-struct WornRow {
-  std::string machine;
-  Level level{};
-  test::Covered covered;
-
-  double rms(int c) const { return std::sqrt(covered.error[c] / std::max(1, covered.count[c])); }      ///< of Fz [N]
-  double stated(int c) const { return std::sqrt(covered.stated[c] / std::max(1, covered.count[c])); }  ///< [N]
-};
-
-std::vector<WornRow> wornTable(const Settings& settings, const accuracy::MachineChoice& choice) {
+/// Worn machines as JSON, errors of Fz over its largest value; or as the table of doc/model.md 6, of level elastic.
+std::string wornRows(const Settings& settings, const accuracy::MachineChoice& choice, bool as_table) {
   struct Kind {
     const char* name;
     void (*change)(test::WornMachineSettings&);
@@ -48,49 +40,34 @@ std::vector<WornRow> wornTable(const Settings& settings, const accuracy::Machine
          m.friction = 0.05, m.clearance = 1e-4, m.bow = 3e-3, m.bending_frequency = 450.0, m.damping_ratio = 0.12;
          m.late = 8e-3, m.late_share = 0.1, m.restitution = 0.25, m.restitution_spread = 0.1;
        }}};
-  std::vector<WornRow> rows;
+  constexpr auto& kFrom = test::Covered::kFrom;
+  std::string json, table = "| machine |", line = "|---|";
+  for (int c = 0; c < test::Covered::kClasses; ++c, line += "---|")
+    table += format(" %.0f to %.0f deg |", kFrom[c], kFrom[c + 1]);
+  table += " Fz, 0 to 30 deg: rms error, stated | blow energies within |\n" + line + "---|---|\n";
   for (const Kind& kind : kKinds) {
     for (const Level level : {Level::kLinkage, Level::kElastic}) {
       if (!choice.has(std::string("worn ") + kind.name + ' ' + nameOf(level))) continue;
       test::WornMachineSettings machine = test::wornMo100(settings);
       machine.duration = 9.0, machine.seed = choice.seed;
       kind.change(machine);
-      rows.push_back({kind.name, level, test::coveredOf(settings, machine, level)});
+      const test::Covered covered = test::coveredOf(settings, machine, level);
+      const auto rms = [&](double sum, int c) { return std::sqrt(sum / std::max(1, covered.count[c])); };
+      const double energies = static_cast<double>(covered.energies) / std::max(1, covered.blows);
+      json += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"energies_within\": %.6g",
+                     json.empty() ? "" : ",", kind.name, nameOf(level), energies);
+      for (int c = 0; c < test::Covered::kClasses; ++c)
+        json += format(", \"covered_from_%.0f\": %.6g, \"rms_z_from_%.0f\": %.6g", kFrom[c], covered.share(c), kFrom[c],
+                       rms(covered.error[c], c) / covered.largest);
+      json += "}";
+      if (level != Level::kElastic) continue;
+      table += std::string("| ") + kind.name;
+      for (int c = 0; c < test::Covered::kClasses; ++c) table += format(" | %.0f %%", 100.0 * covered.share(c));
+      table += format(" | %.0f N, %.0f N | %d of %d |\n", rms(covered.error[0], 0), rms(covered.stated[0], 0),
+                      covered.energies, covered.blows);
     }
   }
-  return rows;
-}
-
-/// Errors of Fz over its largest value.
-std::string json(const std::vector<WornRow>& rows) {
-  std::string text = "[";
-  for (const WornRow& row : rows) {
-    const test::Covered& covered = row.covered;
-    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"energies_within\": %.6g",
-                   &row == rows.data() ? "" : ",", row.machine.c_str(), nameOf(row.level),
-                   static_cast<double>(covered.energies) / std::max(1, covered.blows));
-    for (int c = 0; c < test::Covered::kClasses; ++c)
-      text += format(", \"covered_from_%.0f\": %.6g, \"rms_z_from_%.0f\": %.6g", test::Covered::kFrom[c],
-                     covered.share(c), test::Covered::kFrom[c], row.rms(c) / covered.largest);
-    text += "}";
-  }
-  return text + "\n]";
-}
-
-/// The table of doc/model.md 6: level elastic.
-std::string markdown(const std::vector<WornRow>& rows) {
-  std::string text = "| machine |", line = "|---|";
-  for (int c = 0; c < test::Covered::kClasses; ++c, line += "---|")
-    text += format(" %.0f to %.0f deg |", test::Covered::kFrom[c], test::Covered::kFrom[c + 1]);
-  text += " Fz, 0 to 30 deg: rms error, stated | blow energies within |\n" + line + "---|---|\n";
-  for (const WornRow& row : rows) {
-    if (row.level != Level::kElastic) continue;
-    text += "| " + row.machine;
-    for (int c = 0; c < test::Covered::kClasses; ++c) text += format(" | %.0f %%", 100.0 * row.covered.share(c));
-    text +=
-        format(" | %.0f N, %.0f N | %d of %d |\n", row.rms(0), row.stated(0), row.covered.energies, row.covered.blows);
-  }
-  return text;
+  return as_table ? table : "[" + json + "\n]";
 }
 
 int run(int argc, const char* const* argv) {
@@ -118,10 +95,7 @@ int run(int argc, const char* const* argv) {
   if (part == "clean") std::cout << accuracy::json(accuracy::sessionTable(*settings));
   if (part == "drawings")
     std::cout << accuracy::json(accuracy::summary(accuracy::drawingTable(*settings, kDrawings, choice.seed)));
-  if (part == "worn") {
-    const std::vector<WornRow> rows = wornTable(*settings, choice);
-    std::cout << (as_table ? markdown(rows) : json(rows));
-  }
+  if (part == "worn") std::cout << wornRows(*settings, choice, as_table);
   if (part == "boom") std::cout << accuracy::json(accuracy::boomTable());
   return finishOutput();
 }

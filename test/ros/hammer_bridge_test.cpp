@@ -211,7 +211,8 @@ class MessagesOnBoom : public ::testing::Test {
     double worst() const { return std::max({torque[0].rms(), torque[1].rms(), torque[2].rms()}); }
   };
 
-  MessagesOnBoom() {
+  explicit MessagesOnBoom(const simulation::RockSettings& rock = {}) {
+    machine_.on_boom.rock = rock;
     machine_.duration = 6.0;
     machine_.crank.rate = 500.0;
     machine_.hammer.drive_reaction_ratio = 1.0;
@@ -221,13 +222,18 @@ class MessagesOnBoom : public ::testing::Test {
     session_ = simulation::recordSession(machine_);
     for (std::size_t i = 0; i < session_.crank.size(); ++i) truth_[session_.crank[i].stamp] = &session_.on_boom[i];
     messages_ = messagesOf(session_);
+    sort([](const Arrival& m) { return std::tuple{m.stamp, m.topic}; });
+  }
+  template <typename Key>
+  void sort(const Key& key) {
+    std::stable_sort(messages_.begin(), messages_.end(),
+                     [&key](const Arrival& a, const Arrival& b) { return key(a) < key(b); });
   }
 
   /// In the order of a key of each message.
   template <typename Key>
   Played play(const Key& key) {
-    std::stable_sort(messages_.begin(), messages_.end(),
-                     [&key](const Arrival& a, const Arrival& b) { return key(a) < key(b); });
+    sort(key);
     Played played;
     HammerBridge bridge(test::settingsWith("boom: compliant\nhull_motion: imu\nboom_stiffness: identified\n"));
     bridge.outputs().joint_loads.attach([&](const JointLoads& m, const ros::Time&) {
@@ -247,11 +253,12 @@ class MessagesOnBoom : public ::testing::Test {
     return play([](const Arrival& m) { return std::tuple{m.stamp, m.topic}; });
   }
 
+  std::vector<Arrival> messages_;
+
  private:
   simulation::MachineSettings machine_ = simulation::workingMo100();
   simulation::Session session_;
   std::map<std::int64_t, const simulation::OnBoomTruth*> truth_;
-  std::vector<Arrival> messages_;
 };
 
 /// A node that is held up receives the messages of that time topic by topic.
@@ -282,6 +289,22 @@ TEST_F(MessagesOnBoom, CostLittleWhereOneTopicIsLate) {
   EXPECT_LT(crank.worst(), 1.1 * in_order.worst());
   EXPECT_EQ(crank.warnings, in_order.warnings);
   for (const std::int64_t late : {4'000'000, 18'000'000, 40'000'000}) EXPECT_LT(lateBy(kImu, late).worst(), 0.03);
+}
+
+struct MessagesOnRock : MessagesOnBoom {
+  MessagesOnRock() : MessagesOnBoom({3e7, 3.0, 4000.0}) {}
+};
+
+/// The IMU alone does not show the rock's force.
+TEST_F(MessagesOnRock, HaveNoJointLoadsWithoutPressures) {
+  HammerBridge bridge(test::settingsWith("boom: compliant\nhull_motion: imu\nboom_stiffness: identified\n"));
+  ros::Time loads, wrench;
+  bridge.outputs().joint_loads.attach([&](const JointLoads& m, const ros::Time&) { loads = m.header.stamp; });
+  bridge.outputs().hull_wrench.attach(
+      [&](const geometry_msgs::WrenchStamped& m, const ros::Time&) { wrench = m.header.stamp; });
+  for (const Arrival& message : messages_)
+    if (message.topic <= kImu || message.topic == kCrank) message.give(bridge);
+  EXPECT_GT(wrench, loads + ros::Duration(0.5));
 }
 
 /// Stamps of a clock that is an hour ahead, and those of a crank that has stopped, wait for nothing.
