@@ -13,7 +13,6 @@ namespace hammer_loads::accuracy {
 namespace {
 
 constexpr unsigned kPoses = 8;
-constexpr double kAll = 1.0 - 1e-9;                    // part of the samples
 constexpr double kAway = 0.06;                         // [rad]
 constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
 
@@ -116,7 +115,7 @@ void takeWorst(const BoomErrors& e, BoomRow& row) {
   row.energy = std::max(row.energy, std::abs(e.energy()));
   row.contact = std::max(row.contact, e.contact.rmsOfRange());
   if (e.withheld < e.samples) row.covered = std::min(row.covered, e.covered());
-  row.withheld += e.part(e.withheld) / kPoses;
+  row.samples += e.samples, row.withheld += e.withheld;
   takeWorse(e.life_force_z, row.life_force);
   for (const LifeError& joint : e.life_torque) takeWorse(joint, row.life_torque);
   for (const LifeError& cut : e.life_section) takeWorse(cut, row.life_section);
@@ -142,7 +141,7 @@ std::vector<BoomRow> boomTable() {
         takeWorst(boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, way.sensors, kJudgedFrom,
                              kJudgedTo),
                   row);
-      if (row.withheld > kAll) {
+      if (row.withheld == row.samples) {
         row.torque = row.section = row.covered = row.contact = kNaN;
         row.life_torque = row.life_section = {kNaN, kNaN, kNaN};
       }
@@ -164,7 +163,7 @@ std::string markdown(const std::vector<BoomRow>& rows) {
     for (const double part :
          {r.torque, r.section, r.moment, r.force_x, r.force_z, r.worst_z, r.force, r.worst_force, r.energy})
       text += ' ' + percent(part) + " |";
-    text += ' ' + percent(r.contact, "not known") + format(" | %.0f %% | ", 100.0 * r.withheld) +
+    text += ' ' + percent(r.contact, "not known") + format(" | %.0f %% | ", 100.0 * r.withheldPart()) +
             (std::isfinite(r.covered) ? format("%.0f %%", 100.0 * r.covered) : "withheld") +
             format(" | %.0f %% |\n", 100.0 * r.covered_wrench);
   }
@@ -182,7 +181,7 @@ std::string json(const std::vector<BoomRow>& rows) {
         "\"life_torque\": %s, \"life_section\": %s}",
         &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), jsonNumber(r.torque).c_str(),
         jsonNumber(r.section).c_str(), r.moment, r.force_z, r.worst_z, r.energy, jsonNumber(r.contact).c_str(),
-        jsonNumber(r.covered).c_str(), r.withheld, r.force_x, r.force, r.worst_force, r.covered_wrench,
+        jsonNumber(r.covered).c_str(), r.withheldPart(), r.force_x, r.force, r.worst_force, r.covered_wrench,
         json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());
   return text + "\n]";
 }
