@@ -69,7 +69,9 @@ TEST(ConstantSpeed, PublishesNothingAboveTheTruePeakAtAnyLevel) {
       EXPECT_GE(played.least_energy, 0.0) << level << ", " << speed << " rad/s";
       EXPECT_GE(played.least_restitution, 0.0) << level << ", " << speed << " rad/s";
       EXPECT_LE(played.most_restitution, 1.0) << level << ", " << speed << " rad/s";
-      if (speed < 100.0) EXPECT_GT(2 * played.published, played.samples) << level << ", " << speed << " rad/s";
+      if (speed < 100.0) {
+        EXPECT_GT(2 * played.published, played.samples) << level << ", " << speed << " rad/s";
+      }
     }
   }
 }

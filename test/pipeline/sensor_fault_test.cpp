@@ -17,8 +17,8 @@ namespace {
 
 using simulation::Session;
 
-constexpr double kFrom = 2.4,
-                 kCountedTo = 3.0;   // [s] faults begin within the turn after kFrom; errors count until kCountedTo
+constexpr double kFaultFrom = 2.4,
+                 kCountedTo = 3.0;   // [s] faults begin within the turn after kFaultFrom; errors count until kCountedTo
 constexpr double kTurn = 0.22;       // [s]
 constexpr double kGoodError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
 
@@ -35,7 +35,7 @@ Session record(double rate) {
 }
 
 struct Result {
-  double worst{};          ///< error of Fz over its peak, of what was accepted from kFrom to kCountedTo
+  double worst{};          ///< error of Fz over its peak, of what was accepted from kFaultFrom to kCountedTo
   std::uint64_t lost{};    ///< samples not accepted in the meantime
   std::uint64_t faulty{};  ///< samples that the fault changed
 };
@@ -53,7 +53,7 @@ Result play(const Session& session, const Fault& fault) {
     fault(session.truth[i].time, sample);
     result.faulty += sample.angle != good.angle || sample.speed != good.speed;
     const SampleResult& loads = pipeline.crankSample(session.crank[i].stamp, sample);
-    if (session.truth[i].time < kFrom) continue;
+    if (session.truth[i].time < kFaultFrom) continue;
     result.lost += loads.refusal.has_value();
     if (loads.refusal) continue;
     result.worst = std::max(result.worst, std::abs(loads.wrench.force_z - session.truth[i].load.force_z) / peak);
@@ -63,7 +63,7 @@ Result play(const Session& session, const Fault& fault) {
 
 /// Every place of the turn in steps that no period of the machine divides.
 void everywhere(const std::function<void(double)>& at) {
-  for (double begin = kFrom; begin < kFrom + kTurn; begin += 0.0203) at(begin);
+  for (double begin = kFaultFrom; begin < kFaultFrom + kTurn; begin += 0.0203) at(begin);
 }
 
 TEST(SensorFault, CausesNoLargeErrorForAnAngleThatStandsStillWhileTheSpeedGoesOn) {

@@ -32,9 +32,10 @@ constexpr std::array<std::pair<Flaw, const char*>, 2> kFlaws{
 
 /// Spread of all values but one about their median, as a standard deviation: a faulty recording shifts all others
 /// alike.
-double spreadWithout(std::vector<double> values, std::size_t one) {
-  values.erase(values.begin() + static_cast<std::ptrdiff_t>(one));
-  return stdByMedian(values, medianOf(values));
+double spreadWithout(const std::vector<double>& values, std::size_t one) {
+  std::vector<double> others(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(one));
+  others.insert(others.end(), values.begin() + static_cast<std::ptrdiff_t>(one) + 1, values.end());
+  return stdByMedian(others, medianOf(others));
 }
 
 /// Rows of one recording in the linear system of a fit.

@@ -154,6 +154,7 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   worth_.add(state_.loads.total, state_.loads.weight, state_.deviations.torque,
              state_.measured || state_.contact_unknown);
   state_.useless = worth_.isUseless(sample.stamp);
+  useless_ += state_.useless;
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
 }
 

@@ -117,6 +117,7 @@ class BoomFollower {
   double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
   /// Largest standard deviation of a joint torque over the torque, root mean squares over the last turn [-].
   double torqueUncertainty() const noexcept { return worth_.ratio(); }
+  std::uint64_t useless() const noexcept { return useless_; }  ///< samples whose loads were useless
   /// Call once per turn, with the crank's deviations.
   void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }
   /// Call once per turn, with its pulse and its mean hold-down force [N]. It takes some 0.1 ms.
@@ -198,6 +199,7 @@ class BoomFollower {
   PressureTrust trust_;
   int lost_sensors_{};  ///< number of sensors that cannot be used
   TorqueWorth worth_;
+  std::uint64_t useless_{};
   HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;

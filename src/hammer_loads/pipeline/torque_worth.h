@@ -14,7 +14,7 @@
 namespace hammer_loads {
 
 /// Standard deviation of each joint's torque over the torque beside the weight, root mean squares over a revolution.
-/// The worst joint has 0.02 to 0.34 where the sensors fit the model, 0.6 to 6 with an IMU alone on rock and 0.4 to 6
+/// The worst joint has 0.02 to 0.34 where the sensors fit the model, 1.5 to 6 with an IMU alone on rock and 0.4 to 6
 /// with pressures alone over a bus (machines of doc/accuracy.md). Torques are useless where this ratio is large and
 /// sensors are the cause. It is judged once a revolution, and holds until the hammer stands.
 class TorqueWorth {
