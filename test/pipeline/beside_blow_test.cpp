@@ -71,6 +71,8 @@ TEST(BesideBlow, NoSampleIsPublishedOnTheWrongSide) {
     wrong += p.wrong_withheld;
   }
   EXPECT_GT(wrong, 0u) << "nothing to withhold in these sessions";
+  for (const std::uint64_t seed : {411u, 412u, 413u, 414u})
+    EXPECT_EQ(published(1e-3, OutputKind::kInstantaneous, 0.0, seed).wrong_published, 0u) << "jitter of 1 ms " << seed;
 }
 
 /// An encoder's edge shows the side of its own zero. With the edge taken as exact, up to a blow in four has a sample on

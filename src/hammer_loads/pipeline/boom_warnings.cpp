@@ -166,18 +166,11 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
              "cylinder_pressures.",
              follower.unexplainedForce()),
          true});
-  if (boom != nullptr && boom->useless) {
+  if (boom != nullptr && boom->useless)
     warnings.push_back({"boom loads",
                         format("joint_loads: withheld, deviations are %.2g times the loads by %s.",
                                follower.torqueUncertainty(), causeOf(follower, *boom)),
                         true});
-  } else if (follower.useless() > 0) {
-    warnings.push_back({"boom loads",
-                        "joint_loads: " + std::to_string(follower.useless()) +
-                            " samples withheld while the sensors did not show the loads. Check hull_imu and "
-                            "cylinder_pressures.",
-                        false});
-  }
   const bool fault = boom != nullptr && boom->fault,
              runs_away = fault && boom->fault->kind == JointFault::Kind::kRunAway;
   if (follower.runaways() > 0)

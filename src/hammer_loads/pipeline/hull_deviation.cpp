@@ -212,7 +212,9 @@ bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double 
   const ConstantErrors& errors = filter.constantErrors();
   if (rod && (*rod || errors.zeroIsShown())) return *rod;
   if (!errors.zeroIsShown() && crank.position.isMirrored()) return true;
-  const double deviation = deviationFromBlow(filter, rod ? errors.zeroDeviation() : angle_std);
+  // On the wrong side the wrench is off by its whole jump: the gate of an angle that noise makes uncertain is kRare.
+  const double of_readings = filter.readingShowsSide() ? angle_std : gate::kRare / gate::kUsual * angle_std;
+  const double deviation = deviationFromBlow(filter, rod ? errors.zeroDeviation() : of_readings);
   if (errors.zeroIsShown() && errors.zeroDeviation() < ConstantErrors::kCalibratedZero)
     return isBesideBlow(crank, deviation);
   return std::abs(crank.position.angle.offset) < gate::kUsual * deviation && std::abs(crank.speed) > kStands;

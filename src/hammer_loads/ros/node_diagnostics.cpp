@@ -227,6 +227,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
     status.summary(DiagnosticStatus::OK, state.choice.compliant ? "compliant" : "rigid");
   }
   status.add("samples without known joints", boom.faults());
+  status.add("samples whose joint loads are withheld", boom.useless());
   status.add("vibration ran away", boom.runaways());
   status.add("error of a rigid boom for the last pulse [-]", state.choice.rigid_error);
   status.add("tolerance for it [-]", state.choice.rigid_tolerance);
