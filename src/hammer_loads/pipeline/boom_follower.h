@@ -75,7 +75,7 @@ struct BoomState {
   Wrench contact;              ///< contact load BY the rock ON the tip, axes of the tip; zero where it is not measured
   bool measured{};             ///< the cylinders' forces are those of measured pressures
   bool contact_unknown{};      ///< the IMU shows contact with the rock, but no pressures measure its force
-  /// The sensors do not fit the model, and standard deviations are as large as the torques: loads are not published.
+  /// Pressures or an IMU leave standard deviations as large as the torques: the loads are not published (TorqueWorth).
   bool useless{};
   bool hold_down_force_lost{};  ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;          ///< along hull z; infinite without modes

@@ -95,9 +95,9 @@ double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept;
 /// branch nowhere. deviation: of the crank from the blow [rad]; NaN: not known. gate: so many of them.
 bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate = gate::kUsual) noexcept;
 /// Returns true if the crank is too close to the blow for its side to be known, with the uncertainty of the zero
-/// included. angle_std: standard deviation of the angle [rad]. rod: answer of the elastic rod's filter; empty: the rod
-/// is rigid. Before the zero is shown the mirrored branch counts as close, since a wrong zero imitates a blow without a
-/// tool.
+/// included. angle_std: standard deviation of the angle [rad], which counts three times, the zero's twice. rod: answer
+/// of the elastic rod's filter; empty: the rod is rigid. Before the zero is shown the mirrored branch counts as close,
+/// since a wrong zero imitates a blow without a tool.
 bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
                   std::optional<bool> rod) noexcept;
 
