@@ -123,6 +123,17 @@ Checked<Boom> Boom::build(const RobotDescription& description, const BoomParamet
   return result;
 }
 
+std::optional<Boom> Boom::weighed(const RobotDescription& description, std::vector<WeighedLink> links) const {
+  BoomParameters parameters = parameters_;
+  parameters.sections.clear();
+  parameters.chain.weighed = std::move(links);
+  const Checked<Chain> chain = Chain::make(description, parameters.chain);
+  std::vector<std::string> problems;
+  if (chain.value) checkInertia(*chain.value, cylinders_, problems);
+  if (!chain.value || !problems.empty()) return std::nullopt;
+  return Boom(*chain.value, cylinders_, {}, parameters);
+}
+
 Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Section> sections,
            const BoomParameters& parameters)
     : chain_(chain),

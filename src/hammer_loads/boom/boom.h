@@ -69,6 +69,10 @@ class Boom {
   static Checked<Boom> make(const RobotDescription& description, const BoomParameters& parameters);
   /// Makes a boom from the description alone: rigid, no cylinders, supports not known.
   static Checked<Boom> make(const RobotDescription& description, const ChainRequest& request = {});
+  /// Makes the same boom without sections, with the links' bodies in place of all that were given as weighed; empty for
+  /// impossible bodies. description: that of this boom. Cylinders are not checked again, as no body changes their
+  /// place.
+  std::optional<Boom> weighed(const RobotDescription& description, std::vector<WeighedLink> links) const;
 
   /// Moves the boom. motion: of the chain's joints; g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level
   /// base.

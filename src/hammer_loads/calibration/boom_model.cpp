@@ -142,17 +142,15 @@ std::vector<WeighedLink> BoomModel::linksAt(const Eigen::VectorXd& x) const {
   return links;
 }
 
-/// Sections are left out: a link's part beyond one may be heavier than the link on the way.
-BoomParameters BoomModel::withLinksAt(const Eigen::VectorXd& x) const {
-  BoomParameters parameters = basis_.parameters;
-  parameters.sections.clear();
-  for (const WeighedLink& link : linksAt(x)) replace(parameters.chain.weighed, link);
-  return parameters;
+std::vector<WeighedLink> BoomModel::weighedAt(const Eigen::VectorXd& x) const {
+  std::vector<WeighedLink> weighed = basis_.parameters.chain.weighed;
+  for (const WeighedLink& link : linksAt(x)) replace(weighed, link);
+  return weighed;
 }
 
 BoomParameters BoomModel::parametersAt(const Eigen::VectorXd& x) const {
-  BoomParameters parameters = withLinksAt(x);
-  parameters.sections = basis_.parameters.sections;
+  BoomParameters parameters = basis_.parameters;
+  parameters.chain.weighed = weighedAt(x);
   const std::vector<WeighedLink> links = linksAt(x);
   for (SectionParameters& section : parameters.sections) {
     const WeighedLink* link = section.beyond ? findLink(links, section.link) : nullptr;
@@ -183,20 +181,20 @@ BoomParameters BoomModel::parametersAt(const Eigen::VectorXd& x) const {
 }
 
 std::optional<Boom> BoomModel::boomAt(const Eigen::VectorXd& x) const {
-  return Boom::make(basis_.urdf, withLinksAt(x)).value;
+  return given_.weighed(basis_.urdf, weighedAt(x));
 }
 
 std::optional<Boom> BoomModel::boomAt(const Eigen::VectorXd& x, std::size_t recording) const {
-  BoomParameters parameters = withLinksAt(x);
+  std::vector<WeighedLink> weighed = weighedAt(x);
   const Chain& chain = given_.chain();
   const TipWeight& weight = weights_[recording];
   const double mass = valueOf(x, BoomUnknown::kTipWeight, recording, weight.mass);
   if (mass != 0.0) {
     WeighedLink tip = chain.body(chain.tip());
-    if (const WeighedLink* weighed = findLink(parameters.chain.weighed, tip.name)) tip = *weighed;
-    replace(parameters.chain.weighed, together(tip, mass, weight.x, weight.z));
+    if (const WeighedLink* known = findLink(weighed, tip.name)) tip = *known;
+    replace(weighed, together(tip, mass, weight.x, weight.z));
   }
-  return Boom::make(basis_.urdf, parameters).value;
+  return given_.weighed(basis_.urdf, std::move(weighed));
 }
 
 std::size_t BoomModel::firstWithWeightOf(std::size_t recording) const {

@@ -105,10 +105,11 @@ class BoomModel {
   const Boom& given() const { return given_; }
 
  private:
-  BoomParameters withLinksAt(const Eigen::VectorXd& x) const;
   double recordingOffset(const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording) const;  ///< [Pa]
-  double massOf(const std::string& link) const;  ///< mass of a link as given [kg]
-  std::vector<WeighedLink> linksAt(const Eigen::VectorXd& x) const;
+  double massOf(const std::string& link) const;                      ///< mass of a link as given [kg]
+  std::vector<WeighedLink> linksAt(const Eigen::VectorXd& x) const;  ///< bodies of the links in links_
+  /// All links that are weighed in the boom file or are unknowns.
+  std::vector<WeighedLink> weighedAt(const Eigen::VectorXd& x) const;
 
   BoomBasis basis_;
   std::vector<TipWeight> weights_;
