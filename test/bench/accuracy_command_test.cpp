@@ -6,13 +6,6 @@
 namespace hammer_loads::accuracy {
 namespace {
 
-TEST(Command, RefusesAFileThatCannotBeWritten) {
-  const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--json /nowhere/costs.json");
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "/nowhere/costs.json: cannot be written: No such file or directory\n");
-  EXPECT_EQ(run.out, "");
-}
-
 TEST(Command, ReplacesNoFileThatItDidNotWrite) {
   const test::TemporaryFile written("{\"sessions\": []}\n", ".json"), notes("notes\n", ".json");
   const auto expectRefused = [](const std::string& arguments, const std::string& reason) {

@@ -48,6 +48,7 @@ class WornMachine {
     p_.lengths.rod = p_.lengths.pivot_distance + p_.lengths.rocker - p_.lengths.crank;
     spring_ = 2.0 * s.rod_stiffness;
     damper_ = 2.0 * (2.0 * s.damping_ratio * s.rod_stiffness / (kTwoPi * 200.0));
+    ahead_ = std::polar(1.0, p_.rocker_com_angle);
     close();
     nextTool();
   }
@@ -68,7 +69,7 @@ class WornMachine {
         if (!in_blow) blows.push_back({time, 0.0});
         in_blow = true, last = time;
         blows.back().energy -= forces.tool * p_.striking_distance * std::cos(y_[kPsi]) * y_[kPsiSpeed] * s_.step;
-        deepest_ = std::max(deepest_, depth(y_));
+        deepest_ = std::max(deepest_, depth(std::polar(1.0, y_[kPsi])));
       } else if (in_blow && time - last > 0.012) {
         in_blow = false;
         nextTool();
@@ -130,7 +131,7 @@ class WornMachine {
     place_ = part(random_) < s_.late_share ? s_.late * part(random_) : 0.0;
     deepest_ = 0.0;
   }
-  double depth(const State& y) const { return -p_.striking_distance * std::sin(y[kPsi]) - place_; }
+  double depth(C rocker) const { return -p_.striking_distance * rocker.imag() - place_; }
   /// Loaded along one line, unloaded along a steeper one.
   double toolForce(double depth) const {
     constexpr double kStiffness = 1e9;
@@ -151,16 +152,16 @@ class WornMachine {
   }
   double rub(double force, double turning) const {
     constexpr double kStick = 0.3;  // [rad/s]
-    return s_.friction * s_.pin_radius * force * std::tanh(turning / kStick);
+    return s_.friction == 0.0 ? 0.0 : s_.friction * s_.pin_radius * force * std::tanh(turning / kStick);
   }
 
   State rate(const State& y, Forces* forces) const {
     constexpr double kG = 9.81, kMotor = 1.6e-5, kFlow = 3.6e-4, kOil = 1.3e-11, kLeak = 2e-12;
-    const double a = p_.rocker_com_angle, l2 = p_.lengths.rod;
+    const double l2 = p_.lengths.rod;
     const C crank = std::polar(1.0, y[kPhi]), rocker = std::polar(1.0, y[kPsi]), rod = std::polar(1.0, y[kBeta]);
     const C pin_b = p_.lengths.crank * crank, pin_c = p_.lengths.pivot_distance + p_.lengths.rocker * rocker;
     const C b_speed = kI * y[kPhiSpeed] * pin_b, c_speed = kI * y[kPsiSpeed] * p_.lengths.rocker * rocker;
-    const C gravity = kG * C(std::sin(a), -std::cos(a));  // -z of the hull
+    const C gravity = kG * C(ahead_.imag(), -ahead_.real());  // -z of the hull
     // A bowed rod is shorter the further it bends.
     const double by_bow = kPi * kPi / (2.0 * l2), bend = y[kBend];
     const double shorter = by_bow * (s_.bow * bend + 0.5 * bend * bend), slope = by_bow * (s_.bow + bend);
@@ -185,29 +186,29 @@ class WornMachine {
     const double crank_turns = (motor - cross(pin_b, force_b) + rub_b - rub(crank_reaction_, y[kPhiSpeed]) +
                                 p_.crank_mass * cross(crank_centre, gravity)) /
                                crank_inertia;
-    const C centre_of_rocker = p_.rocker_com_distance * rocker * std::polar(1.0, a);
-    const double tool = toolForce(depth(y));
+    const C centre_of_rocker = p_.rocker_com_distance * rocker * ahead_;
+    const double tool = toolForce(depth(rocker));
     const double rocker_turns =
         (-cross(p_.lengths.rocker * rocker, force_c) + rub_c - rub(rocker_reaction_, y[kPsiSpeed]) +
-         p_.rocker_mass * cross(centre_of_rocker, gravity) + tool * p_.striking_distance * std::cos(y[kPsi])) /
+         p_.rocker_mass * cross(centre_of_rocker, gravity) + tool * p_.striking_distance * rocker.real()) /
         p_.rocker_inertia_about_pivot;
     const double flow =
         kFlow - kMotor * y[kPhiSpeed] - kLeak * y[kPressure] - 1e-10 * std::max(0.0, y[kPressure] - 2.2e7);
     if (forces != nullptr) {
       const C a1 = (kI * crank_turns - y[kPhiSpeed] * y[kPhiSpeed]) * crank_centre;
       const C a3 = (kI * rocker_turns - y[kPsiSpeed] * y[kPsiSpeed]) * centre_of_rocker;
-      const C up = tool * C(-std::sin(a), std::cos(a)), d = p_.lengths.pivot_distance;
+      const C up = tool * C(-ahead_.imag(), ahead_.real()), d = p_.lengths.pivot_distance;
       const C by_links = p_.crank_mass * (gravity - a1) + p_.rod_mass * (gravity - rod_acceleration) +
                          p_.rocker_mass * (gravity - a3) + up;
-      forces->hull = {-(std::cos(a) * by_links.real() + std::sin(a) * by_links.imag()),
-                      -std::sin(a) * by_links.real() + std::cos(a) * by_links.imag()};
+      forces->hull = {-(ahead_.real() * by_links.real() + ahead_.imag() * by_links.imag()),
+                      -ahead_.imag() * by_links.real() + ahead_.real() * by_links.imag()};
       const double about_centre =
           p_.rocker_inertia_about_pivot - p_.rocker_mass * p_.rocker_com_distance * p_.rocker_com_distance;
       forces->torque = -p_.crank_mass * cross(crank_centre - d, a1 - gravity) -
                        p_.crank_inertia_about_com * crank_turns -
                        p_.rod_mass * cross(centre - d, rod_acceleration - gravity) -
                        p_.rod_inertia_about_com * rod_turns - p_.rocker_mass * cross(centre_of_rocker, a3 - gravity) -
-                       about_centre * rocker_turns + cross(p_.striking_distance * rocker * std::polar(1.0, a), up);
+                       about_centre * rocker_turns + cross(p_.striking_distance * rocker * ahead_, up);
       forces->on_crank = p_.crank_mass * (a1 - gravity) + force_b;
       forces->on_rocker = p_.rocker_mass * (a3 - gravity) + force_c - up;
       forces->tool = tool;
@@ -244,6 +245,7 @@ class WornMachine {
   HammerParameters p_;
   std::mt19937_64 random_;
   double spring_{}, damper_{};  ///< of a pin
+  C ahead_;                     ///< direction of the rocker's centre of mass from its line of pins
   double restitution_{}, place_{}, deepest_{};
   double crank_reaction_{}, rocker_reaction_{};  ///< of the step before [N]
   State y_{};

@@ -97,9 +97,7 @@ class RodEvidence {
   /// Standard deviation of a reading above which a rod cannot be detected [rad], since errors of the sensor's mounting
   /// would be taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
-  /// Mean just before the blow, where a rod in worn pins lets go of the rocker and the crank runs ahead (4 and more;
-  /// elastic rods in tight pins 1.5 to 2), while the rod picks the rocker up, and when it has rung out [-].
-  double runUp() const noexcept { return run_up_.mean(); }
+  /// Mean while the rod picks the rocker up, and when it has rung out [-].
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }
   /// Upper bounds by the readings of the square of the expected vibration, and of the missing speed of a released
