@@ -60,10 +60,13 @@ void CrankFilter::countSurprise(bool surprised) noexcept {
 double CrankFilter::mostSpeed() const noexcept { return kSoundSpeeds * settings_.max_speed; }
 double CrankFilter::mostTorque() const noexcept { return kMostTorque * settings_.initial_torque_std; }
 
-void CrankFilter::start(const CrankSample& reading) noexcept {
+void CrankFilter::start(const CrankSample& reading, double jitter) noexcept {
+  if (jitter > timing_.deviation())
+    timing_.restart(jitter);  // by the last speed, as no other is known
+  else
+    now_.state.speed = 0.0;
   const WeighedSample sample = weighed(reading);
   now_.state.position = {0, CrankAngle::fromOffset(sample.angle)};
-  now_.state.speed = 0.0;
   now_.state.torque = 0.0;
   anchor(sample);
 }

@@ -66,8 +66,9 @@ class CrankFilter {
   /// to the uncertainty.
   void considerRod(double angle, double speed) noexcept;
 
-  /// Starts at a sample; the identified constants of the machine are kept.
-  void start(const CrankSample& sample) noexcept;
+  /// Starts at a sample; the identified constants of the machine are kept. jitter: of the coming stamps, learned anew
+  /// where it is larger than that of the stamps so far [s].
+  void start(const CrankSample& sample, double jitter = 0.0) noexcept;
   /// Updates by the next sample, dt > 0 [s] after the last accepted one. No allocation.
   Tracking update(double dt, const CrankSample& sample) noexcept;
   /// Estimate at the last accepted sample.

@@ -15,6 +15,8 @@ constexpr double kMemorySamples = 4096.0;   // samples
 constexpr double kScatterSamples = 300.0;   // over which scatter is learned, but no fewer than kWarm runs
 constexpr int kWarm = 20;                   // runs from which on the line is good enough to judge by
 constexpr int kUnsure = 300;                // stamps that show a miscount before them, however they jitter
+constexpr int kFewest = 3;                  // runs that show whether they are equally long
+constexpr int kTries = 4;                   // beginnings of a line without a loss: jitter spoils each
 constexpr int kFirst = 4;                   // runs until there is a line
 constexpr int kKnown = 6;                   // runs until regular bursts show themselves
 constexpr double kAlone = 1.02;             // samples in the mean: stamps do not repeat
@@ -148,17 +150,34 @@ double SteadyClockFit::correctCount() noexcept {
   return by;
 }
 
+/// Returns true if a sample was lost within the bursts that the line begins with, which cannot count it yet. Jitter
+/// looks alike. After a shorter burst the readings of a slow crank have passed for duplicates.
+bool SteadyClockFit::lostWhileUnknown(double residual) const noexcept {
+  if (begun_ == kTries || runs_ < kFewest || runs_ >= kKnown || !inBursts()) return false;
+  return run_length_ == longest_ && std::abs(residual - start_mean_) > 0.5 * interval_;
+}
+
 /// residual: of a run's first sample; step: of its stamp from the one before. Corrects the count of samples.
 void SteadyClockFit::watchLost(double residual, double step) noexcept {
+  if (lostWhileUnknown(residual)) {
+    const int begun = begun_ + 1;
+    begin(stamp_);
+    begun_ = begun;
+    return;
+  }
   if (runs_ < kFirst) {
     start_mean_ = residual;
     return;
   }
   double off = residual - start_mean_;
-  if (runs_ >= kWarm && interval_ > 0.0) {
+  // Bursts whose first few are equal to a part of an interval show a loss in the next at once.
+  const bool are_exact = isKnown() && inBursts() && start_variance_ < square(kLeastScatter * interval_);
+  if ((runs_ >= kWarm || are_exact) && interval_ > 0.0) {
     const double scatter = std::max(std::sqrt(start_variance_), kLeastScatter * interval_);
     gatherEvidence(off, scatter, step);
-    off -= correctCount();
+    const double moved = correctCount();
+    moved_back_ = moved < 0.0;
+    off -= moved;
     suspected_ = std::max(0.0, std::nearbyint(off / interval_));
     off = std::clamp(off, -kClip * scatter, kClip * scatter);
   }
@@ -171,12 +190,14 @@ std::int64_t SteadyClockFit::add(std::int64_t stamp) noexcept {
   const bool new_run = stamp != stamp_;
   const auto step = static_cast<double>(stamp - std::exchange(stamp_, stamp));
   suspected_ = 0.0;
+  moved_back_ = false;
   const double now = static_cast<double>(stamp - origin_);
   if (new_run) endRun();
   instant_ += interval_;
   if (new_run) watchLost(now - instant_, step);
-  residual_ = now - instant_;
+  residual_ = static_cast<double>(stamp - origin_) - instant_;
   run_length_ = new_run ? 1 : run_length_ + 1;
+  longest_ = std::max(longest_, run_length_);
   return origin_ + static_cast<std::int64_t>(std::llround(instant_));
 }
 
@@ -184,13 +205,15 @@ StampSequence::StampSequence(CrankStamps mode, double stale_after) noexcept
     : mode_(mode), stale_(static_cast<std::int64_t>(std::llround(stale_after * 1e9))) {}
 
 StampSequence::Place StampSequence::begin(std::int64_t header) noexcept {
+  awaits_line_ = steady_ && fit_.inBursts();
   header_ = newest_ = placed_ = header;
   rewound_.reset();
   irregularity_ = 0.0;
   uncounted_ = false;
+  error_before_restart_ = steady_ ? 1e-9 * (awaits_line_ ? fit_.scatter() : fit_.stampError()) : 0.0;
   steady_ = mode_ == CrankStamps::kSteady;
   fit_.begin(header);
-  return {Kind::kRestart, header};
+  return {awaits_line_ ? Kind::kDuplicate : Kind::kRestart, header};
 }
 
 StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) noexcept {
@@ -235,8 +258,9 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   newest_ = std::max(newest_, header);
   if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;
   const bool knows = fit_.isKnown() && (steady_ || !fit_.inBursts());
+  awaits_line_ = awaits_line_ && !(knows && fit_.explains()) && fit_.runs() < kWarm;
   const bool single = irregularity_ < kSingle && fit_.runs() > 0;  // one alone is no burst
-  if (repeats && !knows && !single) return {Kind::kDuplicate, header};
+  if (awaits_line_ || (repeats && !knows && !single)) return {Kind::kDuplicate, header};
   std::int64_t instant = header;
   if (steady_) {
     instant = fitted;

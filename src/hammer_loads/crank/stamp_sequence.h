@@ -111,11 +111,16 @@ class SteadyClockFit {
   void confirm(bool counted) noexcept;
   /// Number of lost samples that would explain the lateness of the last stamp; a stamp that is merely late looks alike.
   double suspected() const noexcept { return suspected_; }
+  /// Returns true if the last stamp showed that samples before it were counted too many.
+  bool movedBack() const noexcept { return moved_back_; }
   double interval() const noexcept { return interval_; }  ///< [ns]
   /// Time by which the last stamp is later than the scatter makes it [ns]; else 0.
   double lateness() const noexcept;
   /// Root mean square of the stamps about the line [ns].
   double scatter() const noexcept { return std::sqrt(end_square_); }
+  /// Root mean square by which a stamp errs that is taken as it is: the scatter, and where some stamps repeat the wait
+  /// for the last sample [ns].
+  double stampError() const noexcept { return std::hypot(scatter(), (mean_length_ - 1.0) * interval_); }
   int runs() const noexcept { return runs_; }  ///< stamps after the first one
   bool isKnown() const noexcept;               ///< stamps enough for a line and for how many samples have one stamp
   bool inBursts() const noexcept;              ///< several samples come with each stamp
@@ -128,6 +133,7 @@ class SteadyClockFit {
   double mostUsed() const noexcept;
   void endRun() noexcept;
   void move(double by) noexcept;
+  bool lostWhileUnknown(double residual) const noexcept;
   void watchLost(double residual, double step) noexcept;
 
   std::int64_t origin_{};  ///< first stamp [ns]; all else relative to it, so that no digits are lost
@@ -137,6 +143,7 @@ class SteadyClockFit {
   double residual_{};      ///< stamp less instant, of the last sample [ns]
   double end_residual_{};  ///< residual of the last sample of the run before [ns]
   int run_length_{};       ///< samples with the last stamp
+  int longest_{};          ///< run
   double mean_length_{1.0};
   double end_square_{}, step_square_{};     ///< mean squares of the runs' end residuals and of their steps [ns2]
   double end_mean_{};                       ///< mean of the runs' end residuals [ns]
@@ -160,8 +167,10 @@ class SteadyClockFit {
   double suspected_{};      ///< lost samples by which the last stamp alone is late
   double remembered_{1.0};  ///< runs in the line's memory
   int unsure_stamps_{};     ///< number of stamps that may still show a miscount which no reading has excluded
-  bool is_late_{};          ///< the last stamp is later than scatter makes it
+  bool moved_back_{};
+  bool is_late_{};  ///< the last stamp is later than scatter makes it
   int runs_{};
+  int begun_{};  ///< number of times that the line has begun anew for a loss
 };
 
 /// A clock that is read in whole steps rounds down, up or to the nearest: the stamps do not say which, and all samples
@@ -257,6 +266,9 @@ class StampSequence {
   double rounding() const noexcept { return rounding_.step(); }
   /// Returns true if the last sample's instant on the line was not after the one before, and was set just after it.
   bool isCrowded() const noexcept { return is_crowded_; }
+  /// Error of the stamps that were refitted before the last restart [s]; 0: none was. They are taken as they are until
+  /// there is a line again.
+  double errorBeforeRestart() const noexcept { return error_before_restart_; }
   /// Returns true while stamps are refitted by sequence.
   bool isSteady() const noexcept { return steady_; }
   /// Number of stamps that repeated or changed places since the start.
@@ -279,6 +291,8 @@ class StampSequence {
   bool uncounted_{};  ///< messages passed for duplicates since the beginning of the fit
   bool steady_{};
   bool is_crowded_{};
+  bool awaits_line_{};             ///< stamps came in bursts before the restart: none has an instant without a line
+  double error_before_restart_{};  ///< [s]
   SteadyClockFit fit_;
   StampRounding rounding_;
 };

@@ -18,6 +18,11 @@ class TimingNoise {
  public:
   /// first_guess: standard deviation [s], >= 0.
   explicit TimingNoise(double first_guess = 0.0) noexcept : variance_(first_guess * first_guess) {}
+  /// Learns anew from this deviation [s], which counts until the samples show another one.
+  void restart(double deviation) noexcept {
+    *this = TimingNoise(deviation);
+    information_ = 1.0 / square(variance_);
+  }
 
   /// innovation [rad] of variance `total`, the jitter's part included; speed w [rad/s]; step [s] since
   /// the sample before.

@@ -22,6 +22,7 @@ constexpr double kSettledDeviations = gate::kRare;       // deviations of the pr
 constexpr double kFrozenCounts = 5;                      // a crank that turned further gives another angle
 constexpr double kTaskShows = 2e-4;                      // [s] of jitter: the ages of a task of 2 ms have 0.5 ms
 constexpr double kSameLateness = 0.3;                    // of the lateness
+constexpr double kSurelyPasses = 1.3;                    // counts, by a speed that may be a fifth too large
 constexpr double kFrozenDeviations = gate::kImpossible;  // deviations of a sensor's noise
 
 /// resolution: of the angle sensor [rad].
@@ -158,7 +159,7 @@ StampSequence::Repeats CrankFollower::repeatsOf(const CrankSample& measured) con
 /// True if the crank passes more than a count of its encoder between two samples, so that no sensor repeats an angle.
 bool CrankFollower::passesCounts() const noexcept {
   if (!turns() || !sequence_.fit().isKnown()) return false;
-  return std::abs(estimate_.speed) * 1e-9 * sequence_.fit().interval() > tracker_->angleResolution();
+  return std::abs(estimate_.speed) * 1e-9 * sequence_.fit().interval() > kSurelyPasses * tracker_->angleResolution();
 }
 
 bool CrankFollower::turns() const noexcept { return tracker_->hasSpeed() && std::abs(estimate_.speed) > kSlowCrank; }
@@ -194,7 +195,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   tracker_->setClock(sequence_.clock());
   tracker_->considerLatency(stampsOff());
   if (verdict_.order == CrankSampleGate::Order::kFirst) {
-    tracker_->start(sample);
+    tracker_->start(sample, sequence_.errorBeforeRestart());
     restart();
     speed_measured_ = sample.speed.has_value();
     return Taken::kBegan;
@@ -235,7 +236,8 @@ void CrankFollower::followLostTime() noexcept {
   const double lost = tracker_->lostTime();
   // Single stamps show only some ten samples later that one was lost or counted too many. The crank has made up for it
   // by then, so that the step between the two instants is wrong, and not the later one.
-  const bool was_made_up = !sequence_.fit().inBursts() && (lost < 0.0 || sequence_.isCrowded());
+  const bool was_made_up =
+      sequence_.fit().inBursts() ? lost > 0.0 && sequence_.fit().movedBack() : lost < 0.0 || sequence_.isCrowded();
   if (lost == 0.0 || was_made_up) return;
   stamp_ = sequence_.skip(lost);
   verdict_.step += lost;

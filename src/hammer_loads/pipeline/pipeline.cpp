@@ -214,7 +214,8 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
          std::abs(result_.crank.speed) <= kMostSpeedUnproven * nominal_speed;
 }
 
-/// A crank held at constant speed shows little of itself: its samples are known where no force's standard deviation is
+/// No force of a crank at work is as large as the peak at constant speed: a larger standard deviation says nothing. A
+/// crank held at constant speed shows little of itself: its samples are known where no force's standard deviation is
 /// above five times withhold_above of the peak of the last minute, within the bounds of a turn at constant speed.
 bool Pipeline::isKnown() const noexcept {
   // A blow without a tool is doubtful while the readings contradict the model.
@@ -223,12 +224,13 @@ bool Pipeline::isKnown() const noexcept {
   if (!crank_.tracker().constantErrors().zeroIsShown() && inertia > 0.0 &&
       std::abs(std::log(inertia / given)) > kInertiaOff)
     return false;
-  if (inertia > 0.0) return true;  // of a crank at work
-  const double most = std::max(1.0, speedScale()) * peak_at_speed_;
-  const double peak = turn_.peakForce() > 0.0 ? std::clamp(seen_peak_, kLeastPeak * most, most) : most;
   // An unknown force of the rod gives no information on the crank.
   const Eigen::Vector3d squares = vectorOf(result_.deviation.wrench).cwiseAbs2() - result_.unknown.rowwise().sum();
-  return squares.head<2>().maxCoeff() <= square(kUncertain * settings_.withhold_above * peak);
+  const double largest = squares.head<2>().maxCoeff();
+  if (inertia > 0.0) return !(largest > square(peak_at_speed_));  // of a crank at work
+  const double most = std::max(1.0, speedScale()) * peak_at_speed_;
+  const double peak = turn_.peakForce() > 0.0 ? std::clamp(seen_peak_, kLeastPeak * most, most) : most;
+  return largest <= square(kUncertain * settings_.withhold_above * peak);
 }
 
 void Pipeline::followPeak() noexcept {

@@ -65,8 +65,8 @@ struct SampleResult {
   /// True if the side of the blow is uncertain at the sample. Values at its instant belong to the likelier side and are
   /// not published; sums over steps continue.
   bool beside_blow{};
-  /// The crank is held at constant speed, and a force's standard deviation exceeds five times withhold_above of its
-  /// peak: the sample is not published. Sums over steps go on.
+  /// A force's standard deviation exceeds the peak at constant speed, or, where the crank is held at constant speed,
+  /// five times withhold_above of its peak: the sample is not published. Sums over steps go on.
   bool uncertain{};
   bool isPublished() const noexcept { return !refusal && !beside_blow && !uncertain; }
   Level level{};  ///< level of the model that gave the wrench: linkage where `elastic` is not confirmed by the readings
