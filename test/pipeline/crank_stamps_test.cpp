@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "hammer_loads/bench/session_run.h"
@@ -88,20 +89,15 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
 /// counted too late goes back. Energies were 2 times the true one, forces off by their peak.
 TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
   const Settings settings = test::settingsWith("{}");
-  struct Case {
-    double rate;
-    int burst;
-    std::uint64_t seed;
-  };
   // From the fourth on one is lost within the first bursts: all instants stayed wrong.
-  for (const auto& [rate, burst, seed] : {Case{200.0, 3, 1},
-                                          {500.0, 3, 1},
-                                          {1000.0, 3, 1},
-                                          {500.0, 10, 4},
-                                          {500.0, 10, 6},
-                                          {500.0, 10, 7},
-                                          {200.0, 7, 4},
-                                          {1000.0, 5, 6}}) {
+  for (const auto& [rate, burst, seed] : {std::tuple{200.0, 3, 1u},
+                                          {500.0, 3, 1u},
+                                          {1000.0, 3, 1u},
+                                          {500.0, 10, 4u},
+                                          {500.0, 10, 6u},
+                                          {500.0, 10, 7u},
+                                          {200.0, 7, 4u},
+                                          {1000.0, 5, 6u}}) {
     SCOPED_TRACE(testing::Message() << rate << " Hz, bursts of " << burst);
     simulation::MachineSettings machine = eightSecondsOf(settings);
     machine.seed = seed;
