@@ -171,7 +171,7 @@ void SteadyClockFit::watchLost(double residual, double step) noexcept {
   }
   double off = residual - start_mean_;
   // Bursts whose first few are equal to a part of an interval show a loss in the next at once.
-  const bool are_exact = isKnown() && inBursts() && start_variance_ < square(kLeastScatter * interval_);
+  const bool are_exact = isKnown() && inBursts() && start_variance_ < square(2.0 * kLeastScatter * interval_);
   if ((runs_ >= kWarm || are_exact) && interval_ > 0.0) {
     const double scatter = std::max(std::sqrt(start_variance_), kLeastScatter * interval_);
     gatherEvidence(off, scatter, step);
