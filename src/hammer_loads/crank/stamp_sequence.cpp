@@ -15,8 +15,8 @@ constexpr double kMemorySamples = 4096.0;   // samples
 constexpr double kScatterSamples = 300.0;   // over which scatter is learned, but no fewer than kWarm runs
 constexpr int kWarm = 20;                   // runs from which on the line is good enough to judge by
 constexpr int kUnsure = 300;                // stamps that show a miscount before them, however they jitter
-constexpr int kFewest = 3;                  // runs that show whether they are equally long
-constexpr int kTries = 4;                   // beginnings of a line without a loss: jitter spoils each
+constexpr int kFewest = 3;                  // runs from which on a loss shows
+constexpr int kTries = 4;                   // resets of a line for a loss: jitter looks alike
 constexpr int kFirst = 4;                   // runs until there is a line
 constexpr int kKnown = 6;                   // runs until regular bursts show themselves
 constexpr double kAlone = 1.02;             // samples in the mean: stamps do not repeat
@@ -170,7 +170,7 @@ void SteadyClockFit::watchLost(double residual, double step) noexcept {
     return;
   }
   double off = residual - start_mean_;
-  // Bursts whose first few are equal to a part of an interval show a loss in the next at once.
+  // Bursts that scatter by less than a third of an interval show a loss by one stamp.
   const bool are_exact = isKnown() && inBursts() && start_variance_ < square(2.0 * kLeastScatter * interval_);
   if ((runs_ >= kWarm || are_exact) && interval_ > 0.0) {
     const double scatter = std::max(std::sqrt(start_variance_), kLeastScatter * interval_);

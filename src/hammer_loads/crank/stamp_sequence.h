@@ -143,7 +143,7 @@ class SteadyClockFit {
   double residual_{};      ///< stamp less instant, of the last sample [ns]
   double end_residual_{};  ///< residual of the last sample of the run before [ns]
   int run_length_{};       ///< samples with the last stamp
-  int longest_{};          ///< run
+  int longest_{};          ///< samples in the longest run
   double mean_length_{1.0};
   double end_square_{}, step_square_{};     ///< mean squares of the runs' end residuals and of their steps [ns2]
   double end_mean_{};                       ///< mean of the runs' end residuals [ns]
@@ -170,7 +170,7 @@ class SteadyClockFit {
   bool moved_back_{};
   bool is_late_{};  ///< the last stamp is later than scatter makes it
   int runs_{};
-  int begun_{};  ///< number of times that the line has begun anew for a loss
+  int begun_{};  ///< number of resets of the line for a loss
 };
 
 /// A clock that is read in whole steps rounds down, up or to the nearest: the stamps do not say which, and all samples

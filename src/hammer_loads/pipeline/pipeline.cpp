@@ -214,9 +214,10 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
          std::abs(result_.crank.speed) <= kMostSpeedUnproven * nominal_speed;
 }
 
-/// No force of a crank at work is as large as the peak at constant speed: a larger standard deviation says nothing. A
-/// crank held at constant speed shows little of itself: its samples are known where no force's standard deviation is
-/// above five times withhold_above of the peak of the last minute, within the bounds of a turn at constant speed.
+/// No force of a crank at work is as large as the peak at constant speed: with a larger standard deviation a sample
+/// carries no information. A crank held at constant speed shows little of itself: its samples are known where no
+/// force's standard deviation is above five times withhold_above of the peak of the last minute, within the bounds of a
+/// turn at constant speed.
 bool Pipeline::isKnown() const noexcept {
   // A blow without a tool is doubtful while the readings contradict the model.
   if (result_.crank.position.isMirrored() && result_.consistency > CrankTrust::kMost) return false;

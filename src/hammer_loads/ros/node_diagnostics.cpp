@@ -120,7 +120,7 @@ void NodeDiagnostics::describeCrank(Status& status) {
     status.add(std::string("refused: ") + kRefusalNames[i], counts.refused[i]);
   }
   status.add("not published, closer to the blow than the angle is known", counts.beside_blow);
-  status.add("not published: standard deviation of a force as large as forces", counts.uncertain);
+  status.add("not published: standard deviation of a force too large", counts.uncertain);
   status.add("restarts", counts.restarts);
   status.add("blows", counts.blows);
   status.add("blows with an impossible restitution or energy, not counted", counts.impossible_blows);
