@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <limits>
+#include <cstring>
 #include <new>
 #include <utility>
 
@@ -58,13 +58,6 @@ std::vector<std::string> BagLog::settingProblems() const {
   return problems;
 }
 
-LogOrder BagLog::orderNow(LogOrder::Kind kind) const {
-  LogOrder order;
-  order.kind = kind;
-  order.position = queue_.end();
-  return order;
-}
-
 /// Reasons why a log with valid settings cannot begin now: disk or memory.
 std::vector<std::string> BagLog::refuse(LogState state, std::string problem) {
   writer_.refuse(++last_session_, state, problem);
@@ -92,18 +85,14 @@ std::vector<std::string> BagLog::start() {
     return refuse(LogState::kFailed,
                   format("log_queue_mb: %.9g MB, must be <= the free memory", mb(settings_.queue_size)));
   }
-  LogOrder order = orderNow(LogOrder::Kind::kStart);
-  Checked<LogName> name = LogName::take(*directory.value, filePrefix(settings_), order.next_number);
-  if (!name.value) return refuse(LogState::kFailed, name.problems.front());
-  if (!LogFile::hasRoomFor(*name.value, free)) {
+  const Checked<std::shared_ptr<LogFile>> file = LogFile::create(settings_, *directory.value);
+  if (!file.value) return refuse(LogState::kFailed, file.problems.front());
+  if (!(*file.value)->hasRoom(free)) {
     return refuse(LogState::kDiskFull, format("log_directory: '%.300s', must have at least %.9g MB free",
                                               directory.value->c_str(), mb(LogFile::kAllocationStep)));
   }
-
-  order.session = last_session_ + 1;
-  order.directory = *directory.value;
-  order.name.emplace(std::move(*name.value));
-  if (!writer_.post(std::move(order))) return refuse(LogState::kFailed, "log: too many orders wait for the disk");
+  if (!writer_.start(last_session_ + 1, *file.value))
+    return refuse(LogState::kFailed, "log: too many orders wait for the disk");
   session_ = ++last_session_;
   gapNoted();
   return {};
@@ -120,49 +109,21 @@ bool BagLog::hasRoomAgain() const {
 void BagLog::stop() {
   is_wanted_ = false;
   if (session_ == 0) return;
-  LogOrder order = orderNow(LogOrder::Kind::kStop);
-  noteGapIn(order);
-  writer_.post(std::move(order));
-  gapNoted();
+  reportGap(gap_time_, true);
+  writer_.stop();
   session_ = 0;
 }
 
-bool BagLog::split() {
-  if (!isRecording()) return false;
-  LogOrder order = orderNow(LogOrder::Kind::kSplit);
-  noteGapIn(order);
-  if (!writer_.post(std::move(order))) return false;
-  gapNoted();
-  return true;
-}
+bool BagLog::split() { return isRecording() && reportGap(gap_time_, false) && writer_.split(); }
 
-LogTopic& BagLog::addTopic(Names& names, const std::string& key, const std::string& topic, const LogType& type,
-                           bool latched, const std::string& caller) {
-  if (const auto known = names.find(key); known != names.end()) return *known->second;
+LogTopic& BagLog::addTopic(const std::string& key, BagWriter::Connection connection) {
   const std::lock_guard<std::mutex> lock(topics_mutex_);
-  LogTopic& entry = topics_.emplace_back(topics_.size(), topic, type, latched, caller);
-  names.emplace(key, &entry);
-  return entry;
-}
-
-void BagLog::latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint8_t> bytes) {
-  LogOrder order = orderNow(LogOrder::Kind::kLatched);
-  order.topic = &topic;
-  order.time = time;
-  order.bytes = std::move(bytes);
-  if (writer_.post(std::move(order))) return;
-  lose(topic, time);
-  forget(topic);  // earlier latched messages hold no longer
+  return *(by_key_[key] = &topics_.emplace_back(topics_.size(), std::move(connection)));
 }
 
 void BagLog::forgetLatched(const std::string& topic, const std::string& caller) {
-  if (const auto known = latched_.find(latchedKey(topic, caller)); known != latched_.end()) forget(*known->second);
-}
-
-void BagLog::forget(LogTopic& topic) {
-  LogOrder order = orderNow(LogOrder::Kind::kForget);
-  order.topic = &topic;
-  writer_.post(std::move(order));
+  if (const auto known = by_key_.find(latchedKey(topic, caller)); known != by_key_.end())
+    writer_.forget(*known->second);
 }
 
 void BagLog::lose(LogTopic& topic, const ros::Time& time) {
@@ -171,12 +132,11 @@ void BagLog::lose(LogTopic& topic, const ros::Time& time) {
   gap_time_ = time;
 }
 
-/// Serialised message of the losses since the last one.
-std::vector<std::uint8_t> BagLog::describeGap() {
+/// Writes the losses since the last report, if there are any, behind what was queued. Returns false if too many orders
+/// wait.
+bool BagLog::reportGap(const ros::Time& time, bool always) {
   using Gap = diagnostic_msgs::DiagnosticStatus;
-  if (gap_topic_ == nullptr) {
-    gap_topic_ = &addTopic(plain_, gap_name_, gap_name_, typeOf(Gap()), false, {});
-  }
+  if (!has_gap_) return true;
   Gap gap;
   gap.level = Gap::WARN;
   gap.name = settings_.node + ": log";
@@ -185,22 +145,12 @@ std::vector<std::uint8_t> BagLog::describeGap() {
     const std::uint64_t refused = topic.refused.load(std::memory_order_relaxed);
     if (refused == topic.noted) continue;
     gap.values.emplace_back();
-    gap.values.back().key = topic.name;
+    gap.values.back().key = topic.connection.topic;
     gap.values.back().value = std::to_string(refused - topic.noted);
   }
-  return bytesOf(gap);
-}
-
-/// Writes the gap ahead of the next message of the log, as soon as the queue has room again.
-void BagLog::noteGap(const ros::Time& time) {
-  constexpr double kMuchRoom = 0.5;  // else the next message would be lost as well
-  if (queue_.fill() > kMuchRoom) return;
-  const std::vector<std::uint8_t> bytes = describeGap();
-  std::uint8_t* place = queue_.reserve(static_cast<std::uint32_t>(bytes.size()));
-  if (place == nullptr) return;
-  std::copy(bytes.begin(), bytes.end(), place);
-  queue_.commit(*gap_topic_, time);
+  if (!writer_.write({&topicOf(gap_name_, gap_name_, gap), time, bytesOf(gap)}, always)) return false;
   gapNoted();
+  return true;
 }
 
 void BagLog::gapNoted() {
@@ -208,22 +158,16 @@ void BagLog::gapNoted() {
   for (LogTopic& topic : topics_) topic.noted = topic.refused.load(std::memory_order_relaxed);
 }
 
-/// Gap at the end of a bag, if the queue had no room until then.
-void BagLog::noteGapIn(LogOrder& order) {
-  if (!has_gap_) return;
-  order.bytes = describeGap();
-  order.topic = gap_topic_;
-  order.time = gap_time_;
-}
-
 std::vector<std::string> BagLog::unfinishedBags() const {
+  std::vector<std::string> lines;
   const Checked<std::string> directory = findLogDirectory(settings_.directory);
-  return directory.value ? unfinishedLogs(*directory.value, filePrefix(settings_)) : std::vector<std::string>{};
-}
-
-std::string BagLog::recoveryHint(const std::string& path) {
-  const std::string bag = path.substr(0, path.rfind(".active"));
-  return path + " was not closed; to recover it: mv '" + path + "' '" + bag + "' && rosbag reindex '" + bag + "'";
+  if (!directory.value) return lines;
+  for (const std::string& path : unfinishedLogs(*directory.value, filePrefix(settings_))) {
+    const std::string bag = path.substr(0, path.rfind(".active"));
+    lines.push_back(path + " was not closed; to recover it: mv '" + path + "' '" + bag + "' && rosbag reindex '" + bag +
+                    "'");
+  }
+  return lines;
 }
 
 LogHealth BagLog::health() const {
@@ -235,23 +179,13 @@ LogHealth BagLog::health() const {
     const std::uint64_t written = topic.written.load(std::memory_order_relaxed);
     const std::uint64_t dropped =
         topic.refused.load(std::memory_order_relaxed) + topic.unsaved.load(std::memory_order_relaxed);
-    if (topic.name == gap_name_) continue;  // the log's own
-    health.topics.push_back({topic.name, written, dropped, topic.too_large.load(std::memory_order_relaxed)});
+    if (topic.connection.topic == gap_name_) continue;  // the log's own
+    health.topics.push_back(
+        {topic.connection.topic, written, dropped, topic.too_large.load(std::memory_order_relaxed)});
     health.messages_written += written;
     health.messages_dropped += dropped;
   }
   return health;
-}
-
-ros::Time BagLog::nextRecordTime(const ros::Time& arrival, const ros::Time& last) noexcept {
-  constexpr std::uint64_t kGiga = 1'000'000'000;
-  constexpr std::uint64_t kEnd = std::numeric_limits<std::uint32_t>::max() * kGiga + (kGiga - 1);  // year 2106
-  const auto nanoseconds = [](const ros::Time& time) { return time.sec * kGiga + time.nsec; };
-  const std::uint64_t next = std::min(std::max(nanoseconds(arrival), nanoseconds(last) + 1), kEnd);
-  ros::Time time;
-  time.sec = static_cast<std::uint32_t>(next / kGiga);
-  time.nsec = static_cast<std::uint32_t>(next % kGiga);
-  return time;
 }
 
 }  // namespace hammer_loads

@@ -6,8 +6,8 @@
 #include <ros/serialization.h>
 #include <ros/time.h>
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <deque>
 #include <mutex>
 #include <string>
@@ -43,7 +43,7 @@ class BagLog {
   bool split();
 
   /// Queues a copy for the disk if the log is recording. A message that finds no room is dropped and counted.
-  /// topic: resolved name. time: see nextRecordTime; an output gets that of the input that caused it.
+  /// topic: resolved name. time: of RecordClock; an output gets that of the input that caused it.
   template <typename Message>
   void write(const std::string& topic, const ros::Time& time, const Message& message);
 
@@ -59,10 +59,8 @@ class BagLog {
   /// beyond log_min_free_mb. False after stop().
   bool hasRoomAgain() const;
 
-  /// Unclosed bags of earlier runs with this prefix, which `rosbag reindex` recovers (recoveryHint).
+  /// Unclosed bags of earlier runs with this prefix: for each of them one line with the command that recovers it.
   std::vector<std::string> unfinishedBags() const;
-  /// Instruction to recover such a bag, one line.
-  static std::string recoveryHint(const std::string& path);
 
   /// Returns true if the settings log the outputs of that class, or the inputs. The caller obeys.
   bool logs(LoggedOutputs outputs) const noexcept { return outputs <= settings_.outputs; }
@@ -71,38 +69,27 @@ class BagLog {
   bool isRecording() const noexcept { return session_ != 0 && writer_.faultySession() != session_; }
   LogHealth health() const;
 
-  /// Record time of an input: its arrival, but at least 1 ns after the input before. Record times of inputs therefore
-  /// rise in their order of arrival whatever the clock does, and a bag read in time order gives the inputs as they
-  /// came.
-  static ros::Time nextRecordTime(const ros::Time& arrival, const ros::Time& last) noexcept;
-
  private:
-  using Names = std::unordered_map<std::string, LogTopic*>;
-
-  LogOrder orderNow(LogOrder::Kind kind) const;
   std::vector<std::string> refuse(LogState state, std::string problem);
   static std::string latchedKey(const std::string& topic, const std::string& caller) { return topic + '\n' + caller; }
-  LogTopic& addTopic(Names& names, const std::string& key, const std::string& topic, const LogType& type, bool latched,
-                     const std::string& caller);
-  void latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint8_t> bytes);
-  void forget(LogTopic& topic);
+  LogTopic& addTopic(const std::string& key, BagWriter::Connection connection);
   void lose(LogTopic& topic, const ros::Time& time);
-  std::vector<std::uint8_t> describeGap();
-  void noteGap(const ros::Time& time);
-  void noteGapIn(LogOrder& order);
+  bool reportGap(const ros::Time& time, bool always);
   void gapNoted();
 
+  template <typename Message>
+  LogTopic& topicOf(const std::string& key, const std::string& topic, const Message& message, bool latched = false,
+                    const std::string& caller = {}) {
+    const auto known = by_key_.find(key);
+    return known != by_key_.end() ? *known->second
+                                  : addTopic(key, BagWriter::connectionOf(topic, message, latched, caller));
+  }
   template <typename Message>
   static std::vector<std::uint8_t> bytesOf(const Message& message) {
     std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
     ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
     ros::serialization::serialize(stream, message);
     return bytes;
-  }
-  template <typename Message>
-  static LogType typeOf(const Message& message) {
-    using namespace ros::message_traits;
-    return {DataType<Message>::value(message), MD5Sum<Message>::value(message), Definition<Message>::value(message)};
   }
 
   const LogSettings settings_;
@@ -113,23 +100,22 @@ class BagLog {
   bool is_wanted_{};                 // by the last of start() and stop()
   mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads
   std::deque<LogTopic> topics_;
-  Names plain_, latched_;
-  LogTopic* gap_topic_{};  // null: nothing was lost so far
-  bool has_gap_{};         // messages were lost that no bag reports yet
-  ros::Time gap_time_;     // record time of the last of them
+  std::unordered_map<std::string, LogTopic*> by_key_;  // by name, or by latchedKey()
+  bool has_gap_{};                                     // messages were lost that no bag reports yet
+  ros::Time gap_time_;                                 // record time of the last of them
   LogQueue queue_;
   LogWriter writer_;  // last: its thread uses the others
 };
 
 template <typename Message>
 void BagLog::write(const std::string& topic, const ros::Time& time, const Message& message) {
+  constexpr double kMuchRoom = 0.5;  // else the next message would be lost as well
   if (!isRecording()) return;
-  if (has_gap_) noteGap(time);
-  const LogType type = typeOf(message);
-  const auto known = plain_.find(topic);
-  LogTopic& entry = known != plain_.end() ? *known->second : addTopic(plain_, topic, topic, type, false, {});
+  if (has_gap_ && queue_.fill() <= kMuchRoom) reportGap(time, false);
+  LogTopic& entry = topicOf(topic, topic, message);
   const std::uint32_t size = ros::serialization::serializationLength(message);
-  std::uint8_t* bytes = std::strcmp(entry.type.md5sum, type.md5sum) == 0 ? queue_.reserve(size) : nullptr;
+  const bool is_of_its_type = entry.connection.md5sum == ros::message_traits::md5sum(message);
+  std::uint8_t* bytes = is_of_its_type ? queue_.reserve(size) : nullptr;
   if (bytes == nullptr) {
     if (!queue_.canEverHold(size)) entry.too_large.fetch_add(1, std::memory_order_relaxed);
     return lose(entry, time);
@@ -142,11 +128,10 @@ void BagLog::write(const std::string& topic, const ros::Time& time, const Messag
 template <typename Message>
 void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
                           const std::string& caller) {
-  const std::string key = latchedKey(topic, caller);
-  const auto known = latched_.find(key);
-  LogTopic& entry =
-      known != latched_.end() ? *known->second : addTopic(latched_, key, topic, typeOf(message), true, caller);
-  latch(entry, time, bytesOf(message));
+  LogTopic& entry = topicOf(latchedKey(topic, caller), topic, message, true, caller);
+  if (writer_.latch({&entry, time, bytesOf(message)})) return;
+  lose(entry, time);
+  writer_.forget(entry);  // earlier latched messages hold no longer
 }
 
 /// Arrival times, made strictly increasing so that a log in time order is in the order of arrival. If simulated time
@@ -155,14 +140,15 @@ void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const
 class RecordClock {
  public:
   struct Tick {
-    ros::Time time;   ///< record time of the input
+    ros::Time time;   ///< record time of the input: its arrival, but at least 1 ns after the input before
     bool ran_back{};  ///< a state by time must be forgotten
   };
 
   Tick next(const ros::Time& arrival) {
     const bool ran_back = arrival < last_arrival_ && ros::Time::isSimTime();
+    const std::uint64_t earliest = ran_back ? ros::TIME_MIN.toNSec() : last_.toNSec() + 1;
     last_arrival_ = arrival;
-    last_ = BagLog::nextRecordTime(arrival, ran_back ? ros::Time() : last_);
+    last_.fromNSec(std::min(std::max(arrival.toNSec(), earliest), ros::TIME_MAX.toNSec()));
     return {last_, ran_back};
   }
   /// Time of the last input.

@@ -29,6 +29,13 @@ class BagWriter {
     bool latched{};
     std::string caller;  ///< node that published it; empty: none is written
   };
+  /// Connection of a topic for messages of this one's type.
+  template <typename Message>
+  static Connection connectionOf(const std::string& topic, const Message& message, bool latched,
+                                 const std::string& caller = {}) {
+    using namespace ros::message_traits;
+    return {topic, datatype(message), md5sum(message), definition(message), latched, caller};
+  }
 
   /// chunk_size: a chunk is closed when it has this many bytes before compression.
   explicit BagWriter(const std::string& file, std::size_t chunk_size = kChunk,
@@ -41,7 +48,10 @@ class BagWriter {
   template <typename Message>
   void write(const std::string& topic, const ros::Time& time, const Message& message, bool latched = false) {
     const std::uint32_t size = ros::serialization::serializationLength(message);
-    std::uint8_t* place = beginMessage(connectionOf<Message>(topic, latched), time, size);
+    const auto known = numbers_.find(topic);
+    const std::uint32_t connection =
+        known != numbers_.end() ? known->second : addConnection(connectionOf(topic, message, latched));
+    std::uint8_t* place = beginMessage(connection, time, size);
     ros::serialization::OStream stream(place, size);
     ros::serialization::serialize(stream, message);
     endMessage();
@@ -70,17 +80,6 @@ class BagWriter {
   };
   using Places = std::vector<std::pair<ros::Time, std::uint32_t>>;  ///< times and places of messages in their chunk
 
-  template <typename Message>
-  std::uint32_t connectionOf(const std::string& topic, bool latched) {
-    const auto known = numbers_.find(topic);
-    if (known != numbers_.end()) return known->second;
-    return addConnection({topic,
-                          ros::message_traits::datatype<Message>(),
-                          ros::message_traits::md5sum<Message>(),
-                          ros::message_traits::definition<Message>(),
-                          latched,
-                          {}});
-  }
   std::string recordOf(std::uint32_t connection) const;
   std::uint8_t* beginMessage(std::uint32_t connection, const ros::Time& time, std::uint32_t size);
   void endMessage();

@@ -1,112 +1,152 @@
+#include "hammer_loads/log/log_file.h"
+
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <limits>
 #include <system_error>
-#include <utility>
 
-#include "hammer_loads/log/log_writer.h"
+#include "hammer_loads/util/rename_to_new.h"
 
 namespace hammer_loads {
 namespace {
 
 constexpr std::uint64_t kMessageOverhead = 160;  // headers and index entry of one message, incompressible
+constexpr unsigned kMostTries = 10000;
 
 bool isFull(int error) { return error == ENOSPC || error == EDQUOT || error == EFBIG; }
 
-}  // namespace
-
-LogFile::LogFile(LogName name, std::uint32_t chunk_size, LogCompression compression)
-    : name_(std::move(name)), chunk_size_(chunk_size), compression_(compression) {}
-
-LogFile::~LogFile() {
-  if (bag_) close();
+std::string localTime() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  localtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d-%H-%M-%S", &parts);
+  return text;
 }
 
+}  // namespace
+
+Checked<std::shared_ptr<LogFile>> LogFile::create(const LogSettings& settings, const std::string& directory,
+                                                  unsigned number) {
+  Checked<std::shared_ptr<LogFile>> result;
+  const std::string stem = directory + '/' + filePrefix(settings) + '_' + localTime() + '_';
+  const std::shared_ptr<LogFile> file(new LogFile(settings, directory));
+  int error = EEXIST;
+  for (unsigned tries = 0; error == EEXIST && tries < kMostTries; ++tries, ++number) {
+    file->number_ = number;
+    file->final_ = stem + std::to_string(number) + ".bag";
+    file->active_ = file->final_ + ".active";
+    if (faccessat(AT_FDCWD, file->final_.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) continue;
+    file->descriptor_ = ::open(file->active_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (file->descriptor_ >= 0) {
+      flock(file->descriptor_, LOCK_EX | LOCK_NB);  // a sign to others; without it nothing else changes
+      result.value = file;
+      return result;
+    }
+    error = errno;
+  }
+  result.problems.push_back(
+      "log_directory: '" + directory + "', must " +
+      (error == EEXIST ? "have a free name " + stem + "N.bag" : std::string("be writable: ") + std::strerror(error)));
+  return result;
+}
+
+LogFile::~LogFile() {
+  if (descriptor_ < 0) return;
+  struct stat found {};
+  if (fstat(descriptor_, &found) == 0 && found.st_size == 0) unlink(active_.c_str());
+  ::close(descriptor_);
+}
+
+bool LogFile::isDeleted() const noexcept {
+  struct stat found {};
+  return fstat(descriptor_, &found) == 0 && found.st_nlink == 0;
+}
+
+/// An error of the action gives the bag up.
 template <typename Action>
-std::optional<LogFault> LogFile::guarded(Action action) noexcept {
-  const auto fault = [this](LogState state, const char* reason) {
+void LogFile::guarded(const Action& action) {
+  const auto give_up = [this](LogState state, const char* reason) {
     bag_.reset();
-    return LogFault{state, "log file " + name_.active() + ": " + reason + "; rosbag reindex recovers what it holds"};
+    throw LogFault(state, "log file " + active_ + ": " + reason + "; rosbag reindex recovers what it holds");
   };
   try {
     action();
-    return {};
   } catch (const std::system_error& error) {
-    return fault(isFull(error.code().value()) ? LogState::kDiskFull : LogState::kFailed, error.what());
+    give_up(isFull(error.code().value()) ? LogState::kDiskFull : LogState::kFailed, error.what());
   } catch (const std::exception& exception) {
-    return fault(LogState::kFailed, exception.what());
+    give_up(LogState::kFailed, exception.what());
   }
 }
 
-std::optional<LogFault> LogFile::open() {
-  return guarded([this] { bag_.emplace(name_.active(), chunk_size_, compression_); });
+void LogFile::open() {
+  const std::size_t chunk_size = std::min<std::size_t>(BagWriter::kChunk, settings_.split_size / 4);
+  guarded([&] { bag_.emplace(active_, chunk_size, settings_.compression); });
 }
 
-std::uint32_t LogFile::connection(const LogTopic& topic) {
+std::uint32_t LogFile::connectionOf(const LogTopic& topic) {
   if (connections_.size() <= topic.index) connections_.resize(topic.index + 1);
-  std::optional<std::uint32_t>& connection = connections_[topic.index];
-  if (!connection) {
-    const LogType& type = topic.type;
-    connection = bag_->addConnection({topic.name, type.datatype, type.md5sum, type.definition, topic.latched,
-                                      topic.latched ? topic.caller : std::string()});
-  }
-  return *connection;
+  std::optional<std::uint32_t>& number = connections_[topic.index];
+  if (!number) number = bag_->addConnection(topic.connection);
+  return *number;
 }
 
-bool LogFile::hasRoomFor(const LogName& name, std::uint64_t free) noexcept {
-  if (fallocate(name.descriptor(), FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(kAllocationStep)) == 0) return true;
+bool LogFile::hasRoom(std::uint64_t free) const noexcept {
+  if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(kAllocationStep)) == 0) return true;
   return errno != ENOSPC && errno != EDQUOT && free >= kAllocationStep;
 }
 
 /// Allocates disk space ahead of the data, so that close() can write the index even if others fill the disk.
-std::optional<LogFault> LogFile::reserve(std::uint64_t more) noexcept {
+void LogFile::reserve(std::uint64_t more) {
   const std::uint64_t needed = bag_->sizeBound() + more;
-  if (needed <= allocated_) return {};
+  if (needed <= allocated_) return;
   const std::uint64_t wanted = needed + kAllocationStep;
-  if (fallocate(name_.descriptor(), FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(wanted)) == 0) {
+  if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(wanted)) == 0) {
     allocated_ = wanted;
   } else if (isFull(errno)) {
-    return LogFault{LogState::kDiskFull, "no space for log file " + name_.active() + ": " + std::strerror(errno)};
+    throw LogFault(LogState::kDiskFull, "no space for log file " + active_ + ": " + std::strerror(errno));
   } else {
     allocated_ = std::numeric_limits<std::uint64_t>::max();  // not offered by this file system: do without
   }
-  return {};
 }
 
-std::optional<LogFault> LogFile::write(const LogTopic& topic, const ros::Time& time, const std::uint8_t* bytes,
-                                       std::uint32_t size, Clock::time_point now) {
-  std::optional<LogFault> full;
-  auto fault = guarded([&] {
-    const std::uint32_t target = connection(topic);
-    full = reserve(size + kMessageOverhead);
-    if (full) return;
-    bag_->write(target, std::max(time, ros::TIME_MIN), bytes, size);
-    if (!chunk_due_) chunk_due_ = now + kChunkPeriod;
-  });
-  return full ? full : fault;
+void LogFile::write(const LogTopic& topic, const ros::Time& time, const std::uint8_t* bytes, std::uint32_t size,
+                    Clock::time_point now) {
+  const std::uint32_t connection = connectionOf(topic);
+  reserve(size + kMessageOverhead);
+  guarded([&] { bag_->write(connection, std::max(time, ros::TIME_MIN), bytes, size); });
+  if (!chunk_due_) chunk_due_ = now + kChunkPeriod;
 }
 
-std::optional<LogFault> LogFile::closeChunkInTime(Clock::time_point now) {
-  if (!chunk_due_ || now < *chunk_due_) return {};
+void LogFile::closeChunkInTime(Clock::time_point now) {
+  if (!chunk_due_ || now < *chunk_due_) return;
   chunk_due_.reset();
-  return guarded([this] { bag_->closeChunk(); });
+  guarded([this] { bag_->closeChunk(); });
 }
 
-std::optional<LogFault> LogFile::close() {
-  auto fault = guarded([this] { bag_->close(); });
-  if (fault) return fault;
+void LogFile::close() {
+  guarded([this] { bag_->close(); });
   size_ = bag_->size();
   bag_.reset();
   // Space taken ahead is given back.
-  if (ftruncate(name_.descriptor(), static_cast<off_t>(size_)) != 0) allocated_ = 0;
-  const std::string problem = name_.publish();
-  if (!problem.empty()) return LogFault{LogState::kFailed, problem};
+  if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) allocated_ = 0;
+  const std::string stem = final_.substr(0, final_.size() - std::strlen(".bag"));
+  int error = renameToNew(active_, final_);
+  for (unsigned i = 1; error == EEXIST && i < kMostTries; ++i) {
+    final_ = stem + '-' + std::to_string(i) + ".bag";
+    error = renameToNew(active_, final_);
+  }
+  if (error != 0)
+    throw LogFault(LogState::kFailed, "log file " + active_ + " is complete, but cannot be renamed to " + final_ +
+                                          ": " + std::strerror(error));
   is_complete_ = true;
-  return {};
 }
 
 }  // namespace hammer_loads

@@ -10,9 +10,9 @@
 #include <memory>
 #include <new>
 
-#include "hammer_loads/log/log_status.h"
-
 namespace hammer_loads {
+
+struct LogTopic;
 
 /// Ring of bytes. Positions count all bytes that ever passed, so they only grow and order events among records.
 ///

@@ -20,19 +20,13 @@ struct LogSettings {
   LogCompression compression{LogCompression::kLz4};
   std::string directory;       ///< directory as given; a leading ~/ means the home directory of the node's user
   std::string prefix;          ///< file names begin with it; without /; empty: name of the node
-  std::string node;            ///< name of the node that logs, not from a file: see forNode()
+  std::string node;            ///< resolved name of the node that logs, not from a file, e.g. /left/hammer_loads
   std::uint64_t split_size{};  ///< a bag larger than this is closed and a new one begun [byte], > 0
   std::uint64_t total_size{};  ///< size of all bags of this process; the oldest is deleted above it [byte]; 0: no limit
   std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
   /// Messages waiting for the disk; beyond it they are dropped and counted [byte], > 0.
   std::uint64_t queue_size{};
 };
-
-/// The settings of this node. node: resolved name, for instance /left/hammer_loads.
-inline LogSettings forNode(LogSettings settings, const std::string& node) {
-  settings.node = node;
-  return settings;
-}
 
 /// The beginning of file names: the prefix, or the node's name with _ for /, so that two nodes have names of their own.
 inline std::string filePrefix(const LogSettings& settings) {

@@ -20,11 +20,13 @@ namespace hammer_loads {
 /// costs the log, not the node. node: resolved name.
 inline std::unique_ptr<BagLog> makeNodeLog(const LogSettings& settings, const std::string& node,
                                            std::vector<std::string>& problems) {
-  auto log = std::make_unique<BagLog>(forNode(settings, node));
+  LogSettings of_node = settings;
+  of_node.node = node;
+  auto log = std::make_unique<BagLog>(of_node);
   if (!settings.enabled) return log;
   problems = log->settingProblems();
   if (!problems.empty()) return nullptr;
-  for (const std::string& bag : log->unfinishedBags()) ROS_WARN("%s", BagLog::recoveryHint(bag).c_str());
+  for (const std::string& line : log->unfinishedBags()) ROS_WARN("%s", line.c_str());
   for (const std::string& reason : log->start()) ROS_ERROR("%s; the node runs without a log", reason.c_str());
   return log;
 }
