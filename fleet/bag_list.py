@@ -5,29 +5,25 @@ import os
 import pathlib
 import re
 import unicodedata
-from collections import namedtuple
+from collections import Counter, namedtuple
+
+import report_path  # noqa: F401  (sets the path of report)
+from report.database import Problem
 
 # name: of its files below the results, unique. bag: the first of a recording, later: its other splits. problem: why it
 # cannot be tried, or nothing.
 Bag = namedtuple("Bag", "machine bag parameters name problem later", defaults=("", ()))
 
 
-class BadList(Exception):
-    """One line that names the list and the row."""
-
-
-def file_name(machine, bag, parameters):
-    """Readable, and another one for another path, machine or set of parameter files."""
-    readable = re.sub(r"[^A-Za-z0-9._-]", "_", f"{machine}/{pathlib.Path(bag).name}".replace("/", "-", 1))
-    return readable + "-" + hashlib.sha256("\n".join([machine, bag, *parameters]).encode()).hexdigest()[:8]
+def file_name(words, *texts):
+    """Readable name of a file, and another one for other texts."""
+    return re.sub(r"[^A-Za-z0-9._-]", "_", words) + "-" + hashlib.sha256("\n".join(texts).encode()).hexdigest()[:8]
 
 
 def page_name(machine):
     """File name of the machine's page, unique for each machine."""
-    readable = re.sub(r"[^A-Za-z0-9._-]", "_", machine)
-    if readable == machine and machine not in ("all", ".", ".."):
-        return machine
-    return readable + "-" + hashlib.sha256(machine.encode()).hexdigest()[:8]
+    is_fit = re.fullmatch(r"[A-Za-z0-9._-]+", machine) and machine not in ("all", ".", "..")
+    return machine if is_fit else file_name(machine, machine)
 
 
 def shown(name):
@@ -42,36 +38,31 @@ def made(machine, bag, parameters, problem=None):
         if shown(text) != text and problem is None:
             problem = f"{shown(text)}: holds what is no UTF-8 text, or control characters: give it another name"
     machine, bag, parameters = shown(machine), shown(bag), tuple(map(shown, parameters))
-    return Bag(machine, bag, parameters, file_name(machine, bag, parameters), problem)
+    name = file_name(f"{machine}-{os.path.basename(bag)}", machine, bag, *parameters)
+    return Bag(machine, bag, parameters, name, problem)
 
 
 def from_rows(rows, path):
-    folder, bags = os.path.dirname(os.path.abspath(path)), []
+    bags = []
     for at, row in enumerate(rows, 1):
-        if problem := why_no_entry(row):
+        try:
+            bags.append(from_row(row, os.path.dirname(os.path.abspath(path))))
+        except ValueError as fault:
             machine = row.get("machine") if isinstance(row, dict) else None
-            bags.append(made(str(machine or "no machine named"), f"{path}, entry {at}", [], f"entry {at}: {problem}"))
-        else:
-            bags.append(made(str(row["machine"]), os.path.join(folder, row["bag"]),
-                             [os.path.join(folder, name.strip()) for name in parameters_of(row)]))
+            bags.append(made(str(machine or "no machine named"), f"{path}, entry {at}", [], f"entry {at}: {fault}"))
     return bags
 
 
-def parameters_of(row):
-    given = row.get("parameters") or []
-    return given.split(";") if isinstance(given, str) else given
-
-
-def why_no_entry(row):
-    """Fault of a list's entry, or nothing."""
+def from_row(row, folder):
     if not isinstance(row, dict) or not row.get("machine") or not row.get("bag"):
-        return "machine and bag must be given"
+        raise ValueError("machine and bag must be given")
     if not isinstance(row["machine"], (str, int)) or not isinstance(row["bag"], str):
-        return f"machine and bag: {row['machine']!r}, {row['bag']!r}, must be texts"
-    parameters = parameters_of(row)
+        raise ValueError(f"machine and bag: {row['machine']!r}, {row['bag']!r}, must be texts")
+    given = row.get("parameters") or []
+    parameters = given.split(";") if isinstance(given, str) else given
     if not (isinstance(parameters, list) and all(isinstance(name, str) for name in parameters)):
-        return f"parameters: {parameters!r}, must be a list of paths"
-    return None
+        raise ValueError(f"parameters: {parameters!r}, must be a list of paths")
+    return made(str(row["machine"]), os.path.join(folder, row["bag"]), [os.path.join(folder, name.strip()) for name in parameters])
 
 
 def from_folder(folder):
@@ -91,28 +82,27 @@ def read_rows(path):
             with open(path, encoding="utf-8") as file:
                 rows = yaml.safe_load(file)
         except (yaml.YAMLError, UnicodeError, RecursionError) as error:
-            raise BadList(f"{path}: not valid YAML: {' '.join(str(error).split())}")
+            raise Problem(f"{path}: not valid YAML: {' '.join(str(error).split())}")
         if not isinstance(rows, list):
-            raise BadList(f"{path}: must be a list of machine, bag, parameters")
+            raise Problem(f"{path}: must be a list of machine, bag, parameters")
         return rows
     with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:
         reader = csv.DictReader(line.replace("\0", "\x01") for line in file)  # csv ends at the one, not at the other
         if not {"machine", "bag"} <= set(reader.fieldnames or []):
-            raise BadList(f"{path}: the first line must name the columns machine,bag,parameters")
+            raise Problem(f"{path}: the first line must name the columns machine,bag,parameters")
         return list(reader)
 
 
 def read(path):
     """Every bag once, in the order of the list."""
     if not os.path.exists(path):
-        raise BadList(f"{path}: does not exist")
+        raise Problem(f"{path}: does not exist")
     bags = from_folder(path) if os.path.isdir(path) else from_rows(read_rows(path), path)
     if not bags:
-        raise BadList(f"{path}: names no bag")
-    names = [bag.name for bag in bags]
-    twice = sorted({bag.bag for bag in bags if names.count(bag.name) > 1}) if len(set(names)) < len(names) else []
-    if twice:
-        raise BadList(f"{path}: {twice[0]} is in the list twice")
+        raise Problem(f"{path}: names no bag")
+    count = Counter(bag.name for bag in bags)
+    if twice := [bag.bag for bag in bags if count[bag.name] > 1]:
+        raise Problem(f"{path}: {min(twice)} is in the list twice")
     return bags
 
 

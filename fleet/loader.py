@@ -2,7 +2,7 @@
 import datetime
 import json
 
-import programs  # noqa: F401  (sets the path of report)
+import report_path  # noqa: F401  (sets the path of report)
 from report.database import RECORDING, Database, Problem
 from report.quantities import CYLINDERS, QUANTITIES, value_of
 from store import COLUMN_TEXT
@@ -34,21 +34,15 @@ class Loader:
         """True if the merged file changed."""
         with open(outcome_path, encoding="utf-8") as file:
             outcome = json.load(file)
-        source, keys = None, []
-        if outcome["status"] == "done":
-            try:
-                source = Database(outcome_path[:-len(".json")] + ".sqlite")
-                if source.kind != RECORDING:
-                    raise Problem(f"{source.path}: is no result of process_bag")
-                keys = [key for key, in source.rows("SELECT run_key FROM runs ORDER BY run_id")]
-                self._look_for_twin(outcome, keys)
-            except Problem as problem:
-                outcome.update(status="failed", reason=str(problem))
-        if outcome["status"] != "done":
-            source, keys = None, []
-        if self._is_known(outcome, keys):
+        source = None
+        try:
+            source = self._source(outcome, outcome_path[:-len(".json")] + ".sqlite")
+        except Problem as problem:
+            outcome.update(status="failed", reason=str(problem))
+        if self._is_known(outcome, source):
             return False
-        self._remove(outcome)
+        # With the rows of the bag from before it or its parameters changed.
+        self.store.rows("DELETE FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
         self.store.rows("SAVEPOINT before_the_bag")
         try:
             self._add_bag(outcome, source)
@@ -57,34 +51,30 @@ class Loader:
             outcome.update(status="failed", reason=" ".join(str(problem).split()))
             self._add_bag(outcome, None)
         self.store.rows("RELEASE SAVEPOINT before_the_bag")
-        self.store.rows("DELETE FROM stale_machines WHERE machine = ?", outcome["machine"])
-        self.store.insert("stale_machines", ["machine"], [(outcome["machine"],)])
+        self.store.insert("stale_machines", ["machine"], [(outcome["machine"],)], unless_there=True)
         return True
 
-    def _look_for_twin(self, outcome, keys):
-        """Refuses a recording that is loaded under another name: it counts once."""
-        for key in keys:
+    def _source(self, outcome, path):
+        """Database of an outcome; nothing for a bag that gave none. A recording that is in under another name counts once."""
+        if outcome["status"] != "done":
+            return None
+        source = Database(path)
+        if source.kind != RECORDING:
+            raise Problem(f"{path}: is no result of process_bag")
+        for key in run_keys(source):
             other = self.store.row("SELECT bags.machine, bag FROM bags JOIN runs USING(bag_id) WHERE run_key = ?", key)
             if other is not None and tuple(other) != (outcome["machine"], outcome["bag"]):
                 outcome.update(status="twice", reason=f"same recording and parameters as {other[1]} of {other[0]}")
-                return
+                return None
+        return source
 
-    def _is_known(self, outcome, keys):
+    def _is_known(self, outcome, source):
         found = self.store.row("SELECT bag_id, status, reason, input_sha256, parameters_sha256 FROM bags "
                                "WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
         if found is None or tuple(found[1:]) != tuple(outcome[k] for k in OUTCOME[2:]):
             return False
         runs = self.store.rows("SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])
-        return keys == [key for key, in runs]
-
-    def _remove(self, outcome):
-        """Removes the rows of the bag from before it or its parameters changed."""
-        bag = "bag_id IN (SELECT bag_id FROM bags WHERE machine = ? AND bag = ?)"
-        for table in [*COPIED, "run_figures", "run_cylinders", *filter(self.store.columns, OPTIONAL["turns"])]:
-            self.store.rows(f"DELETE FROM {table} WHERE run_id IN (SELECT run_id FROM runs WHERE {bag})",
-                            outcome["machine"], outcome["bag"])
-        for table in ("runs", "bags"):
-            self.store.rows(f"DELETE FROM {table} WHERE {bag}", outcome["machine"], outcome["bag"])
+        return [key for key, in runs] == (run_keys(source) if source else [])
 
     def _add_bag(self, outcome, source):
         """source: its database, or nothing."""
@@ -114,22 +104,17 @@ class Loader:
 
     def _add_parameters(self, source, run):
         key = (run["parameters_sha256"], run["version"])
-        if self.store.row("SELECT 1 FROM parameter_values WHERE parameters_sha256 = ? AND version = ? LIMIT 1", *key):
-            return
-        if not self.store.row("SELECT 1 FROM parameter_sets WHERE parameters_sha256 = ?", key[0]):
-            self.store.insert("parameter_sets", ["parameters_sha256", "parameters_yaml"], [(key[0], run["parameters_yaml"])])
+        self.store.insert("parameter_sets", ["parameters_sha256", "parameters_yaml"], [(key[0], run["parameters_yaml"])], unless_there=True)
+        rows = source.rows("SELECT key, value, shipped FROM parameters WHERE run_id = ?", run["run_id"])
         self.store.insert("parameter_values", ["parameters_sha256", "version", "key", "value", "shipped"],
-                          [(*key, *row) for row in source.rows(
-                              "SELECT key, value, shipped FROM parameters WHERE run_id = ?", run["run_id"])])
+                          ((*key, *row) for row in rows), unless_there=True)
 
     def _copy(self, source, table, shift):
         columns = source.columns(table)
-        if not columns:  # recordings of before 1.0 have neither alarms nor a reference
-            return
         if table not in COPIED:
             self._make_rows_of_turns(table, [c for c in columns if c not in ("run_id", "turn", "stamp_ns")])
         known = self.store.columns(table)
-        names = [name for name in columns if name.lower() in known]
+        names = [name for name in columns if name in known]
         listed = ", ".join(f"run_id + {shift}" if name == "run_id" else name for name in names)
         self.store.insert(table, names, source.rows(f"SELECT {listed} FROM {table}"))
 
@@ -137,20 +122,21 @@ class Loader:
         """Tables of turns have a column for each field of a message: as the first bag has them, later ones are added."""
         known = self.store.columns(table)
         if not known:
-            self.store.rows(f"CREATE TABLE {table}(run_id INTEGER NOT NULL, turn BIGINT NOT NULL, stamp_ns BIGINT, "
-                            "PRIMARY KEY(run_id, turn))")
+            self.store.rows(f"CREATE TABLE {table}(run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, "
+                            "turn BIGINT NOT NULL, stamp_ns BIGINT, PRIMARY KEY(run_id, turn))")
         for name in fields:
-            if name.lower() not in known:
+            if name not in known:
                 self.store.rows(f"ALTER TABLE {table} ADD COLUMN {name} DOUBLE PRECISION")
 
     def _describe(self, source):
         """Units and descriptions of the columns that were copied."""
-        if "columns" not in source.tables():
-            return
-        known = set(self.store.rows("SELECT table_name, column_name FROM columns"))
         self.store.insert("columns", COLUMN_TEXT, [
             row for row in source.rows("SELECT table_name, column_name, unit, description FROM columns")
-            if row[:2] not in known and row[0] in ("runs", *self.tables) and row[1].lower() in self.store.columns(row[0])])
+            if row[0] in ("runs", *self.tables) and row[1] in self.store.columns(row[0])], unless_there=True)
+
+
+def run_keys(source):
+    return [key for key, in source.rows("SELECT run_key FROM runs ORDER BY run_id")]
 
 
 def figures(source, own, run_id):

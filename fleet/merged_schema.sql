@@ -25,7 +25,7 @@ CREATE TABLE parameter_values(
   PRIMARY KEY(parameters_sha256, version, key));
 
 CREATE TABLE runs(
-  run_id INTEGER PRIMARY KEY, bag_id INTEGER NOT NULL REFERENCES bags, run_key TEXT NOT NULL UNIQUE,
+  run_id INTEGER PRIMARY KEY, bag_id INTEGER NOT NULL REFERENCES bags ON DELETE CASCADE, run_key TEXT NOT NULL UNIQUE,
   input_sha256 TEXT NOT NULL, parameters_sha256 TEXT NOT NULL, machine TEXT NOT NULL, version TEXT NOT NULL,
   revision TEXT NOT NULL, first_stamp_ns BIGINT, last_stamp_ns BIGINT, day TEXT, week TEXT,
   duration DOUBLE PRECISION, level TEXT, samples BIGINT, published BIGINT, restarts BIGINT, turns BIGINT,
@@ -38,19 +38,23 @@ CREATE INDEX runs_of_bag ON runs(bag_id);
 CREATE VIEW parameters AS
   SELECT run_id, key, value, shipped FROM runs JOIN parameter_values USING(parameters_sha256, version);
 
-CREATE TABLE refusals(run_id INTEGER NOT NULL, reason TEXT NOT NULL, count BIGINT NOT NULL, PRIMARY KEY(run_id, reason));
-CREATE TABLE warnings(run_id INTEGER NOT NULL, place INTEGER NOT NULL, key TEXT, text TEXT, PRIMARY KEY(run_id, place));
+CREATE TABLE refusals(
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, reason TEXT NOT NULL, count BIGINT NOT NULL,
+  PRIMARY KEY(run_id, reason));
+CREATE TABLE warnings(
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, place INTEGER NOT NULL, key TEXT, text TEXT,
+  PRIMARY KEY(run_id, place));
 CREATE TABLE alarms(
-  run_id INTEGER NOT NULL, name TEXT NOT NULL, level INTEGER, unit TEXT, value DOUBLE PRECISION,
-  value_std DOUBLE PRECISION, limit_value DOUBLE PRECISION, since_ns BIGINT, until_ns BIGINT, turns BIGINT,
-  PRIMARY KEY(run_id, name, since_ns));
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, name TEXT NOT NULL, level INTEGER, unit TEXT,
+  value DOUBLE PRECISION, value_std DOUBLE PRECISION, limit_value DOUBLE PRECISION, since_ns BIGINT, until_ns BIGINT,
+  turns BIGINT, PRIMARY KEY(run_id, name, since_ns));
 CREATE TABLE reference(
-  run_id INTEGER NOT NULL, component TEXT NOT NULL, unit TEXT, samples BIGINT, rms DOUBLE PRECISION,
-  rms_error DOUBLE PRECISION, bias DOUBLE PRECISION, scale DOUBLE PRECISION, correlation DOUBLE PRECISION,
-  within_two_std DOUBLE PRECISION, PRIMARY KEY(run_id, component));
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, component TEXT NOT NULL, unit TEXT, samples BIGINT,
+  rms DOUBLE PRECISION, rms_error DOUBLE PRECISION, bias DOUBLE PRECISION, scale DOUBLE PRECISION,
+  correlation DOUBLE PRECISION, within_two_std DOUBLE PRECISION, PRIMARY KEY(run_id, component));
 
 CREATE TABLE run_figures(
-  run_id INTEGER NOT NULL,    -- [-] number of the run
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,  -- [-] number of the run
   quantity TEXT NOT NULL,     -- [-] blow_rate [Hz], or a column of turns or blows
   count BIGINT NOT NULL,      -- [-] number of turns with a value
   least DOUBLE PRECISION,     -- [quantity] least value of a revolution
@@ -60,7 +64,7 @@ CREATE TABLE run_figures(
   PRIMARY KEY(run_id, quantity));
 
 CREATE TABLE run_cylinders(
-  run_id INTEGER NOT NULL,               -- [-] number of the run
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,  -- [-] number of the run
   cylinder TEXT NOT NULL,                -- [-] name of the cylinder
   turns BIGINT NOT NULL,                 -- [-] number of turns
   stiffness_ratio DOUBLE PRECISION,      -- [-] mean stiffness of its oil over that of the boom file
@@ -69,18 +73,18 @@ CREATE TABLE run_cylinders(
   PRIMARY KEY(run_id, cylinder));
 
 CREATE TABLE channels(
-  run_id INTEGER NOT NULL, channel INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT, counted INTEGER,
-  least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, samples BIGINT, skipped BIGINT, below BIGINT,
-  above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION, mean_std DOUBLE PRECISION,
-  range_own_std DOUBLE PRECISION, range_systematic_std DOUBLE PRECISION,
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, channel INTEGER NOT NULL, name TEXT NOT NULL,
+  unit TEXT, counted INTEGER, least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, samples BIGINT,
+  skipped BIGINT, below BIGINT, above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION,
+  mean_std DOUBLE PRECISION, range_own_std DOUBLE PRECISION, range_systematic_std DOUBLE PRECISION,
   sn_knee_range DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION, sn_slope DOUBLE PRECISION,
   sn_slope_below DOUBLE PRECISION, mean_stress_sensitivity DOUBLE PRECISION, PRIMARY KEY(run_id, channel));
 CREATE TABLE cycles(
-  run_id INTEGER NOT NULL, channel INTEGER NOT NULL, steps INTEGER NOT NULL, low INTEGER NOT NULL,
-  count BIGINT NOT NULL, PRIMARY KEY(run_id, channel, steps, low));
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, channel INTEGER NOT NULL, steps INTEGER NOT NULL,
+  low INTEGER NOT NULL, count BIGINT NOT NULL, PRIMARY KEY(run_id, channel, steps, low));
 CREATE TABLE residues(
-  run_id INTEGER NOT NULL, channel INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
-  PRIMARY KEY(run_id, channel, place));
+  run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, channel INTEGER NOT NULL, place INTEGER NOT NULL,
+  class INTEGER NOT NULL, PRIMARY KEY(run_id, channel, place));
 
 -- Machines that got a bag and whose sums are still to be written.
 CREATE TABLE stale_machines(
@@ -99,14 +103,14 @@ CREATE TABLE machine_channels(
   equivalent_cycles_per_hour DOUBLE PRECISION, largest_range DOUBLE PRECISION, damage DOUBLE PRECISION,
   remaining_hours DOUBLE PRECISION);
 CREATE TABLE machine_equivalents(
-  machine_channel INTEGER NOT NULL,   -- [-] number of the channel of a machine
+  machine_channel INTEGER NOT NULL REFERENCES machine_channels ON DELETE CASCADE,  -- [-] number of the channel of a machine
   slope DOUBLE PRECISION NOT NULL,    -- [-] slope of the S-N line
   equivalent_range DOUBLE PRECISION,  -- [channel] damage-equivalent range
   std DOUBLE PRECISION,               -- [channel] standard deviation
   PRIMARY KEY(machine_channel, slope));
 CREATE TABLE machine_cycles(
-  machine_channel INTEGER NOT NULL, steps INTEGER NOT NULL, low INTEGER NOT NULL, count BIGINT NOT NULL,
-  PRIMARY KEY(machine_channel, steps, low));
+  machine_channel INTEGER NOT NULL REFERENCES machine_channels ON DELETE CASCADE, steps INTEGER NOT NULL,
+  low INTEGER NOT NULL, count BIGINT NOT NULL, PRIMARY KEY(machine_channel, steps, low));
 CREATE TABLE machine_residues(
-  machine_channel INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
-  PRIMARY KEY(machine_channel, place));
+  machine_channel INTEGER NOT NULL REFERENCES machine_channels ON DELETE CASCADE, place INTEGER NOT NULL,
+  class INTEGER NOT NULL, PRIMARY KEY(machine_channel, place));

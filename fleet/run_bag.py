@@ -9,7 +9,8 @@ import os
 import subprocess
 import sys
 
-from programs import inputs, program
+import report_path  # noqa: F401  (sets the path of report)
+from report import inputs
 
 LONGEST_REASON = 500
 
@@ -45,8 +46,7 @@ def processed(bag, database):
         if not os.path.isfile(path):
             return "failed", "does not exist" if not os.path.exists(path) else "is no regular file"
     options = bag["options"] + [word for file in bag["parameters"] for word in ("--params", file)]
-    done = inputs.process(bag["bags"], options, database, program("process_bag"), stderr=subprocess.PIPE, encoding="utf-8",
-                          errors="replace")
+    done = inputs.process(bag["bags"], options, database, stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
     return ("done", None) if done.returncode == 0 else ("failed", reason_of(done))
 
 

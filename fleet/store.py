@@ -1,9 +1,12 @@
 """A merged file: SQLite by a path, PostgreSQL by a connection URL; the same statements for both."""
 import itertools
-import re
 import os
 import pathlib
+import re
 import sqlite3
+
+import report_path  # noqa: F401  (sets the path of report)
+from report.database import Problem
 
 APPLICATION_ID, VERSION = 0x484C5246, 1
 SCHEMA = pathlib.Path(__file__).resolve().parent / "merged_schema.sql"
@@ -24,10 +27,6 @@ def column_texts():
 COLUMN_TEXT = ["table_name", "column_name", "unit", "description"]
 
 
-class BadStore(Exception):
-    """One line that names the file or the server."""
-
-
 class Store:
     """Opened for writing: a new one gets its tables. One writer at a time; another one waits."""
 
@@ -38,6 +37,11 @@ class Store:
 
     def row(self, sql, *values):
         return self.rows(sql, *values).fetchone()
+
+    @staticmethod
+    def _insertion(table, columns, values, unless_there):
+        """Statement; unless_there: a row whose key is in stays as it is."""
+        return f"INSERT INTO {table}({', '.join(columns)}) VALUES {values}" + unless_there * " ON CONFLICT DO NOTHING"
 
     def commit(self):
         self._connection.commit()
@@ -53,14 +57,15 @@ class SqliteStore(Store):
     def __init__(self, path):
         self.name = path
         if os.path.lexists(path) and not os.path.isfile(path):
-            raise BadStore(f"{path}: is no regular file")
+            raise Problem(f"{path}: is no regular file")
         try:
             self._connection = sqlite3.connect(path, isolation_level=None, timeout=60.0)
             self._connection.execute("PRAGMA synchronous = NORMAL")
+            self._connection.execute("PRAGMA foreign_keys = ON")
             self.begin()
             self._check()
         except sqlite3.Error as error:
-            raise BadStore(f"{path}: {error}")
+            raise Problem(f"{path}: {error}")
         self.commit()
 
     def _check(self):
@@ -73,20 +78,20 @@ class SqliteStore(Store):
             self.rows(f"PRAGMA application_id = {APPLICATION_ID}")
             self.rows(f"PRAGMA user_version = {VERSION}")
         elif application != APPLICATION_ID:
-            raise BadStore(f"{self.name}: is another database, no merged file")
+            raise Problem(f"{self.name}: is another database, no merged file")
         elif version != VERSION:
-            raise BadStore(f"{self.name}: merged file of version {version}, this program writes version {VERSION}")
+            raise Problem(f"{self.name}: merged file of version {version}, this program writes version {VERSION}")
 
     def begin(self):
         self.rows("BEGIN IMMEDIATE")
 
-    def insert(self, table, columns, rows):
-        marks = ",".join("?" * len(columns))
-        self._connection.executemany(f"INSERT INTO {table}({','.join(columns)}) VALUES({marks})", rows)
+    def insert(self, table, columns, rows, unless_there=False):
+        marks = f"({','.join('?' * len(columns))})"
+        self._connection.executemany(self._insertion(table, columns, marks, unless_there), rows)
 
     def columns(self, table):
-        """Names in lower case; nothing for a table that is not there."""
-        return [row[1].lower() for row in self.rows(f"PRAGMA table_info({table})")]
+        """Names of the columns; nothing for a table that is not there."""
+        return [row[1] for row in self.rows(f"PRAGMA table_info({table})")]
 
 
 class PostgresStore(Store):
@@ -101,7 +106,7 @@ class PostgresStore(Store):
         try:
             self._connection = psycopg2.connect(url)
         except psycopg2.Error as error:
-            raise BadStore("PostgreSQL: " + " ".join(str(error).split()))
+            raise Problem(f"PostgreSQL: {' '.join(str(error).split())}")
         self.begin()
         if not self.columns("bags"):
             self.rows(SCHEMA.read_text(encoding="utf-8"))
@@ -111,14 +116,14 @@ class PostgresStore(Store):
     def begin(self):
         self.rows("SELECT pg_advisory_xact_lock(?)", APPLICATION_ID)
 
-    def insert(self, table, columns, rows):
+    def insert(self, table, columns, rows, unless_there=False):
         rows, cursor = iter(rows), self._connection.cursor()
-        statement = f"INSERT INTO {table}({','.join(columns)}) VALUES %s"
+        statement = self._insertion(table, columns, "%s", unless_there)
         for some in iter(lambda: list(itertools.islice(rows, ROWS_AT_ONCE)), []):
             self._extras.execute_values(cursor, statement, some, page_size=ROWS_AT_ONCE)
 
     def columns(self, table):
-        """Names in lower case; nothing for a table that is not there."""
+        """Names of the columns; nothing for a table that is not there."""
         return [name for name, in self.rows("SELECT column_name FROM information_schema.columns WHERE table_name = ? "
                                             "AND table_schema = current_schema()", table)]
 

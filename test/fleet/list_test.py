@@ -55,7 +55,7 @@ def test_splits_of_one_recording_are_one_bag(listed):
     ("d.csv", "machine,bag\nred,x.bag\nred,x.bag\n", "twice"), ("e.yaml", "machine: red\n", "must be a list"),
     ("f.yaml", "- {machine: red, bag: \0x}\n", "not valid YAML"), ("g.yaml", "- [", "not valid YAML")])
 def test_bad_ones_are_one_line(listed, name, text, words):
-    with pytest.raises(bag_list.BadList, match=f"{name}: .*{words}"):
+    with pytest.raises(bag_list.Problem, match=f"{name}: .*{words}"):
         listed(name, text)
 
 

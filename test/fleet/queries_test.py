@@ -138,8 +138,3 @@ def test_measured_loads_are_weighted_by_their_samples(merged, answer):
     assert [row[name] for name in ("machine", "component", "runs", "samples")] == ["orange", "force_z", "2", "400"]
     assert float(row["rms_error"]) ** 2 == pytest.approx((900.0 + 3 * 2500.0) / 4)
     assert float(row["bias"]) == pytest.approx(-5.0)
-
-
-def test_recordings_without_tables_of_alarms_are_merged(merged):
-    merged.merge(merged.add("o", sql=("DROP TABLE alarms", "DROP TABLE reference")))
-    assert merged.ask("SELECT count(*) FROM runs") == [(1,)]

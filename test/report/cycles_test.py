@@ -98,6 +98,7 @@ CREATE TABLE cycles(channel INTEGER, day INTEGER, steps INTEGER, low INTEGER, co
   PRIMARY KEY(channel, day, steps, low));
 CREATE TABLE residues(channel INTEGER, run INTEGER, place INTEGER, class INTEGER, PRIMARY KEY(channel, run, place));
 CREATE TABLE marks(mark INTEGER, run INTEGER, PRIMARY KEY(mark, run));
+CREATE TABLE columns(table_name TEXT, column_name TEXT, unit TEXT, description TEXT);
 INSERT INTO epochs VALUES(1, 'mo100', 3600.0);
 INSERT INTO channels VALUES(1, 1, 'hull_wrench/force_z', 'N', -2e5, 2e5, 512, NULL, NULL, NULL, NULL, NULL);
 INSERT INTO channels VALUES(2, 1, 'stress/weld', 'MPa', -4e2, 4e2, 256, 80.0, 1e7, 3.0, 5.0, 0.3);
@@ -145,7 +146,7 @@ def test_figures_of_a_ledger_are_those_of_life(ledger):
     epoch = epochs_of(Database(ledger))[0]
     for channel, expected in zip(epoch.channels(), theirs):
         assert_same_figures(channel, expected)
-        assert channel.sums["below"] + channel.sums["above"] == expected["below"] + expected["above"]
+        assert channel.row["below"] + channel.row["above"] == expected["below"] + expected["above"]
     for at, (_, days) in enumerate(epoch.by_date()):
         for channel, expected in zip(epoch.channels(days), theirs):
             assert_same_figures(channel, expected["days"][at])

@@ -38,8 +38,7 @@ def test_csv_has_every_row_of_every_table(made, tables):
 
 
 def test_first_line_of_csv_has_the_units_of_the_table_columns(made, tables):
-    file = made("a", "CREATE TABLE columns(table_name TEXT, column_name TEXT, unit TEXT, description TEXT)",
-                "INSERT INTO columns VALUES('blows', 'energy', 'J', 'blow energy')")
+    file = made("a", "INSERT INTO columns VALUES('blows', 'energy', 'J', 'blow energy')")
     assert report_here(file, "--csv", tables).returncode == 0
     units = (tables / "blows.csv").read_text().splitlines()[0]
     assert " energy [J], " in units and " restitution [-], " in units

@@ -13,6 +13,7 @@ APPLICATION_ID, VERSION = 0x484C5242, 1
 SECOND = 1000000000
 PULSE = ["period", "amplitude", "angular_frequency", "start", "impulse", "turn_impulse_x",
          "turn_impulse_z", "half_sine_rms_error"]
+STD = ["mean_std", "range_own_std", "range_systematic_std"]
 BLOW = ["rocker_speed_before", "rocker_speed_after", "restitution", "energy", "tool_impulse_x",
         "tool_impulse_z", "support_impulse_x", "support_impulse_z", "mean_hold_down_force"]
 
@@ -32,11 +33,13 @@ CREATE TABLE runs(run_id INTEGER PRIMARY KEY, run_key TEXT NOT NULL UNIQUE, inpu
 CREATE TABLE parameters(run_id INTEGER, key TEXT, value TEXT, shipped TEXT, PRIMARY KEY(run_id, key));
 CREATE TABLE refusals(run_id INTEGER, reason TEXT, count INTEGER);
 CREATE TABLE warnings(run_id INTEGER, place INTEGER, key TEXT, text TEXT);
-CREATE TABLE turns(run_id INTEGER, turn INTEGER, stamp_ns INTEGER, {columns(PULSE)}, PRIMARY KEY(run_id, turn));
-CREATE TABLE blows(run_id INTEGER, turn INTEGER, stamp_ns INTEGER, {columns(BLOW)}, PRIMARY KEY(run_id, turn));
+CREATE TABLE turns(run_id INTEGER, turn INTEGER, stamp_ns INTEGER, {columns(PULSE)}, amplitude_std REAL,
+  PRIMARY KEY(run_id, turn));
+CREATE TABLE blows(run_id INTEGER, turn INTEGER, stamp_ns INTEGER, {columns(BLOW)}, energy_std REAL,
+  restitution_std REAL, PRIMARY KEY(run_id, turn));
 CREATE TABLE channels(run_id INTEGER, channel INTEGER, name TEXT, unit TEXT, counted INTEGER, least REAL,
   greatest REAL, classes INTEGER, samples INTEGER, skipped INTEGER, below INTEGER, above INTEGER, gaps INTEGER,
-  minimum REAL, maximum REAL, mean_std REAL, sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL,
+  minimum REAL, maximum REAL, {columns(STD)}, sn_knee_range REAL, sn_knee_cycles REAL, sn_slope REAL,
   sn_slope_below REAL, mean_stress_sensitivity REAL, PRIMARY KEY(run_id, channel));
 CREATE TABLE turn_loads(run_id INTEGER, turn INTEGER, channel INTEGER, minimum REAL, maximum REAL, mean REAL,
   PRIMARY KEY(run_id, turn, channel)) WITHOUT ROWID;
@@ -52,6 +55,8 @@ CREATE TABLE alarms(run_id INTEGER, name TEXT, level INTEGER, unit TEXT, value R
   since_ns INTEGER, until_ns INTEGER, turns INTEGER, PRIMARY KEY(run_id, name, since_ns));
 CREATE TABLE reference(run_id INTEGER, component TEXT, unit TEXT, samples INTEGER, rms REAL, rms_error REAL, bias REAL,
   scale REAL, correlation REAL, within_two_std REAL, PRIMARY KEY(run_id, component));
+CREATE TABLE budget(run_id INTEGER, quantity TEXT, unit TEXT, value REAL, std REAL, source TEXT, share REAL);
+CREATE TABLE columns(table_name TEXT, column_name TEXT, unit TEXT, description TEXT);
 CREATE TABLE traces(run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time REAL, force_x REAL,
   force_z REAL, torque_y REAL, force_z_std REAL, crank_angle REAL);
 """
@@ -171,17 +176,17 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
                 series[i] += [low, high]
             if rows:
                 loads.append((run_id, turn, i, low, high, mean + 0.3 * share * pulse[1]))
-    db.executemany(f"INSERT INTO turns VALUES({','.join('?' * (3 + len(PULSE)))})", pulses)
-    db.executemany(f"INSERT INTO blows VALUES({','.join('?' * (3 + len(BLOW)))})", blows)
+    db.executemany(f"INSERT INTO turns VALUES({','.join('?' * (3 + len(PULSE)))},NULL)", pulses)
+    db.executemany(f"INSERT INTO blows VALUES({','.join('?' * (3 + len(BLOW)))},NULL,NULL)", blows)
     db.executemany("INSERT INTO turn_loads VALUES(?,?,?,?,?,?)", loads)
     write_oil(db, run_id, machine, turns, rng)
     for i, (name, _, _, scale) in enumerate(channels):
         low, high = (min(series[i]), max(series[i])) if series.get(i) else (None, None)
         stress = name.startswith("stress/") and machine.curve
-        db.execute(f"INSERT INTO channels VALUES({','.join('?' * 21)})",
+        db.execute(f"INSERT INTO channels VALUES({','.join('?' * 23)})",
                    (run_id, i, name, unit_of(name), int(bool(scale)), -scale if scale else None, scale,
                     classes if scale else None, int(1000 * seconds), 0, 0, 0, restarts, low, high,
-                    0.01 * machine.peak_N if name.endswith("force_z") else None,
+                    0.01 * machine.peak_N if name.endswith("force_z") else None, None, None,
                     *((80.0, 1e7, 3.0, 5.0, None) if stress else (None,) * 5)))
         if not scale:
             continue

@@ -84,7 +84,6 @@ def execute(path, *statements):
 def with_budget(path, rows):
     """The database, with rows of its table budget: quantity, value, std, source, share."""
     with contextlib.closing(sqlite3.connect(str(path))) as database, database:
-        database.execute("CREATE TABLE budget(run_id INTEGER, quantity TEXT, unit TEXT, value REAL, std REAL, source TEXT, share REAL)")
         database.executemany("INSERT INTO budget VALUES(1,?,?,?,?,?,?)",
                              [(quantity, sample_database.unit_of(quantity), *row) for quantity, *row in rows])
     return path

@@ -57,7 +57,6 @@ def measured(made):
         alarm % ("peak_force", 1, 9456.0, 91.0, 9000.0, START + 9 * sample.SECOND, START + 9 * sample.SECOND, 1),
         alarm % ("hold_down_force", 2, 3100.0, "NULL", 3000.0, START, START + sample.SECOND, 1234),
         "INSERT INTO reference VALUES (1, 'force_z', 'N', 20000, 4200.0, 84.0, -30.0, 0.985, 0.99871, 0.968)",
-        "ALTER TABLE blows ADD COLUMN energy_std REAL", "ALTER TABLE blows ADD COLUMN restitution_std REAL",
         "UPDATE blows SET energy_std = 7.0, restitution_std = 0.3", seconds=200.0)
 
 

@@ -2,6 +2,7 @@
 import math
 
 from report.blocks import Note, Table
+from report.database import FLEET
 from report.formats import NOTHING, measured, number
 from report.pictures import COLOURS, CURVES, Picture
 from report.quantities import CYLINDERS
@@ -17,10 +18,8 @@ MODES = ("SELECT mode, count(*), min(frequency), avg(frequency), max(frequency),
 
 def cylinders_of(subject):
     """(name, rows of its runs in the order of time)."""
-    tables = subject.database.tables()
-    sql = OF_RUNS if "run_cylinders" in tables else CYLINDERS if "boom_cylinders" in tables else None
-    rows = subject.frame(sql, text=["cylinder"]).dropna(subset=["stiffness"]) if sql else None
-    return [] if rows is None else list(rows.fillna(0.0).groupby("cylinder"))
+    rows = subject.frame(OF_RUNS if subject.database.kind == FLEET else CYLINDERS, text=["cylinder"])
+    return list(rows.dropna(subset=["stiffness"]).fillna(0.0).groupby("cylinder"))
 
 
 def verdict(runs):
@@ -49,13 +48,13 @@ def cylinder_table(found):
 
 def mode_table(subject):
     """Modes of the last run alone: frequencies depend on the pose."""
-    if "boom_modes" not in subject.database.tables() or not subject.runs:
+    if subject.database.kind == FLEET or not subject.runs:
         return None
     rows = [[f"{mode}", f"{number(least, 3)} to {number(most, 3)}", number(mean, 3), measured(damping, deviation), turns]
             for mode, turns, least, mean, most, damping, deviation in
             subject.database.rows(MODES, subject.runs[-1]["run_id"])]
-    return None if not rows else Table("Modes of the last run, over its poses",
-                 ["Mode", "Frequency [Hz]", "Mean [Hz]", "Damping ratio", "Turns"], rows)
+    return Table("Modes of the last run, over its poses", ["Mode", "Frequency [Hz]", "Mean [Hz]", "Damping ratio", "Turns"],
+                 rows) if rows else None
 
 
 def stiffness_picture(found):

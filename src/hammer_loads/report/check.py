@@ -84,7 +84,7 @@ def figures(subject):
     rate = samples / (3600.0 * subject.hours) if subject.hours else None
     share = subject.total("published") / samples if samples else None
     jitter, pitch, consistency = subject.worst("timing_noise"), subject.worst("hull_pitch"), subject.worst("consistency")
-    is_identified = "boom_modes" in database.tables() and database.value("SELECT count(*) FROM boom_modes")
+    is_identified = database.value("SELECT count(*) FROM boom_modes")
     zero = parameters.get("crank_zero_rad")
     return {
         "hammer file": (OK, "given"),

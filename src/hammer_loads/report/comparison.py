@@ -147,7 +147,7 @@ def runs_compared(subject, series):
     for at, run in enumerate(subject.runs):
         figures = by_name(run_figures(run, {key: values.of_run(at) for key, values in series.items()}))
         first = first or figures
-        row, header, doubts = [names[run["run_id"]]], ["Run"], doubts_of(subject, at)
+        row, header, doubts = [names[at]], ["Run"], doubts_of(subject, at)
         for title, figure in figures.items():
             row.append(marked(figure, doubts))
             header.append(title)

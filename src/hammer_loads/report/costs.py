@@ -3,6 +3,7 @@ import numpy
 import pandas
 
 from report.blocks import Block, Details, Note, Table, folded
+from report.cycles import channels_of
 from report.database import FLEET
 from report.formats import in_words, moment, number, utc
 from report.subjects import MOST_TURNS_ONE_BY_ONE
@@ -78,7 +79,7 @@ def grouped_table(caption, title, turns, stretch_ns, name_of):
 def dearest_turns(subject, turns):
     names = subject.recordings()
     dearest = turns.sort_values(["damage", "stamp_ns"], ascending=[False, True]).head(DEAREST)
-    rows = [[moment(turn.stamp_ns), names[subject.runs[turn.run]["run_id"]], int(turn.turn),
+    rows = [[moment(turn.stamp_ns), names[turn.run], int(turn.turn),
              number(100.0 * turn.damage / turns.damage.sum(), 2), turn.peak] for turn in dearest.itertuples()]
     return Table("Most damaging revolutions", ["End (UTC)", "Recording", "Turn", "Damage [%]", "Peak force [kN]"], rows)
 
@@ -104,13 +105,12 @@ def by_recording(subject, channel):
     """Shares by the counted cycles of each run, and by day for a machine of a fleet."""
     if len(subject.runs) > MOST_RECORDINGS:
         return []
-    names = subject.recordings()
-    groups = [(run, run["blows"] or 0, damage_of(piece)) for run, piece in subject.pieces(channel.name)]
-    named = [(names[run["run_id"]], *rest) for run, *rest in groups]
-    tables = [shares_table("Damage by recording", "Recording", "Blows", named)]
+    pieces = [(name, run.get("day") or "?", run["blows"] or 0, damage_of(piece))
+              for name, run in zip(subject.recordings(), subject.runs)
+              for piece in channels_of(subject.database, "r.run_id = ? AND c.name = ?", run["run_id"], channel.name)]
+    tables = [shares_table("Damage by recording", "Recording", "Blows", [(name, *shares) for name, _, *shares in pieces])]
     if subject.database.kind == FLEET:
-        days = [(run["day"] or "?", *rest) for run, *rest in groups]
-        tables.append(shares_table("Damage by day", "Day (UTC)", "Blows", days))
+        tables.append(shares_table("Damage by day", "Day (UTC)", "Blows", [(day, *shares) for _, day, *shares in pieces]))
     return tables
 
 

@@ -19,10 +19,10 @@ def equivalents_table(channels):
     for channel in channels:
         factor, unit = in_unit(channel.unit)
         ranges, _, counts = channel.cycles
-        sums = channel.sums
+        below, above, skipped, gaps = (channel.row[name] or 0 for name in ("below", "above", "skipped", "gaps"))
         rows.append([in_words(channel.name), unit, *(measured(*figure, factor) for figure in channel.equivalents()),
                      ranges.max(initial=0.0) * factor, number(counts.sum(), 6), measured(*channel.damage()),
-                     measured(*channel.remaining_hours()), f"{sums['below'] + sums['above']}, {sums['skipped']}, {sums['gaps']}"])
+                     measured(*channel.remaining_hours()), f"{below + above}, {skipped}, {gaps}"])
     header = ["Channel", "Unit", *(f"Range, slope\u00a0{m:g}" for m in SLOPES), "Largest range", "Cycles", "Damage",
               "Hours left", "Saturated, skipped, gaps"]
     return Table("Damage-equivalent loads", header, rows)

@@ -4,6 +4,7 @@ formulas of life/damage.h (doc/fatigue.md, 3).
 Cycles are an array of three rows: range, mean, count. A figure is (value, standard deviation); the deviation is None where
 the loads have none.
 """
+from collections import Counter, namedtuple
 from functools import cached_property
 import math
 
@@ -15,13 +16,32 @@ CURVE = ("sn_knee_range", "sn_knee_cycles", "sn_slope", "sn_slope_below", "mean_
 # Standard deviations: of a sample; over the range: of a single revolution, and of constants, which does not average out.
 MEANS = ("mean_std", "range_own_std", "range_systematic_std")
 
+# Sums over runs, in the SQL of SQLite and PostgreSQL. Means are weighted by the samples of the runs that have them.
+IDENTITY = ("identity", "name", "least", "greatest", "classes")
+OF_CHANNEL = "FROM runs r JOIN channels c USING(run_id) "
+SAME = "r.machine = ? AND c.name = ? AND c.least = ? AND c.greatest = ? AND c.classes = ?"
+SUMMED = {
+    "hours": "sum(r.duration) / 3600", "equivalent_cycles_per_hour": "max(r.equivalent_cycles_per_hour)",
+    "minimum": "min(c.minimum)", "maximum": "max(c.maximum)", **{name: f"CAST(sum(c.{name}) AS BIGINT)" for name in SUMS},
+    **{name: f"CAST(sum(c.{name} * c.samples) AS DOUBLE PRECISION) / "
+             f"nullif(sum(CASE WHEN c.{name} IS NULL THEN 0 ELSE c.samples END), 0)" for name in MEANS}}
+CHANNELS = (f"SELECT r.machine, c.name, c.least, c.greatest, c.classes, {', '.join(SUMMED.values())} {OF_CHANNEL} "
+            "WHERE {0} AND c.counted = 1 GROUP BY r.machine, c.name, c.least, c.greatest, c.classes "
+            "ORDER BY r.machine, min(c.channel)")
+LATEST = (f"SELECT c.unit, {', '.join('c.' + name for name in CURVE)} {OF_CHANNEL} WHERE {{0}} AND {SAME} "
+          "ORDER BY r.first_stamp_ns DESC LIMIT 1")
+CYCLES = (f"SELECT y.steps, y.low, CAST(sum(y.count) AS BIGINT) {OF_CHANNEL} JOIN cycles y USING(run_id, channel) "
+          f"WHERE {{0}} AND {SAME} GROUP BY y.steps, y.low")
+RESIDUES = (f"SELECT s.class {OF_CHANNEL} JOIN residues s USING(run_id, channel) WHERE {{0}} AND {SAME} "
+            "ORDER BY r.first_stamp_ns, r.run_key, s.place")
+
 
 class Count:
     """Closed cycles {(steps, low): count} and residue (classes in time order) on a grid of equal classes: they add exactly."""
 
     def __init__(self, least, greatest, classes):
         self.grid = (least, greatest, classes)
-        self.closed, self.residue = {}, []
+        self.closed, self.residue = Counter(), []
 
     @property
     def width(self):
@@ -31,7 +51,7 @@ class Count:
     def add_closed(self, cycles):
         """cycles: (steps, low, count)."""
         for steps, low, count in cycles:
-            self.closed[steps, low] = self.closed.get((steps, low), 0) + count
+            self.closed[steps, low] += count
 
     def join(self, residue):
         """The series goes on with what has this residue. Returns the cycles that close across the seam, which are added."""
@@ -43,10 +63,8 @@ class Count:
 
     def cycles(self):
         """Cycles sorted by range, then mean; the residue as half cycles."""
-        halves = {cell: 2 * count for cell, count in self.closed.items()}
-        for b, c in zip(self.residue, self.residue[1:]):
-            cell = (abs(b - c), min(b, c))
-            halves[cell] = halves.get(cell, 0) + 1
+        halves = Counter({cell: 2 * count for cell, count in self.closed.items()})
+        halves.update((abs(b - c), min(b, c)) for b, c in zip(self.residue, self.residue[1:]))
         steps, low = numpy.array(sorted(halves), dtype=float).reshape(-1, 2).T
         counts = numpy.array([halves[cell] for cell in sorted(halves)], dtype=float)
         return numpy.array([steps * self.width, self.grid[0] + (low + 0.5 * steps + 0.5) * self.width, 0.5 * counts])
@@ -94,12 +112,8 @@ def at_alternating(amplitude, mean, sensitivity):
     return slant * amplitude + by_mean * mean, slant
 
 
-class Curve:
+class Curve(namedtuple("Curve", "knee_range knee_cycles slope slope_below sensitivity")):
     """S-N curve of two slopes, with FKM's mean-stress sensitivity or None."""
-
-    def __init__(self, knee_range, knee_cycles, slope, slope_below, sensitivity):
-        self.knee_range, self.knee_cycles = knee_range, knee_cycles
-        self.slope, self.slope_below, self.sensitivity = slope, slope_below, sensitivity
 
     def of_each(self, ranges, means):
         """Damage of one cycle of each range and mean, and its derivative by the range."""
@@ -122,38 +136,18 @@ class Curve:
 class Channel:
     """Cycles of a channel over one or more runs of one machine, the time they took, and what they cost."""
 
-    def __init__(self, row, cycles_per_hour):
-        """row: of a table of channels."""
-        self.name, self.unit, self.cycles_per_hour = row["name"], row["unit"], cycles_per_hour
-        self.count = Count(row["least"], row["greatest"], row["classes"])
+    def __init__(self, row, closed, residue):
+        """row: sums of IDENTITY, SUMMED, CURVE and the unit; closed: rows (steps, low, count); residue: rows (class,)."""
+        self.row, self.name, self.unit = row, row["name"], row["unit"]
+        self.hours, self.cycles_per_hour = row["hours"] or 0.0, row["equivalent_cycles_per_hour"]
         self.curve = Curve(*(row[name] for name in CURVE)) if row["sn_knee_range"] is not None else None
-        self.hours, self.sums = 0.0, dict.fromkeys(SUMS, 0)
-        self._weighted = dict.fromkeys(MEANS, (0.0, 0))  # by the samples, and their number
-
-    def add(self, row, hours):
-        """Adds what a row has of SUMS and MEANS."""
-        self.hours += hours
-        for name in SUMS:
-            self.sums[name] += row[name] or 0
-        for name in MEANS:
-            if row.get(name) is not None and row["samples"]:
-                total, weight = self._weighted[name]
-                self._weighted[name] = (total + row["samples"] * row[name], weight + row["samples"])
-
-    def join(self, later):
-        """Adds a later piece on the same grid."""
-        self.add({**later.sums, **{name: later.mean(name) for name in MEANS}}, later.hours)
-        self.count.add_closed((*cell, count) for cell, count in later.count.closed.items())
-        self.count.join(later.count.residue)
-
-    def mean(self, name):
-        """Mean of one of MEANS over what was added; None where there is none."""
-        total, weight = self._weighted[name]
-        return total / weight if weight else None
+        self.count = Count(row["least"], row["greatest"], row["classes"])
+        self.count.add_closed(closed)
+        self.count.join(level for level, in residue)
 
     def range_std(self):
         """Standard deviation of all ranges: (absolute, over the range), or None."""
-        own, common, of_sample = (self.mean(name) for name in ("range_own_std", "range_systematic_std", "mean_std"))
+        of_sample, own, common = (self.row[name] for name in MEANS)
         if own is not None and common is not None:
             return 0.0, math.hypot(own, common)
         # The two ends of a range err independently.
@@ -161,7 +155,7 @@ class Channel:
 
     @cached_property
     def cycles(self):
-        """Cycles of everything that was added before the first look."""
+        """Cycles of everything that was counted before the first look."""
         return self.count.cycles()
 
     def equivalents(self):
@@ -183,3 +177,13 @@ class Channel:
             return math.inf, None
         life = self.hours / value
         return max(0.0, life - self.hours), None if deviation is None else life / value * deviation
+
+
+def channels_of(database, condition, *values):
+    """Counted channels over the runs r that meet the condition: pieces add exactly, in the order of time. Another machine
+    or grid is another channel. database: a recording or a merged file."""
+    for sums in list(database.rows(CHANNELS.format(condition), *values)):
+        same = (*values, *sums[:len(IDENTITY)])
+        latest = next(iter(database.rows(LATEST.format(condition), *same)))
+        row = dict(zip([*IDENTITY, *SUMMED, "unit", *CURVE], [*sums, *latest]))
+        yield Channel(row, database.rows(CYCLES.format(condition), *same), database.rows(RESIDUES.format(condition), *same))

@@ -8,6 +8,8 @@ from report.database import Database, Problem
 
 TOPICS = {"crank-topic": "the crank's samples", "joint-states-topic": "the boom's joints", "imu-topic": "the hull's IMU",
           "pressures-topic": "the cylinders' pressures, a prefix", "reference-topic": "a measured load on the hull"}
+HERE = pathlib.Path(__file__).resolve().parent
+FOLDERS = [HERE.parents[2] / place / "lib" / "hammer_loads" for place in ("build/devel", "devel", "")]  # of source or prefix
 
 
 def add_bag_options(parser):
@@ -28,10 +30,10 @@ def bag_options(given):
     return options
 
 
-def program(name, folders=None):
-    """Path of a command: in the folder HAMMER_LOADS_PROGRAMS, else in one of these, else beside this command."""
+def program(name):
+    """Path of a command: in the folder HAMMER_LOADS_PROGRAMS, else beside this command, in the build or the installation."""
     chosen = os.environ.get("HAMMER_LOADS_PROGRAMS")
-    for folder in [chosen] if chosen else folders or [pathlib.Path(sys.argv[0]).absolute().parent]:
+    for folder in [chosen] if chosen else [pathlib.Path(sys.argv[0]).absolute().parent, *FOLDERS]:
         path = pathlib.Path(folder) / name
         if path.exists():
             return str(path)
@@ -42,13 +44,12 @@ def is_bag(name):
     return name.endswith(".bag")
 
 
-def recordings(bags, process_bag=None):
-    """Lists of bags: the splits of one recording in their order, as process_bag finds them; every other bag alone.
-    process_bag: path of that program."""
+def recordings(bags):
+    """Lists of bags: the splits of one recording in their order, as process_bag finds them; every other bag alone."""
     alone = [[bag] for bag in bags]
     if len(bags) < 2:
         return alone
-    done = subprocess.run([process_bag or program("process_bag"), "--recordings", *bags], stdout=subprocess.PIPE,
+    done = subprocess.run([program("process_bag"), "--recordings", *bags], stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, encoding="utf-8", errors="surrogateescape")
     splits_of = {}
     for line in done.stdout.splitlines():
@@ -59,9 +60,9 @@ def recordings(bags, process_bag=None):
     return found if whole else alone
 
 
-def process(splits, options, database, process_bag=None, **streams):
+def process(splits, options, database, **streams):
     """The process_bag that has made the database, or that could not."""
-    return subprocess.run([process_bag or program("process_bag"), "--no-bag", *splits, "--db", database, *options],
+    return subprocess.run([program("process_bag"), "--no-bag", *splits, "--db", database, *options],
                           stdout=subprocess.DEVNULL, **streams)
 
 

@@ -5,26 +5,25 @@ from report.cycle_figures import cycle_figures
 from report.cycles import SLOPES, Channel, Count
 from report.formats import in_unit, in_words, measured, number, titled
 
-DEVIATION_UNITS = 1024.0  # per class width, in tallies.deviation_sum
-TALLY = """SELECT sum(counted) AS samples, sum(skipped) AS skipped, sum(below) AS below, sum(above) AS above, sum(gaps) AS gaps,
-    sum(deviation_sum) * ? / nullif(sum(deviations), 0) AS mean_std,
+# Of some days; tallies.deviation_sum counts 1024 for the width of a class.
+CHANNELS = """SELECT c.*, equivalent_cycles_per_hour, sum(skipped) AS skipped, sum(below) AS below, sum(above) AS above,
+    sum(gaps) AS gaps, sum(deviation_sum) * (c.greatest - c.least) / c.classes / 1024 / nullif(sum(deviations), 0) AS mean_std,
     sum(range_own) * 1.0 / nullif(sum(range_square), 0) AS range_own_std,
     sum(range_common) * 1.0 / nullif(sum(range_square), 0) AS range_systematic_std
-    FROM tallies WHERE channel = ? AND day IN ({})"""
-CYCLES = "SELECT steps, low, sum(count) FROM cycles WHERE channel = ? AND day IN ({}) GROUP BY steps, low"
+    FROM channels c JOIN epochs USING(epoch) LEFT JOIN tallies t ON t.channel = c.channel AND day IN ({0})
+    WHERE epoch = ? GROUP BY c.channel ORDER BY c.channel"""
+CYCLES = "SELECT steps, low, sum(count) FROM cycles WHERE channel = ? AND day IN ({0}) GROUP BY steps, low"
 
 
 class Epoch:
     """Period of work with one hammer, boom and set of grids. days: rows of the table for each run and date, in their order."""
 
-    def __init__(self, database, row):
-        self.number, self.per_hour = row["epoch"], row["equivalent_cycles_per_hour"]
-        self.database = database
+    def __init__(self, database, number):
+        self.database, self.number = database, number
         self.days = database.frame("SELECT day, run, date, duration_ns / 3600e9 AS hours, turns AS blows FROM days "
-                                   "WHERE epoch = ? ORDER BY run, day", self.number)
-        self.runs = database.value("SELECT count(*) FROM runs WHERE epoch = ?", self.number)
+                                   "WHERE epoch = ? ORDER BY run, day", number)
+        self.runs = database.value("SELECT count(*) FROM runs WHERE epoch = ?", number)
         self.hours, self.blows = self.days.hours.sum(), int(self.days.blows.sum())
-        self._rows = database.records("SELECT * FROM channels WHERE epoch = ? ORDER BY channel", self.number)
 
     def by_date(self):
         """(date, its days)."""
@@ -32,28 +31,20 @@ class Epoch:
 
     def channels(self, days=None):
         """Channels with the cycles that closed on these days; over all of them (None) with the residue, which is of no day."""
-        return [self._channel(row, self.days if days is None else days, days is None) for row in self._rows]
-
-    def _channel(self, row, days, is_whole):
-        channel, ids = Channel(row, self.per_hour), [int(day) for day in days.day]
-        listed = ", ".join(map(str, ids))
-        unit = channel.count.width / DEVIATION_UNITS
-        channel.add(self.database.records(TALLY.format(listed), unit, row["channel"])[0], days.hours.sum())
-        channel.count.add_closed(self.database.rows(CYCLES.format(listed), row["channel"]))
-        total, last_day = Count(*channel.count.grid), self.days.groupby("run").day.last()
-        for run, residue in self._residues(row["channel"]).items():
-            across = total.join(residue)  # belongs to the last day of the run
-            if is_whole or last_day.get(run) in ids:
-                channel.count.add_closed(across)
-        if is_whole:
-            channel.count.residue = total.residue
-        return channel
-
-    def _residues(self, channel):
-        residues = {}
-        for run, level in self.database.rows("SELECT run, class FROM residues WHERE channel = ? ORDER BY run, place", channel):
-            residues.setdefault(run, []).append(level)
-        return residues
+        shown = self.days if days is None else days
+        listed = ", ".join(map(str, shown.day))
+        for row in self.database.records(CHANNELS.format(listed), self.number):
+            closed = self.database.rows(CYCLES.format(listed), row["channel"])
+            channel = Channel({**row, "hours": shown.hours.sum()}, closed, ())
+            total, last_day = Count(*channel.count.grid), self.days.groupby("run").day.last()
+            points = self.database.frame("SELECT run, class FROM residues WHERE channel = ? ORDER BY run, place", row["channel"])
+            for run, residue in points.groupby("run")["class"]:
+                across = total.join(residue)  # belongs to the last day of the run
+                if last_day.get(run) in shown.day.values:
+                    channel.count.add_closed(across)
+            if days is None:
+                channel.count.residue = total.residue
+            yield channel
 
 
 def days_table(epoch, channels_by_day):
@@ -74,10 +65,10 @@ def days_table(epoch, channels_by_day):
 
 def epoch_blocks(epoch):
     title = f"Epoch {epoch.number}: {number(epoch.hours)} hours, {number(epoch.blows)} blows, {epoch.runs} runs."
-    channels = epoch.channels()
+    channels = list(epoch.channels())
     if not channels or epoch.days.empty:
         return [title, "Nothing was counted yet."]
-    channels_by_day = [epoch.channels(days) for _, days in epoch.by_date()]
+    channels_by_day = [list(epoch.channels(days)) for _, days in epoch.by_date()]
     judged = judged_channel(channels)
     at = channels.index(judged)
     shares = shares_table(f"Share of the damage by day: {rule_of(judged)}", "Day (UTC)", "Blows",
@@ -87,7 +78,7 @@ def epoch_blocks(epoch):
 
 
 def epochs_of(database):
-    return [Epoch(database, row) for row in database.records("SELECT * FROM epochs ORDER BY epoch")]
+    return [Epoch(database, number) for number, in database.rows("SELECT epoch FROM epochs ORDER BY epoch")]
 
 
 def ledger_blocks(database):

@@ -132,8 +132,7 @@ def write_tables(databases, directory):
 
 def units_of(database, table):
     """(column, unit) by the table `columns`."""
-    if "columns" in database.tables():
-        yield from database.rows("SELECT column_name, unit FROM columns WHERE table_name = ?", table)
+    return database.rows("SELECT column_name, unit FROM columns WHERE table_name = ?", table)
 
 
 def rows_of(database, table, columns):

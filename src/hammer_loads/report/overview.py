@@ -103,10 +103,10 @@ def key_figures(subject, series):
 
 
 def runs_table(subject):
-    names = subject.recordings()
-    rows = [[str(at), names[run["run_id"]], moment(run["first_stamp_ns"]), moment(run["last_stamp_ns"]),
+    rows = [[str(at), name, moment(run["first_stamp_ns"]), moment(run["last_stamp_ns"]),
              duration(run["duration"]), number(run["turns"]), number(run["blows"]), run["level"] or NOTHING,
-             f"{run['version']} ({run['revision'][:10]})"] for at, run in enumerate(subject.runs[:MOST_RUNS_SHOWN], 1)]
+             f"{run['version']} ({run['revision'][:10]})"]
+            for at, (name, run) in enumerate(zip(subject.recordings(), subject.runs[:MOST_RUNS_SHOWN]), 1)]
     return Table("Runs", ["Run", "Recording", "From (UTC)", "To (UTC)", "At work", "Turns", "Blows", "Level", "Program"],
                  rows, "words")
 

@@ -13,8 +13,7 @@ QUANTITIES = [
              "rocker's speed after the blow over that before"),
     Quantity("amplitude", "Peak force along the tool", "turns", "amplitude", "kN", 1e-3, "amplitude_std",
              "largest force along the tool in a revolution"),
-    Quantity("mean_hold_down_force", "Hold-down needed", "blows", "mean_hold_down_force", "kN", 1e-3,
-             "mean_hold_down_force_std",
+    Quantity("mean_hold_down_force", "Hold-down needed", "blows", "mean_hold_down_force", "kN", 1e-3, None,
              "mean force that keeps the hull on the tool: tool impulse times blow rate"),
 ]
 

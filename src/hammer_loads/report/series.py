@@ -75,8 +75,7 @@ def series_of(subject, quantity):
         rows = subject.frame("(first_stamp_ns + last_stamp_ns) / 2 AS stamp_ns, least, mean AS middle, greatest, "
                              "NULL AS deviation FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?", quantity.key)
     else:
-        deviation = quantity.deviation if quantity.deviation in subject.database.columns(quantity.table) else "NULL"
-        rows = subject.frame(f"stamp_ns, {value_of(quantity)} AS middle, {deviation} AS deviation "
+        rows = subject.frame(f"stamp_ns, {value_of(quantity)} AS middle, {quantity.deviation or 'NULL'} AS deviation "
                              f"FROM {quantity.table} WHERE {{runs}} ORDER BY turn")
         rows = rows.assign(least=rows.middle, greatest=rows.middle)
     rows = rows.dropna(subset=["stamp_ns", "middle"])
