@@ -8,8 +8,8 @@
 
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/grapple/branches.h"
+#include "hammer_loads/grapple/grapple_settings.h"
 #include "hammer_loads/grapple/grapple_tracker.h"
-#include "hammer_loads/grapple/read_grapple.h"
 #include "hammer_loads/hammer/batch.h"
 #include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/pipeline/filter_settings.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "grapple/grapples.h"
-#include "hammer_loads/grapple/read_grapple.h"
+#include "hammer_loads/grapple/grapple_settings.h"
 #include "settings/temporary_file.h"
 
 namespace hammer_loads {

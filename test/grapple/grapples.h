@@ -10,7 +10,7 @@
 
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple.h"
-#include "hammer_loads/grapple/read_grapple.h"
+#include "hammer_loads/grapple/grapple_settings.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::test {

@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/grapple/grapple_settings.h"
 #include "hammer_loads/grapple/grapple_table.h"
-#include "hammer_loads/grapple/read_grapple.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {

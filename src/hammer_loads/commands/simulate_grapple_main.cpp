@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "hammer_loads/grapple/read_grapple.h"
+#include "hammer_loads/grapple/grapple_settings.h"
 #include "hammer_loads/ros/ros_parameters.h"
 #include "hammer_loads/ros/run_node.h"
 #include "hammer_loads/settings/parameter_reader.h"

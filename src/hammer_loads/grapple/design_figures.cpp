@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -24,6 +25,7 @@ class Path {
  public:
   Path(const Grapple& grapple, double closed, double open) {
     GrappleMotion here = *grapple.at(closed);
+    motions_.push_back(here);
     points_.push_back({closed, 0.0, here.p.im, here.p.im, here.p.im});
     for (int i = 1; i <= kPanels; ++i) {
       const double slider = i == kPanels ? open : closed + (open - closed) * i / kPanels;
@@ -37,10 +39,12 @@ class Path {
       }
       add(here, *next);
       here = *next;
+      motions_.push_back(here);
     }
   }
 
   const std::vector<PathPoint>& points() const { return points_; }
+  const std::vector<GrappleMotion>& motions() const { return motions_; }  ///< at the equidistant slider positions
   double length() const { return points_.back().arc; }
 
   /// Linear between points, which lie closer than 1e-3 of the path.
@@ -82,6 +86,7 @@ class Path {
   }
 
   std::vector<PathPoint> points_;
+  std::vector<GrappleMotion> motions_;
 };
 
 /// 2-norm condition number of the lever group's Jacobian.
@@ -98,23 +103,19 @@ double transmissionAngle(const GrappleMotion& m, Planar o1) {
   return std::atan2(std::abs(cross(to_o1, to_g)), dot(to_o1, to_g));
 }
 
-void addConditioning(const Grapple& grapple, DesignFigures& f) {
-  GrappleMotion m = *grapple.at(f.slider_closed);
-  const auto keep = [](Extreme& extreme, double value, double slider, bool better) {
-    if (better) extreme = {value, slider};
+void addConditioning(const std::vector<GrappleMotion>& motions, Planar o1, DesignFigures& f) {
+  f.least_determinant.value = f.least_transmission.value = kInfinity;
+  const auto least = [](Extreme& extreme, double value, double slider) {
+    if (value < extreme.value) extreme = {value, slider};
   };
-  for (int i = 0; i <= kPanels; ++i) {
-    const double slider =
-        i == kPanels ? f.slider_open : f.slider_closed + (f.slider_open - f.slider_closed) * i / kPanels;
-    const std::optional<GrappleMotion> next = grapple.follow(m, slider);
-    if (!next) continue;
-    m = *next;
-    const double determinant = std::abs(m.determinant), condition = conditionNumber(m);
-    const double transmission = transmissionAngle(m, grapple.parameters().o1);
-    keep(f.least_determinant, determinant, slider, i == 0 || determinant < f.least_determinant.value);
-    keep(f.worst_condition, condition, slider, condition > f.worst_condition.value);
-    keep(f.least_transmission, transmission, slider, i == 0 || transmission < f.least_transmission.value);
-    keep(f.most_transmission, transmission, slider, transmission > f.most_transmission.value);
+  const auto most = [](Extreme& extreme, double value, double slider) {
+    if (value > extreme.value) extreme = {value, slider};
+  };
+  for (const GrappleMotion& m : motions) {
+    least(f.least_determinant, std::abs(m.determinant), m.slider);
+    most(f.worst_condition, conditionNumber(m), m.slider);
+    least(f.least_transmission, transmissionAngle(m, o1), m.slider);
+    most(f.most_transmission, transmissionAngle(m, o1), m.slider);
   }
 }
 
@@ -136,7 +137,7 @@ DesignFigures designFigures(const Grapple& grapple, double slider_closed, double
   f.deviation_whole = path.points().back().deviation();
   f.straight_share_band = path.straightShare(0.5 * kClaimedDeviation);
   f.straight_share_off = path.straightShare(kClaimedDeviation);
-  addConditioning(grapple, f);
+  addConditioning(path.motions(), grapple.parameters().o1, f);
   return f;
 }
 

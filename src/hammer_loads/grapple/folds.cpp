@@ -40,8 +40,7 @@ bool correct(const LeverGroup& group, const FirstRocker& rocker, const Eigen::Ve
   const Eigen::Vector3d start = y;
   for (int i = 0; i < 12; ++i) {
     local = localAt(group, rocker, y);
-    const double tolerance = group.closureRounding();
-    if (std::abs(local.closure.f1) <= tolerance && std::abs(local.closure.f2) <= tolerance) return true;
+    if (group.isMet(local.closure)) return true;
     Eigen::Matrix3d m;
     m << local.df1.transpose(), local.df2.transpose(), normal.transpose();
     y -= m.partialPivLu().solve(Eigen::Vector3d{local.closure.f1, local.closure.f2, 0.0});

@@ -13,45 +13,16 @@ constexpr double kReferenceTolerance = 0.05;  ///< tolerance of the reference an
 constexpr double kClosedTolerance = 1e-9;     ///< by which P may lie beyond the axis when closed [m]
 constexpr double kSameTheta1 = 1e-6;          ///< [rad]: distinguishes the drive's two assemblies
 
-struct NumberKey {
-  const char* key;
-  const char* unit;
-  double value;
-  enum class Sign { kAny, kNotNegative, kPositive } sign;
-};
-
-void checkNumbers(const GrappleParameters& p, std::vector<std::string>& problems) {
-  using Sign = NumberKey::Sign;
-  for (const NumberKey& k : {NumberKey{"o1_x_m", "m", p.o1.re, Sign::kAny},
-                             {"o1_y_m", "m", p.o1.im, Sign::kAny},
-                             {"slider_line_x_m", "m", p.slider_x, Sign::kAny},
-                             {"o1h_length_m", "m", p.o1h, Sign::kPositive},
-                             {"o1a_length_m", "m", p.o1a, Sign::kPositive},
-                             {"ho1a_angle_rad", "rad", p.ho1a, Sign::kAny},
-                             {"gh_length_m", "m", p.gh, Sign::kPositive},
-                             {"ab_length_m", "m", p.ab, Sign::kPositive},
-                             {"ac_length_m", "m", p.ac, Sign::kPositive},
-                             {"bac_angle_rad", "rad", p.bac, Sign::kAny},
-                             {"bd_length_m", "m", p.bd, Sign::kPositive},
-                             {"bp_length_m", "m", p.bp, Sign::kPositive},
-                             {"dbp_angle_rad", "rad", p.dbp, Sign::kAny},
-                             {"ce_length_m", "m", p.ce, Sign::kPositive},
-                             {"od_length_m", "m", p.od, Sign::kPositive},
-                             {"oe_length_m", "m", p.oe, Sign::kPositive},
-                             {"doe_angle_rad", "rad", p.doe, Sign::kAny},
-                             {"slider_closed_m", "m", p.slider_closed, Sign::kAny},
-                             {"slider_open_m", "m", p.slider_open, Sign::kAny},
-                             {"slider_margin_m", "m", p.slider_margin, Sign::kNotNegative},
-                             {"reference_slider_m", "m", p.reference_slider, Sign::kAny},
-                             {"reference_ab_angle_rad", "rad", p.reference_ab, Sign::kAny},
-                             {"reference_od_angle_rad", "rad", p.reference_od, Sign::kAny}}) {
-    const bool good = std::isfinite(k.value) && (k.sign != Sign::kPositive || k.value > 0.0) &&
-                      (k.sign != Sign::kNotNegative || k.value >= 0.0);
-    if (good) continue;
-    const char* allowed = k.sign == Sign::kPositive      ? "> 0 and finite"
-                          : k.sign == Sign::kNotNegative ? ">= 0 and finite"
-                                                         : "finite";
-    problems.push_back(format("%s: %.9g %s, must be %s", k.key, k.value, k.unit, allowed));
+void checkNumbers(GrappleParameters p, std::vector<std::string>& problems) {
+  using Range = GrappleKey::Range;
+  for (const GrappleKey& key : kGrappleKeys) {
+    const double value = key.of(p);
+    const bool in_range = key.range == Range::kAny || value > 0.0 || (key.range == Range::kNotNegative && value == 0.0);
+    if (std::isfinite(value) && in_range) continue;
+    const char* allowed = key.range == Range::kPositive      ? "> 0 and finite"
+                          : key.range == Range::kNotNegative ? ">= 0 and finite"
+                                                             : "finite";
+    problems.push_back(format("%s: %.9g %s, must be %s", key.key, value, key.unit, allowed));
   }
   if (std::abs(p.drive_sign) != 1) problems.push_back(format("drive_sign: %d, must be 1 or -1", p.drive_sign));
 }
@@ -61,35 +32,14 @@ double apart(double angle, double other) { return std::abs(std::remainder(angle 
 }  // namespace
 
 const char* nameOf(SliderLimit::Kind kind) noexcept {
-  switch (kind) {
-    case SliderLimit::Kind::kDeadCentre:
-      return "dead centre";
-    case SliderLimit::Kind::kFold:
-      return "fold";
-    case SliderLimit::Kind::kSingular:
-      break;
-  }
-  return "crossing of branches";
+  constexpr const char* kNames[] = {"dead centre", "fold", "crossing of branches"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 const char* nameOf(SliderRefusal refusal) noexcept {
-  switch (refusal) {
-    case SliderRefusal::kNone:
-      return "accepted";
-    case SliderRefusal::kNotFinite:
-      return "not finite";
-    case SliderRefusal::kOutOfReach:
-      return "out of reach";
-    case SliderRefusal::kAcrossDeadCentre:
-      return "across dead centre";
-    case SliderRefusal::kAcrossFold:
-      return "across fold";
-    case SliderRefusal::kOutsideStroke:
-      return "outside stroke";
-    case SliderRefusal::kNotFound:
-      break;
-  }
-  return "not found";
+  constexpr const char* kNames[kSliderRefusalKinds] = {
+      "accepted", "not finite", "out of reach", "across dead centre", "across fold", "outside stroke", "not found"};
+  return kNames[static_cast<std::size_t>(refusal)];
 }
 
 Grapple::Grapple(const GrappleParameters& p)

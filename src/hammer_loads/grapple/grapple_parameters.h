@@ -33,4 +33,42 @@ struct GrappleParameters {
   double reference_od{};      ///< direction of OD there, to 0.05 rad [rad]
 };
 
+/// A number of the grapple file.
+struct GrappleKey {
+  enum class Range { kAny, kNotNegative, kPositive };
+
+  const char* key;
+  const char* unit;
+  double& (*of)(GrappleParameters&);
+  Range range{Range::kAny};
+};
+
+/// All keys of the grapple file but drive_sign.
+inline constexpr GrappleKey kGrappleKeys[] = {
+    {"o1_x_m", "m", [](GrappleParameters& p) -> double& { return p.o1.re; }},
+    {"o1_y_m", "m", [](GrappleParameters& p) -> double& { return p.o1.im; }},
+    {"slider_line_x_m", "m", [](GrappleParameters& p) -> double& { return p.slider_x; }},
+    {"o1h_length_m", "m", [](GrappleParameters& p) -> double& { return p.o1h; }, GrappleKey::Range::kPositive},
+    {"o1a_length_m", "m", [](GrappleParameters& p) -> double& { return p.o1a; }, GrappleKey::Range::kPositive},
+    {"ho1a_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.ho1a; }},
+    {"gh_length_m", "m", [](GrappleParameters& p) -> double& { return p.gh; }, GrappleKey::Range::kPositive},
+    {"ab_length_m", "m", [](GrappleParameters& p) -> double& { return p.ab; }, GrappleKey::Range::kPositive},
+    {"ac_length_m", "m", [](GrappleParameters& p) -> double& { return p.ac; }, GrappleKey::Range::kPositive},
+    {"bac_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.bac; }},
+    {"bd_length_m", "m", [](GrappleParameters& p) -> double& { return p.bd; }, GrappleKey::Range::kPositive},
+    {"bp_length_m", "m", [](GrappleParameters& p) -> double& { return p.bp; }, GrappleKey::Range::kPositive},
+    {"dbp_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.dbp; }},
+    {"ce_length_m", "m", [](GrappleParameters& p) -> double& { return p.ce; }, GrappleKey::Range::kPositive},
+    {"od_length_m", "m", [](GrappleParameters& p) -> double& { return p.od; }, GrappleKey::Range::kPositive},
+    {"oe_length_m", "m", [](GrappleParameters& p) -> double& { return p.oe; }, GrappleKey::Range::kPositive},
+    {"doe_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.doe; }},
+    {"slider_closed_m", "m", [](GrappleParameters& p) -> double& { return p.slider_closed; }},
+    {"slider_open_m", "m", [](GrappleParameters& p) -> double& { return p.slider_open; }},
+    {"slider_margin_m", "m", [](GrappleParameters& p) -> double& { return p.slider_margin; },
+     GrappleKey::Range::kNotNegative},
+    {"reference_slider_m", "m", [](GrappleParameters& p) -> double& { return p.reference_slider; }},
+    {"reference_ab_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.reference_ab; }},
+    {"reference_od_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.reference_od; }},
+};
+
 }  // namespace hammer_loads

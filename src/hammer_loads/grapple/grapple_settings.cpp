@@ -1,10 +1,8 @@
 #include "hammer_loads/grapple/grapple_settings.h"
 
 #include <array>
-#include <optional>
 #include <utility>
 
-#include "hammer_loads/grapple/read_grapple.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/readers.h"
 
@@ -31,29 +29,38 @@ Checked<GrappleSettings> settingsFrom(ParameterMap parameters) {
 
 }  // namespace
 
+std::optional<Grapple> readGrapple(ParameterReader& reader) {
+  const std::size_t problems_before = reader.problems().size();
+  GrappleParameters parameters;
+  // Grapple::make judges signs and the relations between keys.
+  for (const GrappleKey& key : kGrappleKeys) key.of(parameters) = reader.number(key.key, key.unit, NumberRule::any());
+  parameters.drive_sign = static_cast<int>(reader.integer("drive_sign", "", -1, 1));
+
+  Checked<Grapple> grapple = Grapple::make(parameters);
+  for (const std::string& problem : grapple.problems) reader.addProblem(problem);
+  if (reader.problems().size() != problems_before) return std::nullopt;
+  return grapple.value;
+}
+
+Checked<Grapple> loadGrapple(const std::vector<std::string>& files) {
+  return loadFrom(files, [](ParameterMap parameters) {
+    ParameterReader reader(std::move(parameters));
+    const std::optional<Grapple> grapple = readGrapple(reader);
+    reader.reportUnknownKeys();
+    return Checked<Grapple>{grapple, reader.problems(), {}};
+  });
+}
+
 Checked<GrappleSettings> loadGrappleSettings(const std::string& config_directory, const ParameterMap& given) {
-  Checked<GrappleSettings> result;
-  ParameterMap parameters;
-  std::vector<std::string> problems;
-  const std::vector<std::string> shipped{config_directory + "/log.yaml", config_directory + "/grapple_node.yaml"};
-  const bool all_read = addFiles(shipped, parameters, problems);
-  merge(given, parameters);
-  if (all_read) result = settingsFrom(std::move(parameters));
-  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
-  if (!result.problems.empty()) result.value.reset();
-  return result;
+  return loadFrom({config_directory + "/log.yaml", config_directory + "/grapple_node.yaml"}, [&](ParameterMap all) {
+    merge(given, all);
+    return settingsFrom(std::move(all));
+  });
 }
 
 Checked<GrappleSettings> loadGrappleSettings(const std::string& config_directory,
                                              const std::vector<std::string>& files) {
-  Checked<GrappleSettings> result;
-  ParameterMap given;
-  std::vector<std::string> problems;
-  // A key would seem missing that an unread file may have.
-  if (addFiles(files, given, problems)) result = loadGrappleSettings(config_directory, given);
-  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
-  if (!result.problems.empty()) result.value.reset();
-  return result;
+  return loadFrom(files, [&](const ParameterMap& given) { return loadGrappleSettings(config_directory, given); });
 }
 
 }  // namespace hammer_loads

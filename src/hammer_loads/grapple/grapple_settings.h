@@ -1,6 +1,7 @@
-/// Settings of the grapple node and of process_grapple, from parameters.
+/// The grapple and the settings of grapple_node and process_grapple, from parameters.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,14 @@
 #include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
+
+class ParameterReader;
+
+/// The grapple, every key of its file required. Nothing when the reader got a problem with it.
+std::optional<Grapple> readGrapple(ParameterReader& reader);
+
+/// The grapple alone from files; a later file's key replaces an earlier one's. Unknown keys are problems.
+Checked<Grapple> loadGrapple(const std::vector<std::string>& files);
 
 /// Source of the slider's acceleration, which a JointState does not carry.
 enum class SliderAcceleration {

@@ -9,37 +9,21 @@ namespace hammer_loads {
 namespace {
 
 std::optional<std::string> printRows(const Grapple& grapple, double from, double to, int steps, std::ostream& out) {
-  out << motionCsvHeader() << '\n';
+  out << "s_m,x_m,y_m,dx_ds,dy_ds,d2x_ds2,d2y_ds2\n";
   std::optional<GrappleMotion> motion;
   for (int i = 0; i <= steps && out; ++i) {
     const double slider = i == 0 ? from : i == steps ? to : from + (to - from) * i / steps;
     motion = motion ? grapple.follow(*motion, slider) : grapple.at(slider);
     if (!motion) return grapple.explain(SliderRefusal::kNotFound, slider);
-    out << motionCsvLine(*motion) << '\n';
+    const GrappleMotion& m = *motion;
+    out << format("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", m.slider + 0.0, m.p.re, m.p.im, m.dp.re, m.dp.im,
+                  m.ddp.re, m.ddp.im);
   }
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<std::string> printTable(const Grapple& grapple, const TableRequest& request, std::ostream& out) {
-  if (request.opening) {
-    const Checked<double> slider = sliderForOpening(grapple, *request.opening);
-    if (!slider.value) return "--" + slider.problems.front();
-    return printRows(grapple, *slider.value, *slider.value, 0, out);
-  }
-  const double from = request.from.value_or(grapple.parameters().slider_closed);
-  const double to = request.to.value_or(grapple.parameters().slider_open);
-  for (const auto& [name, slider] : {std::pair{"--from", from}, std::pair{"--to", to}}) {
-    const SliderRefusal refusal = grapple.judge(slider);
-    if (refusal != SliderRefusal::kNone) return grapple.explain(refusal, slider, name);
-  }
-  if (!request.summary) return printRows(grapple, from, to, request.steps, out);
-  out << summaryText(grapple, designFigures(grapple, from, to));
-  return std::nullopt;
-}
-
-std::string summaryText(const Grapple& grapple, const DesignFigures& f) {
+/// The design figures with the limits of the working branch.
+std::string designSummary(const Grapple& grapple, const DesignFigures& f) {
   std::string text;
   const auto number = [&text](const char* key, double value) { text += format("%s: %.12g\n", key, value + 0.0); };
   number("slider_closed_m", f.slider_closed);
@@ -66,11 +50,23 @@ std::string summaryText(const Grapple& grapple, const DesignFigures& f) {
   return text;
 }
 
-std::string motionCsvHeader() { return "s_m,x_m,y_m,dx_ds,dy_ds,d2x_ds2,d2y_ds2"; }
+}  // namespace
 
-std::string motionCsvLine(const GrappleMotion& m) {
-  return format("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", m.slider + 0.0, m.p.re, m.p.im, m.dp.re, m.dp.im, m.ddp.re,
-                m.ddp.im);
+std::optional<std::string> printTable(const Grapple& grapple, const TableRequest& request, std::ostream& out) {
+  if (request.opening) {
+    const Checked<double> slider = sliderForOpening(grapple, *request.opening);
+    if (!slider.value) return "--" + slider.problems.front();
+    return printRows(grapple, *slider.value, *slider.value, 0, out);
+  }
+  const double from = request.from.value_or(grapple.parameters().slider_closed);
+  const double to = request.to.value_or(grapple.parameters().slider_open);
+  for (const auto& [name, slider] : {std::pair{"--from", from}, std::pair{"--to", to}}) {
+    const SliderRefusal refusal = grapple.judge(slider);
+    if (refusal != SliderRefusal::kNone) return grapple.explain(refusal, slider, name);
+  }
+  if (!request.summary) return printRows(grapple, from, to, request.steps, out);
+  out << designSummary(grapple, designFigures(grapple, from, to));
+  return std::nullopt;
 }
 
 }  // namespace hammer_loads

@@ -17,14 +17,8 @@ struct TableRequest {
   bool summary{};                 ///< figures of the path between from and to instead of rows
 };
 
-/// Nothing, or one line that gives the reason; then nothing has been printed unless a row in the middle failed.
+/// Prints rows with 17 significant digits, or `key: value` lines with 12. Returns nothing, or one line that gives the
+/// reason; then nothing has been printed unless a row in the middle failed.
 std::optional<std::string> printTable(const Grapple& grapple, const TableRequest& request, std::ostream& out);
-
-/// Names and units of the columns.
-std::string motionCsvHeader();
-/// 17 significant digits.
-std::string motionCsvLine(const GrappleMotion& motion);
-/// `key: value` lines, 12 significant digits, with the limits of the working branch.
-std::string summaryText(const Grapple& grapple, const DesignFigures& figures);
 
 }  // namespace hammer_loads

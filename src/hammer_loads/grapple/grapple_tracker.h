@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <optional>
 
 #include "hammer_loads/grapple/grapple.h"
 
@@ -15,31 +18,47 @@ class GrappleTracker {
   explicit GrappleTracker(const Grapple& grapple) : grapple_(grapple) {}
 
   /// kNone: accepted, motion() and both jaws belong to the sample. Else nothing has changed and the refusal is counted.
-  SliderRefusal update(const SliderMotion& sample) noexcept;
+  SliderRefusal update(const SliderMotion& sample) noexcept {
+    const bool finite = std::isfinite(sample.velocity) && std::isfinite(sample.acceleration);
+    SliderRefusal refusal = finite ? grapple_.judgeInStroke(sample.position) : SliderRefusal::kNotFinite;
+    if (refusal == SliderRefusal::kNone) {
+      const std::optional<GrappleMotion> next =
+          hasMotion() ? grapple_.follow(*motion_, sample.position) : grapple_.at(sample.position);
+      if (next) {
+        motion_ = next;
+        slider_ = sample;
+      } else {
+        refusal = SliderRefusal::kNotFound;
+      }
+    }
+    ++counts_[static_cast<std::size_t>(refusal)];
+    return refusal;
+  }
 
   /// Forgets the pose, not the counts: the next sample starts cold.
-  void reset() noexcept { has_motion_ = false; }
+  void reset() noexcept { motion_.reset(); }
 
-  bool hasMotion() const noexcept { return has_motion_; }  ///< a sample has been accepted since the start or reset()
+  bool hasMotion() const noexcept {
+    return motion_.has_value();
+  }  ///< a sample has been accepted since the start or reset()
   /// Results of the last accepted sample. Precondition of these four: hasMotion().
   const SliderMotion& slider() const noexcept { return slider_; }
-  const GrappleMotion& motion() const noexcept { return motion_; }
-  JawMotion right() const noexcept { return rightJaw(motion_, slider_.velocity, slider_.acceleration); }
+  const GrappleMotion& motion() const noexcept { return *motion_; }
+  JawMotion right() const noexcept { return rightJaw(*motion_, slider_.velocity, slider_.acceleration); }
   JawMotion left() const noexcept { return leftJaw(right()); }
 
   /// Samples by outcome since construction; kNone counts the accepted ones.
   std::uint64_t count(SliderRefusal refusal) const noexcept { return counts_[static_cast<std::size_t>(refusal)]; }
-  std::uint64_t refused() const noexcept;
+  std::uint64_t refused() const noexcept {
+    return std::accumulate(counts_.begin() + 1, counts_.end(), std::uint64_t{0});
+  }
 
   const Grapple& grapple() const noexcept { return grapple_; }
 
  private:
-  SliderRefusal judge(const SliderMotion& sample) const noexcept;
-
   Grapple grapple_;
   SliderMotion slider_;
-  GrappleMotion motion_;
-  bool has_motion_{};
+  std::optional<GrappleMotion> motion_;
   std::array<std::uint64_t, kSliderRefusalKinds> counts_{};
 };
 

@@ -8,6 +8,9 @@
 namespace hammer_loads {
 namespace {
 
+/// Residual of the closures below which a pose cannot be improved, relative to the squared size of the group: the
+/// rounding of sums of some five terms of that size.
+constexpr double kClosureRounding = 8.0 * 2.220446049250313e-16;
 constexpr double kLargestStep = 0.3;  ///< largest Newton step [rad]: longer ones leave the basin
 constexpr double kLastStep = 1e-10;   ///< [rad]: its square is below rounding
 constexpr double kNoisyStep = 1e-8;   ///< [rad]: beside a fold steps may stay as long as this; its square is rounding
@@ -111,12 +114,11 @@ GroupRates LeverGroup::rates(Planar o1a, const GroupPose& p, const Closure& k) c
   solution(-cross(o1a, p.u), -cross(o1a, p.v), r.w2, r.w5);  // df/dtheta1 = -(u . i o1a, v . i o1a)
   const double ww2 = r.w2 * r.w2, ww5 = r.w5 * r.w5;
   r.du = turned(r.w5 * p.d - o1a - r.w2 * p.b);
-  r.dv = turned(r.w5 * p.e - o1a - r.w2 * p.c);
+  const Planar dv = turned(r.w5 * p.e - o1a - r.w2 * p.c);
   const Planar ddu_at_rest = o1a + ww2 * p.b - ww5 * p.d;  // without the second derivatives of the angles
   const Planar ddv_at_rest = o1a + ww2 * p.c - ww5 * p.e;
-  solution(squaredNorm(r.du) + dot(p.u, ddu_at_rest), squaredNorm(r.dv) + dot(p.v, ddv_at_rest), r.z2, r.z5);
+  solution(squaredNorm(r.du) + dot(p.u, ddu_at_rest), squaredNorm(dv) + dot(p.v, ddv_at_rest), r.z2, r.z5);
   r.ddu = ddu_at_rest + turned(r.z5 * p.d - r.z2 * p.b);
-  r.ddv = ddv_at_rest + turned(r.z5 * p.e - r.z2 * p.c);
   r.dp = turned(o1a + r.w2 * p.b) + r.du * shape_.p_by_bd;
   r.ddp = turned(r.z2 * p.b) - o1a - ww2 * p.b + r.ddu * shape_.p_by_bd;
   return r;

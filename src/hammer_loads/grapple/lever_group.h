@@ -12,10 +12,6 @@ namespace hammer_loads {
 
 struct GrappleParameters;
 
-/// Residual of the closures below which a pose cannot be improved, relative to the squared size of the group: the
-/// rounding of sums of some five terms of that size.
-inline constexpr double kClosureRounding = 8.0 * 2.220446049250313e-16;
-
 /// One pose of the group; vectors in the grapple frame [m].
 struct GroupPose {
   double theta2{}, theta5{};  ///< directions of AB and OD [rad]
@@ -36,7 +32,6 @@ struct GroupRates {
   double w2{}, w5{};  ///< first derivative of theta2, theta5 [-]
   double z2{}, z5{};  ///< second derivative [1/rad]
   Planar du, ddu;     ///< derivatives of u [m/rad], [m/rad2]
-  Planar dv, ddv;     ///< derivatives of v
   Planar dp, ddp;     ///< derivatives of the jaw edge P
 };
 
@@ -71,18 +66,18 @@ class LeverGroup {
     return a + pose.b + shortening * (pose.u * shape_.p_by_bd);
   }
 
-  double closureRounding() const noexcept { return closure_rounding_; }  ///< [m2]
+  /// Returns true if both closures are met to rounding.
+  bool isMet(const Closure& k) const noexcept {
+    return std::abs(k.f1) <= closure_rounding_ && std::abs(k.f2) <= closure_rounding_;
+  }
 
   const GroupShape& shape() const noexcept { return shape_; }
 
  private:
-  bool isMet(const Closure& k) const noexcept {
-    return std::abs(k.f1) <= closure_rounding_ && std::abs(k.f2) <= closure_rounding_;
-  }
   void turn(Planar a, double step2, double step5, GroupPose& pose) const noexcept;
 
   GroupShape shape_;
-  double closure_rounding_;
+  double closure_rounding_;  ///< [m2]
 };
 
 }  // namespace hammer_loads

@@ -7,7 +7,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
 
@@ -35,5 +38,24 @@ void merge(const ParameterMap& over, ParameterMap& base);
 
 /// Adds the files' keys to `parameters`, in order. False when one could not be read at all.
 bool addFiles(const std::vector<std::string>& files, ParameterMap& parameters, std::vector<std::string>& problems);
+
+/// The result with `problems` before its own; without a value if there are any.
+template <typename T>
+Checked<T> behind(const std::vector<std::string>& problems, Checked<T> result) {
+  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
+  if (!result.problems.empty()) result.value.reset();
+  return result;
+}
+
+/// Result of load(parameters) for the files' parameters, behind the problems of the files. Where a file cannot be read
+/// at all, load is not called: its keys would be reported as missing.
+template <typename Load>
+auto loadFrom(const std::vector<std::string>& files, const Load& load) -> decltype(load(ParameterMap())) {
+  std::vector<std::string> problems;
+  ParameterMap parameters;
+  decltype(load(ParameterMap())) result;
+  if (addFiles(files, parameters, problems)) result = load(std::move(parameters));
+  return behind(problems, std::move(result));
+}
 
 }  // namespace hammer_loads
