@@ -7,7 +7,6 @@ import re
 import unicodedata
 from collections import Counter, namedtuple
 
-import report_path  # noqa: F401  (sets the path of report)
 from report.database import Problem
 
 # name: of its files below the results, unique. bag: the first of a recording, later: its other splits. problem: why it

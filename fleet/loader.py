@@ -2,7 +2,6 @@
 import datetime
 import json
 
-import report_path  # noqa: F401  (sets the path of report)
 from report.database import RECORDING, Database, Problem
 from report.quantities import CYLINDERS, QUANTITIES, value_of
 from store import COLUMN_TEXT

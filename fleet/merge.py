@@ -7,6 +7,7 @@ import argparse
 import itertools
 import sys
 
+import report_path  # noqa: F401  (sets the path of report)
 import store
 from loader import OPTIONAL, Loader
 from report.cycles import SLOPES, channels_of

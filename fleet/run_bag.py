@@ -52,7 +52,7 @@ def processed(bag, database):
 
 def main(bag, database, outcome_path):
     """bag: JSON of machine, bags (of one recording, in order), parameters, options (of process_bag), problem (why it cannot be
-    tried). Writes the database, empty if the bag gives none, and the outcome."""
+    tried), states. Writes the database, empty if the bag gives none, and the outcome."""
     bag = json.loads(bag)
     for path in (database, outcome_path):
         os.makedirs(os.path.dirname(path), exist_ok=True)

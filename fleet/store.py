@@ -5,7 +5,6 @@ import pathlib
 import re
 import sqlite3
 
-import report_path  # noqa: F401  (sets the path of report)
 from report.database import Problem
 
 APPLICATION_ID, VERSION = 0x484C5246, 1

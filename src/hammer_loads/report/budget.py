@@ -1,8 +1,9 @@
 """Uncertainty budget of a machine's figures, and the quantity to measure next (JCGM 100, 5): section and command."""
-import csv
-import io
+from collections import Counter, namedtuple
 import json
 import math
+
+import pandas
 
 from report import inputs
 from report.blocks import Bars, Table
@@ -16,12 +17,8 @@ COLOURS = 7  # of sources in the bars, the rest beside
 LEAST_SHOWN = 5e-4
 
 
-class Figure:
+class Figure(namedtuple("Figure", "quantity unit value deviation shares")):
     """Value and standard deviation in the quantity's unit; shares of the variance by source, largest first."""
-
-    def __init__(self, quantity, unit, value, deviation, shares):
-        self.quantity, self.unit, self.value, self.deviation = quantity, unit, value, deviation
-        self.shares = sorted(shares.items(), key=lambda one: (-one[1], one[0]))
 
     @property
     def halved(self):
@@ -44,18 +41,17 @@ def combined(quantity, rows):
     turns = runs.turns.sum()
     variances = rows.dropna(subset=["variance"]).groupby("source").variance.sum() / turns
     total = variances.sum()
-    shares = (variances / total).to_dict() if total > 0.0 else {REST: 1.0}
+    shares = (variances / total).sort_values(ascending=False, kind="mergesort").items() if total > 0.0 else [(REST, 1.0)]
     value = float((runs.turns * runs.value.fillna(0.0)).sum() / turns)
-    return Figure(quantity, runs.unit.iloc[0], value, math.sqrt(total), shares)
+    return Figure(quantity, runs.unit.iloc[0], value, math.sqrt(total), list(shares))
 
 
 def bars(figures):
     """(name, parts as (class, source, share)) of each figure, and the keys: the largest sources over all have a colour."""
-    order = {}
+    order = Counter()
     for figure in figures:
-        for source, share in figure.shares:
-            order[source] = order.get(source, 0.0) + share
-    colours = {source: f"c{at}" for at, source in enumerate(sorted(order, key=order.get, reverse=True)[:COLOURS])}
+        order.update(dict(figure.shares))
+    colours = {source: f"c{at}" for at, (source, _) in enumerate(order.most_common(COLOURS))}
     shown = []
     for figure in figures:
         parts = [(colours[source], source, share) for source, share in figure.shares if source in colours]
@@ -136,12 +132,10 @@ def as_json(budgets):
 
 
 def as_csv(budgets):
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["machine", "quantity", "unit", "value", "std", "std_with_largest_halved", "source", "share"])
-    writer.writerows((machine, f.quantity, f.unit, f.value, f.deviation, f.halved, *share)
-                     for machine, figures in budgets for f in figures for share in f.shares)
-    yield text.getvalue().rstrip("\n")
+    header = ["machine", "quantity", "unit", "value", "std", "std_with_largest_halved", "source", "share"]
+    rows = [(machine, f.quantity, f.unit, f.value, f.deviation, f.halved, *share)
+            for machine, figures in budgets for f in figures for share in f.shares]
+    yield pandas.DataFrame(rows, columns=header).to_csv(index=False).rstrip("\n")
 
 
 def run(given, folder):

@@ -11,8 +11,8 @@ from report.formats import is_nothing, number, scaled
 from report.subjects import subjects_of
 
 OK, LOOK, WRONG, UNKNOWN = "ok", "look", "wrong", "-"
-ORDER = (UNKNOWN, OK, LOOK, WRONG)
-VERDICT = {OK: "usable", LOOK: "usable, with reservations", WRONG: "do not use before the cause is removed", UNKNOWN: "not known"}
+# From the best to the worst.
+VERDICT = {UNKNOWN: "not known", OK: "usable", LOOK: "usable, with reservations", WRONG: "do not use before the cause is removed"}
 
 CONSISTENT = 3.0   # times the variance; a sound sensor has 0.9
 JITTER_S = 1e-4    # from there on the wrench is some 0.2 % worse
@@ -48,7 +48,7 @@ REMEDY = {
 
 
 def worst_status(*statuses):
-    return max(statuses, key=ORDER.index)
+    return max(statuses, key=list(VERDICT).index)
 
 
 def sorted_warnings(warnings):

@@ -9,10 +9,11 @@ from report.conditions import MISUSE, UNKNOWN, counter
 from report.cycles import SLOPES
 from report.formats import (NOTHING, clean, duration, in_unit, in_words, is_nothing, measured, moment, number,
                             scaled, shown, titled)
-from report.over_time import time_unit
+from report.over_time import curves_picture
 from report.overview import blows_per_hour, total_energy, with_spread
-from report.pictures import CURVES, Picture
+from report.pictures import CURVES
 from report.quantities import QUANTITIES
+from report.subjects import Subject
 
 MOST_RUNS = 50
 MOST_SIDE_BY_SIDE = 4  # beyond: a machine is a row
@@ -37,11 +38,10 @@ CONCERNS = {
 Figure = namedtuple("Figure", "name shown value kind")
 
 
-def doubts_of(subject, only=None):
-    """{kind: first warning that concerns it}, most important first; `only`: of the run at this place."""
-    rows = subject.frame("key, text FROM warnings WHERE {runs} ORDER BY place", text=["key", "text"])
+def doubts_of(subject):
+    """{kind: first warning that concerns it}, most important first."""
     found = {}
-    for row in rows[rows.run == only].itertuples() if only is not None else rows.itertuples():
+    for row in subject.frame("key, text FROM warnings WHERE {runs} ORDER BY place", text=["key", "text"]).itertuples():
         for kind in CONCERNS.get(row.key, ALL):
             found.setdefault(kind, row.text)
     return found
@@ -115,27 +115,36 @@ def marked(figure, doubts):
     return Markup("{}{}").format(shown(figure.shown), mark)
 
 
+def table_of_rows(caption, first, labels, columns, doubts, compared=()):
+    """A row for each label. compared: beginnings of the names of figures with the difference from the first row."""
+    header, rows = [first], [[label] for label in labels]
+    for name in dict.fromkeys(name for figures in columns for name in figures):
+        has_difference = name.startswith(compared)
+        header += [name, "Diff. [%]"] if has_difference else [name]
+        for row, figures, doubt in zip(rows, columns, doubts):
+            row.append(marked(figures.get(name), doubt))
+            if has_difference:
+                row.append("" if figures is columns[0] else difference(columns[0].get(name), figures.get(name)))
+    return Table(caption, header, rows)
+
+
 def comparison_table(labels, columns, doubts):
     """columns: {name: Figure} of each machine. Few machines are columns beside each other, many are rows."""
-    names = list(dict.fromkeys(name for figures in columns for name in figures))
     if len(labels) > MOST_SIDE_BY_SIDE:
-        return Table("Machines, one a row", ["Machine", *names],
-                     [[label, *(marked(figures.get(name), doubt) for name in names)]
-                      for label, figures, doubt in zip(labels, columns, doubts)])
+        return table_of_rows("Machines, one a row", "Machine", labels, columns, doubts)
     header = ["Figure", labels[0], *(title for label in labels[1:] for title in (label, "Diff. [%]"))]
     rows = []
-    for name in names:
-        row = [name, marked(columns[0].get(name), doubts[0])]
-        for figures, doubt in zip(columns[1:], doubts[1:]):
-            row += [marked(figures.get(name), doubt), difference(columns[0].get(name), figures.get(name))]
-        rows.append(row)
+    for name in dict.fromkeys(name for figures in columns for name in figures):
+        first, *others = ([marked(figures.get(name), doubt), difference(columns[0].get(name), figures.get(name))]
+                          for figures, doubt in zip(columns, doubts))
+        rows.append([name, first[0], *sum(others, [])])
     return Table("Machines side by side", header, rows, "numbers compare")
 
 
 def run_figures(run, series):
-    """Figures of one run."""
-    yield plain("Blows", run["blows"], COUNTS)
-    yield plain("Blows per hour", 3600.0 * run["blows"] / run["duration"] if run["blows"] and run["duration"] else None, COUNTS)
+    """Figures of a subject of one run."""
+    yield plain("Blows", run.total("blows"), COUNTS)
+    yield plain("Blows per hour", blows_per_hour(run), COUNTS)
     yield from turn_figures(series)
 
 
@@ -143,19 +152,10 @@ def runs_compared(subject, series):
     """Runs of one machine below each other, compared with the first; None for one run and for too many."""
     if not 2 <= len(subject.runs) <= MOST_RUNS or any(values.of_runs for values in series.values()):
         return None
-    names, rows, first = subject.recordings(), [], None
-    for at, run in enumerate(subject.runs):
-        figures = by_name(run_figures(run, {key: values.of_run(at) for key, values in series.items()}))
-        first = first or figures
-        row, header, doubts = [names[at]], ["Run"], doubts_of(subject, at)
-        for title, figure in figures.items():
-            row.append(marked(figure, doubts))
-            header.append(title)
-            if title.startswith(("Blow energy [", "Peak force along the tool [")):
-                row.append("" if figures is first else difference(first[title], figure))
-                header.append("Diff. [%]")
-        rows.append(row)
-    return Table("Runs below each other", header, rows)
+    runs = [Subject(subject.database, name, [run]) for name, run in zip(subject.recordings(), subject.runs)]
+    columns = [by_name(run_figures(run, {key: values.of_run(at) for key, values in series.items()})) for at, run in enumerate(runs)]
+    return table_of_rows("Runs below each other", "Run", [run.label for run in runs], columns, list(map(doubts_of, runs)),
+                         ("Blow energy [", "Peak force along the tool ["))
 
 
 def overlaid(subjects, series):
@@ -163,18 +163,9 @@ def overlaid(subjects, series):
     for quantity in QUANTITIES:
         curves = [(s.label, series[s.label][quantity.key]) for s in subjects]
         curves = [curve for curve in curves if len(curve[1])][:len(CURVES)]
-        longest = max((values.points.x.max() for _, values in curves), default=0.0)
-        if not longest > 0.0:
-            continue
-        seconds, unit = time_unit(longest)
-        picture, keys = Picture(f"time of work [{unit}]", titled(quantity.title.lower(), quantity.unit)), []
-        for colour, (label, values) in zip(CURVES, curves):
-            points = values.thinned(MOST_POINTS // len(curves))
-            points = points.dropna() if values.of_runs else points  # a line from run to run
-            picture.curve(points.assign(x=points.x / seconds), colour, len(curves))
-            keys.append((f"line {colour}", label))
-        picture.axes.margins(x=0.02)
-        yield picture.figure(f"{quantity.title} over the time of work", keys)
+        if max((values.points.x.max() for _, values in curves), default=0.0) > 0.0:
+            yield curves_picture(f"{quantity.title} over the time of work", titled(quantity.title.lower(), quantity.unit), curves,
+                                 MOST_POINTS // len(curves), margin=0.02)
 
 
 def comparison(subjects, series):

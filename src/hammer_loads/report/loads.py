@@ -2,8 +2,8 @@
 import numpy
 
 from report.blocks import Details, Note, Table, folded
-from report.formats import in_unit, in_words, number, scaled, utc
-from report.over_time import time_unit
+from report.formats import in_unit, in_words, number, utc
+from report.over_time import curves_picture
 from report.pictures import CURVES, Picture
 from report.series import BAND, Series, time_of_work
 
@@ -72,7 +72,7 @@ def turn_pictures(subject):
 
 
 def loads_of(subject):
-    """Rows of neighbouring turns together: name and unit of the channel, turns, least, middle, greatest, x."""
+    """Rows of neighbouring turns together, in the unit shown: name and unit of the channel, turns, least, middle, greatest, x."""
     together = max(1, -(-subject.total("turns") // MOST_POINTS))
     rows = subject.frame(
         "channels.name, coalesce(channels.unit, '') AS unit, count(*) AS turns, "
@@ -80,28 +80,22 @@ def loads_of(subject):
         "FROM turn_loads JOIN turns USING(run_id, turn) JOIN channels USING(run_id, channel) WHERE {runs} AND "
         f"turn_loads.minimum IS NOT NULL GROUP BY run_id, channel, turn / {together} ORDER BY channel, min(turn)",
         text=["name", "unit"])
-    return rows.assign(x=time_of_work(subject, rows))
+    shown = rows.unit.map(in_unit)
+    rows[BAND] = rows[BAND].mul(shown.str[0], axis="index")
+    return rows.assign(unit=shown.str[1], x=time_of_work(subject, rows))
 
 
 def picture_of(group, unit, channels):
     """Channels of one kind and unit: the parts of a joint's torque, the forces of a section. channels: {name: rows}."""
-    factor, shown = in_unit(unit)
-    seconds, time = time_unit(max(rows.x.max() for rows in channels.values()))
-    picture, keys = Picture(f"time of work [{time}]", f"load [{shown}]"), []
-    for name, colour in zip(channels, CURVES):
-        points = Series(channels[name].dropna(subset=["x", "middle"])).thinned(MOST_POINTS)
-        picture.curve((points[BAND] * factor).assign(x=points.x / seconds), colour, len(channels))
-        keys.append((f"line {colour}", name.rpartition("/")[2]))
-    return picture.figure(group, keys)
+    curves = [(name.rpartition("/")[2], Series(rows.dropna(subset=["x", "middle"]))) for name, rows in channels.items()]
+    return curves_picture(group, f"load [{unit}]", curves, MOST_POINTS)
 
 
 def loads_table(rows):
     result = []
     for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
-        factor, shown = in_unit(unit)
         mean = (some.middle * some.turns).sum() / some.turns.sum()
-        result.append([in_words(name), shown, *(scaled(v, factor) for v in (some.least.min(), mean, some.greatest.max())),
-                       int(some.turns.sum())])
+        result.append([in_words(name), unit, some.least.min(), mean, some.greatest.max(), int(some.turns.sum())])
     return Table("Loads over all revolutions", ["Channel", "Unit", "Least", "Mean of revolutions", "Greatest", "Turns"], result)
 
 
@@ -111,7 +105,7 @@ def groups_of(rows):
     for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
         kind = (name.rpartition("/")[0] or name, unit)
         groups.setdefault(kind, {})[name] = some
-        if name.startswith("joint_loads/") and unit == "N m":
+        if name.startswith("joint_loads/") and unit == "kN m":
             reach[kind] = max(reach.get(kind, 0.0), some.greatest.max() - some.least.min())
     for kind in sorted(groups, key=lambda kind: kind != max(reach, key=reach.get, default=None)):
         names = list(groups[kind])

@@ -1,12 +1,13 @@
 """Outputs of the commands: complete under their name, or not there at all; nothing of others is replaced. Tables become
 TABLE.csv, those of ledgers ledger_TABLE.csv: the first line is a comment with the units, the second the header; the first
 column is the file."""
+import contextlib
 import csv
 import os
 import pathlib
 import re
-import shutil
 import stat
+import tempfile
 
 from report.database import LEDGER, Problem, one_line, quoted
 from report.subjects import stem
@@ -59,43 +60,38 @@ def check_directory(name, needed, force):
     check_existing(name, force, stat.S_ISDIR, "directory", foreign_entry)
 
 
-def part_name(name):
-    return f"{name.rstrip('/')}.part.{os.getpid()}"
+@contextlib.contextmanager
+def part_of(name):
+    """Path beside the name for what shall get it; what is left there is removed."""
+    try:
+        with tempfile.TemporaryDirectory(dir=os.path.dirname(os.path.abspath(name)), prefix=".hammer_loads") as folder:
+            yield pathlib.Path(folder) / "part"
+    except OSError as error:
+        raise Problem(f"{name}: cannot be written: {error.strerror}")
 
 
 def publish_file(name, data, force):
     """Gives the bytes this name; a file that has appeared meanwhile is not replaced without force."""
-    part = part_name(name)
-    try:
-        with open(part, "xb") as file:
-            file.write(data)
+    with part_of(name) as part:
+        part.write_bytes(data)
         (os.replace if force else os.link)(part, name)
-    except OSError as error:
-        raise Problem(f"{name}: cannot be written: {error.strerror}")
-    finally:
-        if os.path.lexists(part):
-            os.unlink(part)
 
 
 def publish_directory(name, fill, force):
     """fill(path) writes into a new directory, which then gets this name; a directory that is replaced steps aside first."""
-    part = part_name(name)
-    aside = part + ".old"
-    try:
-        os.mkdir(part)
-        fill(pathlib.Path(part))
-        if os.path.lexists(name):
-            if not force:
-                raise Problem(f"{name}: exists meanwhile, must be a new directory")
-            os.rename(name, aside)
-        os.rename(part, name)
-    except OSError as error:
-        raise Problem(f"{name}: cannot be written: {error.strerror}")
-    finally:
-        if os.path.isdir(aside) and not os.path.lexists(name):  # a signal came between
-            os.rename(aside, name)
-        for left in (part, aside):
-            shutil.rmtree(left, ignore_errors=True)
+    with part_of(name) as part:
+        part.mkdir()
+        fill(part)
+        old = part.with_name("old")
+        try:
+            if os.path.lexists(name):
+                if not force:
+                    raise Problem(f"{name}: exists meanwhile, must be a new directory")
+                os.rename(name, old)
+            os.rename(part, name)
+        finally:
+            if old.is_dir() and not os.path.lexists(name):  # a signal came between
+                os.rename(old, name)
 
 
 def plain(value):

@@ -5,7 +5,7 @@ import pandas
 
 from report.blocks import Details, Note, Table, as_tables
 from report.formats import number, titled
-from report.pictures import COLOURS, Picture
+from report.pictures import COLOURS, CURVES, Picture
 from report.quantities import QUANTITIES
 
 MOST_POINTS = 400
@@ -19,6 +19,19 @@ TIME_UNITS = [(86400.0, "days"), (3600.0, "h"), (60.0, "min"), (1.0, "s")]
 
 def time_unit(longest_s):
     return next(unit for unit in TIME_UNITS if longest_s >= 3.0 * unit[0] or unit[0] == 1.0)
+
+
+def curves_picture(caption, y_title, curves, most, margin=0.0):
+    """Curves with their bands over the time of work, at most some `most` points each. curves: (words, Series)."""
+    seconds, time = time_unit(max(values.points.x.max() for _, values in curves))
+    picture, keys = Picture(f"time of work [{time}]", y_title), []
+    for colour, (words, values) in zip(CURVES, curves):
+        points = values.thinned(most)
+        points = points.dropna() if values.of_runs else points  # a line from run to run
+        picture.curve(points.assign(x=points.x / seconds), colour, len(curves))
+        keys.append((f"line {colour}", words))
+    picture.axes.margins(x=margin)
+    return picture.figure(caption, keys)
 
 
 def summary_table(series, of_runs):

@@ -35,28 +35,24 @@ class Series:
     def of_run(self, run):
         return Series(self.points[self.points.run == run], self.deviation, self.of_runs)
 
-    def _stretches(self, together):
-        """Places at which stretches of uninterrupted work begin; so many values of runs stand alone."""
+    def _begins(self, together):
+        """Where stretches of uninterrupted work begin; so many values of runs stand alone."""
         if self.of_runs:
-            return numpy.arange(0, len(self), together)
+            return pandas.Series(numpy.arange(len(self)) % together == 0)
         steps = self.points.groupby("run").x.diff()
         usual = steps.groupby(self.points.run).transform("median").fillna(0.0)
-        return numpy.flatnonzero(steps.isna() | (steps > numpy.maximum(PAUSE_S, PAUSE_TURNS * usual)))
+        return steps.isna() | (steps > numpy.maximum(PAUSE_S, PAUSE_TURNS * usual))
 
     def thinned(self, most):
         """At most some `most` points; neighbours become one with least, mean and greatest. No number where work paused."""
         if not len(self):
             return self.points
-        count, together = len(self), -(-len(self) // most)
-        begins = self._stretches(together)
-        place = numpy.arange(count) - numpy.repeat(begins, numpy.diff(begins, append=count))
-        starts = numpy.flatnonzero(place % together == 0)
-        x, least, middle, greatest = (self.points[name].to_numpy() for name in ("x", *BAND))
-        merged = {"x": x[starts], "least": numpy.minimum.reduceat(least, starts),
-                  "middle": numpy.add.reduceat(middle, starts) / numpy.diff(starts, append=count),
-                  "greatest": numpy.maximum.reduceat(greatest, starts)}
-        pauses = numpy.searchsorted(starts, begins[1:])
-        return pandas.DataFrame({name: numpy.insert(column, pauses, numpy.nan) for name, column in merged.items()})
+        together = -(-len(self) // most)
+        stretch = self._begins(together).cumsum().to_numpy()
+        is_first = self.points.groupby(stretch).cumcount() % together == 0
+        place = is_first.cumsum().to_numpy() + stretch  # a pause takes a place of its own
+        merged = self.points.groupby(place).agg({"x": "first", "least": "min", "middle": "mean", "greatest": "max"})
+        return merged.reindex(range(place[0], place[-1] + 1))
 
 
 def time_of_work(subject, rows):
