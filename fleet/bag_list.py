@@ -32,13 +32,13 @@ def shown(name):
 
 def made(machine, bag, parameters, problem=None):
     """Paths are absolute: jobs run elsewhere. One that no job can be given is a row with the reason."""
-    bag, parameters = os.path.abspath(bag), tuple(os.path.abspath(p) for p in parameters)
-    for text in (machine, bag, *parameters):
-        if shown(text) != text and problem is None:
-            problem = f"{shown(text)}: holds what is no UTF-8 text, or control characters: give it another name"
-    machine, bag, parameters = shown(machine), shown(bag), tuple(map(shown, parameters))
+    given = [machine, *map(os.path.abspath, [bag, *parameters])]
+    machine, bag, *parameters = fit = list(map(shown, given))
+    if problem is None and fit != given:
+        named = next(text for text, name in zip(fit, given) if text != name)
+        problem = f"{named}: holds what is no UTF-8 text, or control characters: give it another name"
     name = file_name(f"{machine}-{os.path.basename(bag)}", machine, bag, *parameters)
-    return Bag(machine, bag, parameters, name, problem)
+    return Bag(machine, bag, tuple(parameters), name, problem)
 
 
 def from_rows(rows, path):

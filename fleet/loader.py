@@ -4,12 +4,11 @@ import json
 
 from report.database import RECORDING, Database, Problem
 from report.quantities import CYLINDERS, QUANTITIES, value_of
-from store import COLUMN_TEXT
 
 # Copied as they are, with another run_id.
 COPIED = ["refusals", "warnings", "alarms", "reference", "channels", "cycles", "residues"]
 OPTIONAL = {"turns": ["turns", "blows"]}
-OUTCOME = ("machine", "bag", "status", "reason", "input_sha256", "parameters_sha256")
+OUTCOME = ("machine", "bag", "input_sha256", "parameters_sha256", "status", "reason")
 
 
 def of_stamp(stamp_ns):
@@ -26,8 +25,6 @@ class Loader:
 
     def __init__(self, store, rows=None):
         self.store, self.tables = store, COPIED + OPTIONAL.get(rows, [])
-        self._next_run = (store.row("SELECT max(run_id) FROM runs")[0] or 0) + 1
-        self._next_bag = (store.row("SELECT max(bag_id) FROM bags")[0] or 0) + 1
 
     def add(self, outcome_path):
         """True if the merged file changed."""
@@ -50,7 +47,7 @@ class Loader:
             outcome.update(status="failed", reason=" ".join(str(problem).split()))
             self._add_bag(outcome, None)
         self.store.rows("RELEASE SAVEPOINT before_the_bag")
-        self.store.insert("stale_machines", ["machine"], [(outcome["machine"],)], unless_there=True)
+        self.store.insert("stale_machines", [(outcome["machine"],)], unless_there=True)
         return True
 
     def _source(self, outcome, path):
@@ -68,22 +65,20 @@ class Loader:
         return source
 
     def _is_known(self, outcome, source):
-        found = self.store.row("SELECT bag_id, status, reason, input_sha256, parameters_sha256 FROM bags "
-                               "WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
-        if found is None or tuple(found[1:]) != tuple(outcome[k] for k in OUTCOME[2:]):
+        found = self.store.row("SELECT * FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
+        if found is None or tuple(found[1:]) != tuple(outcome[name] for name in OUTCOME):
             return False
         runs = self.store.rows("SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])
         return [key for key, in runs] == (run_keys(source) if source else [])
 
     def _add_bag(self, outcome, source):
         """source: its database, or nothing."""
-        bag_id, self._next_bag = self._next_bag, self._next_bag + 1
-        self.store.insert("bags", ["bag_id", *OUTCOME], [(bag_id, *(outcome[k] for k in OUTCOME))])
+        bag_id, = self.store.row("SELECT coalesce(max(bag_id), 0) + 1 FROM bags")
+        self.store.insert("bags", [(bag_id, *(outcome[name] for name in OUTCOME))])
         if source is None:
             return
-        shift = self._next_run - 1
+        shift, = self.store.row("SELECT coalesce(max(run_id), 0) FROM runs")
         for run in source.records("SELECT * FROM runs ORDER BY run_id"):
-            self._next_run = shift + run["run_id"] + 1
             self._add_run(source, run, bag_id, shift + run["run_id"])
         for table in self.tables:
             self._copy(source, table, shift)
@@ -95,18 +90,16 @@ class Loader:
         day, week = of_stamp(run["first_stamp_ns"])
         run.update(run_id=run_id, bag_id=bag_id, day=day, week=week)
         names = [name for name in self.store.columns("runs") if name in run]
-        self.store.insert("runs", names, [[run[name] for name in names]])
-        self.store.insert("run_figures", ["run_id", "quantity", "count", "least", "mean", "greatest", "total"],
-                          figures(source, own, run_id))
-        self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_std", "doubtful"],
-                          [(run_id, *row) for row in source.rows("SELECT " + CYLINDERS.format(runs="run_id = ?"), own)])
+        self.store.insert("runs", [[run[name] for name in names]], names)
+        self.store.insert("run_figures", figures(source, own, run_id))
+        self.store.insert("run_cylinders", [
+            (run_id, *row) for row in source.rows("SELECT " + CYLINDERS.format(runs="run_id = ?"), own)])
 
     def _add_parameters(self, source, run):
         key = (run["parameters_sha256"], run["version"])
-        self.store.insert("parameter_sets", ["parameters_sha256", "parameters_yaml"], [(key[0], run["parameters_yaml"])], unless_there=True)
+        self.store.insert("parameter_sets", [(key[0], run["parameters_yaml"])], unless_there=True)
         rows = source.rows("SELECT key, value, shipped FROM parameters WHERE run_id = ?", run["run_id"])
-        self.store.insert("parameter_values", ["parameters_sha256", "version", "key", "value", "shipped"],
-                          ((*key, *row) for row in rows), unless_there=True)
+        self.store.insert("parameter_values", ((*key, *row) for row in rows), unless_there=True)
 
     def _copy(self, source, table, shift):
         columns = source.columns(table)
@@ -115,21 +108,20 @@ class Loader:
         known = self.store.columns(table)
         names = [name for name in columns if name in known]
         listed = ", ".join(f"run_id + {shift}" if name == "run_id" else name for name in names)
-        self.store.insert(table, names, source.rows(f"SELECT {listed} FROM {table}"))
+        self.store.insert(table, source.rows(f"SELECT {listed} FROM {table}"), names)
 
     def _make_rows_of_turns(self, table, fields):
         """Tables of turns have a column for each field of a message: as the first bag has them, later ones are added."""
+        self.store.rows(f"CREATE TABLE IF NOT EXISTS {table}(run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, "
+                        "turn BIGINT NOT NULL, stamp_ns BIGINT, PRIMARY KEY(run_id, turn))")
         known = self.store.columns(table)
-        if not known:
-            self.store.rows(f"CREATE TABLE {table}(run_id INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, "
-                            "turn BIGINT NOT NULL, stamp_ns BIGINT, PRIMARY KEY(run_id, turn))")
         for name in fields:
             if name not in known:
                 self.store.rows(f"ALTER TABLE {table} ADD COLUMN {name} DOUBLE PRECISION")
 
     def _describe(self, source):
         """Units and descriptions of the columns that were copied."""
-        self.store.insert("columns", COLUMN_TEXT, [
+        self.store.insert("columns", [
             row for row in source.rows("SELECT table_name, column_name, unit, description FROM columns")
             if row[0] in ("runs", *self.tables) and row[1] in self.store.columns(row[0])], unless_there=True)
 

@@ -10,7 +10,7 @@ import sys
 import report_path  # noqa: F401  (sets the path of report)
 import store
 from loader import OPTIONAL, Loader
-from report.cycles import SLOPES, channels_of
+from report.cycles import channels_of
 
 BAGS_AT_ONCE = 200  # a transaction
 
@@ -25,17 +25,14 @@ def write_sums(store, machine):
 
 
 def write_channel(store, machine, channel):
-    at = (store.row("SELECT max(machine_channel) FROM machine_channels")[0] or 0) + 1
+    at, = store.row("SELECT coalesce(max(machine_channel), 0) + 1 FROM machine_channels")
     remaining = channel.remaining_hours()[0]
     row = {**channel.row, "machine": machine, "machine_channel": at, "largest_range": float(channel.cycles[0].max(initial=0.0)),
            "damage": channel.damage()[0], "remaining_hours": None if remaining == float("inf") else remaining}
-    store.insert("machine_channels", list(row), [list(row.values())])
-    store.insert("machine_equivalents", ["machine_channel", "slope", "equivalent_range", "std"],
-                 [(at, slope, *figure) for slope, figure in zip(SLOPES, channel.equivalents())])
-    store.insert("machine_cycles", ["machine_channel", "steps", "low", "count"],
-                 [(at, *cell, n) for cell, n in sorted(channel.count.closed.items())])
-    store.insert("machine_residues", ["machine_channel", "place", "class"],
-                 [(at, place, point) for place, point in enumerate(channel.count.residue)])
+    store.insert("machine_channels", [list(row.values())], list(row))
+    store.insert("machine_equivalents", [(at, slope, *figure) for slope, figure in channel.equivalents().items()])
+    store.insert("machine_cycles", [(at, *cell, n) for cell, n in sorted(channel.count.closed.items())])
+    store.insert("machine_residues", [(at, place, point) for place, point in enumerate(channel.count.residue)])
 
 
 def merged(target, outcomes, rows):

@@ -1,5 +1,5 @@
--- Tables of a merged file, SQLite or PostgreSQL. Rows of a run are those of process_bag --db with another run_id;
--- parameters that many runs share are there once. NULL: not determined. Comments of the form "[unit] description" are
+-- Tables of a merged file, SQLite or PostgreSQL. Rows of a run are those of process_bag --db with another run_id.
+-- Parameters that many runs share are there once. NULL: not determined. Comments of the form "[unit] description" are
 -- rows of the table columns; those of the columns that are copied come from the recordings.
 
 CREATE TABLE columns(

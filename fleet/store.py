@@ -1,5 +1,4 @@
 """A merged file: SQLite by a path, PostgreSQL by a connection URL; the same statements for both."""
-import itertools
 import os
 import pathlib
 import re
@@ -9,7 +8,6 @@ from report.database import Problem
 
 APPLICATION_ID, VERSION = 0x484C5246, 1
 SCHEMA = pathlib.Path(__file__).resolve().parent / "merged_schema.sql"
-ROWS_AT_ONCE = 1000
 
 
 def column_texts():
@@ -23,9 +21,6 @@ def column_texts():
     return texts
 
 
-COLUMN_TEXT = ["table_name", "column_name", "unit", "description"]
-
-
 class Store:
     """Opened for writing: a new one gets its tables. One writer at a time; another one waits."""
 
@@ -37,10 +32,11 @@ class Store:
     def row(self, sql, *values):
         return self.rows(sql, *values).fetchone()
 
-    @staticmethod
-    def _insertion(table, columns, values, unless_there):
-        """Statement; unless_there: a row whose key is in stays as it is."""
-        return f"INSERT INTO {table}({', '.join(columns)}) VALUES {values}" + unless_there * " ON CONFLICT DO NOTHING"
+    def insert(self, table, rows, columns=(), unless_there=False):
+        """columns: of the rows, else all of the table. unless_there: a row whose key is in stays as it is."""
+        columns = columns or self.columns(table)
+        values = f"VALUES({', '.join([self._mark] * len(columns))})" + unless_there * " ON CONFLICT DO NOTHING"
+        self._execute_many(self._connection.cursor(), f"INSERT INTO {table}({', '.join(columns)}) {values}", rows)
 
     def commit(self):
         self._connection.commit()
@@ -48,10 +44,16 @@ class Store:
     def close(self):
         self._connection.close()
 
+    def _make_tables(self):
+        for statement in filter(str.strip, SCHEMA.read_text(encoding="utf-8").split(";\n")):
+            self.rows(statement)
+        self.insert("columns", column_texts())
+
 
 class SqliteStore(Store):
     Refusal = sqlite3.IntegrityError  # of a row
     _mark = "?"
+    _execute_many = staticmethod(sqlite3.Cursor.executemany)
 
     def __init__(self, path):
         self.name = path
@@ -71,9 +73,7 @@ class SqliteStore(Store):
         application, = self.row("PRAGMA application_id")
         version, = self.row("PRAGMA user_version")
         if application == 0 and self.row("SELECT count(*) FROM sqlite_master") == (0,):
-            for statement in SCHEMA.read_text(encoding="utf-8").split(";\n"):
-                self.rows(statement)
-            self.insert("columns", COLUMN_TEXT, column_texts())
+            self._make_tables()
             self.rows(f"PRAGMA application_id = {APPLICATION_ID}")
             self.rows(f"PRAGMA user_version = {VERSION}")
         elif application != APPLICATION_ID:
@@ -83,10 +83,6 @@ class SqliteStore(Store):
 
     def begin(self):
         self.rows("BEGIN IMMEDIATE")
-
-    def insert(self, table, columns, rows, unless_there=False):
-        marks = f"({','.join('?' * len(columns))})"
-        self._connection.executemany(self._insertion(table, columns, marks, unless_there), rows)
 
     def columns(self, table):
         """Names of the columns; nothing for a table that is not there."""
@@ -101,30 +97,23 @@ class PostgresStore(Store):
     def __init__(self, url):
         import psycopg2
         import psycopg2.extras
-        self._extras, self.name, self.Refusal = psycopg2.extras, "PostgreSQL", psycopg2.IntegrityError
+        self.name, self.Refusal, self._execute_many = "PostgreSQL", psycopg2.IntegrityError, psycopg2.extras.execute_batch
         try:
             self._connection = psycopg2.connect(url)
         except psycopg2.Error as error:
             raise Problem(f"PostgreSQL: {' '.join(str(error).split())}")
         self.begin()
         if not self.columns("bags"):
-            self.rows(SCHEMA.read_text(encoding="utf-8"))
-            self.insert("columns", COLUMN_TEXT, column_texts())
+            self._make_tables()
         self.commit()
 
     def begin(self):
         self.rows("SELECT pg_advisory_xact_lock(?)", APPLICATION_ID)
 
-    def insert(self, table, columns, rows, unless_there=False):
-        rows, cursor = iter(rows), self._connection.cursor()
-        statement = self._insertion(table, columns, "%s", unless_there)
-        for some in iter(lambda: list(itertools.islice(rows, ROWS_AT_ONCE)), []):
-            self._extras.execute_values(cursor, statement, some, page_size=ROWS_AT_ONCE)
-
     def columns(self, table):
         """Names of the columns; nothing for a table that is not there."""
         return [name for name, in self.rows("SELECT column_name FROM information_schema.columns WHERE table_name = ? "
-                                            "AND table_schema = current_schema()", table)]
+                                            "AND table_schema = current_schema() ORDER BY ordinal_position", table)]
 
 
 def opened(target):

@@ -131,7 +131,7 @@ def ledger(tmp_path):
 
 
 def assert_same_figures(channel, expected):
-    figures = {f"equivalent_range_{slope:g}": figure for slope, figure in zip(SLOPES, channel.equivalents())}
+    figures = {f"equivalent_range_{slope:g}": figure for slope, figure in channel.equivalents().items()}
     figures.update(damage=channel.damage(), remaining_hours=channel.remaining_hours())
     for name, figure in figures.items():
         theirs = expected[name] or {"value": None, "std": None}

@@ -86,7 +86,7 @@ def test_an_input_is_never_overwritten(made, tmp_path):
     before = file.read_bytes()
     os.link(file, link)
     for out in (file, link):
-        assert_refused(report_here(file, "--html", out, "--force"), out, "is the input")
+        assert_refused(report_here(file, "--html", out, "--force"), out, "is no page of this command")
     assert file.read_bytes() == before
 
 

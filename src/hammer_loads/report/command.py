@@ -62,9 +62,9 @@ def run(given, folder):
     if given.html is None and given.csv is None:
         raise Usage("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
     if given.html is not None:
-        output.check_file(given.html, given.files, given.force)
+        output.check_file(given.html, given.force)
     if given.csv is not None:
-        output.check_directory(given.csv, [*given.files, *([given.html] if given.html else [])], given.force)
+        output.check_directory(given.csv, [given.html] if given.html else [], given.force)
     databases = list(inputs.databases(given, folder))
     for note in notes(databases):
         print(one_line(f"note: {note}"), file=sys.stderr)

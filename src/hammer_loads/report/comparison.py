@@ -6,7 +6,6 @@ from markupsafe import Markup
 from report.blocks import Note, Table
 from report.check import refusals_of
 from report.conditions import MISUSE, UNKNOWN, counter
-from report.cycles import SLOPES
 from report.formats import (NOTHING, clean, duration, in_unit, in_words, is_nothing, measured, moment, number,
                             scaled, shown, titled)
 from report.over_time import curves_picture
@@ -63,10 +62,10 @@ def channel_figures(channels):
     for channel in channels:
         factor, unit = in_unit(channel.unit)
         kind = CRANK if channel.name.startswith("hull_wrench/") else BOOM
-        for slope, (value, deviation) in zip(SLOPES, channel.equivalents()):
-            if slope in (3.0, 5.0):
-                yield Figure(titled(f"{in_words(channel.name)}, range at slope {slope:g}", unit),
-                             measured(value, deviation, factor), scaled(value, factor), kind)
+        equivalents = channel.equivalents()
+        for slope in (3.0, 5.0):
+            yield Figure(titled(f"{in_words(channel.name)}, range at slope {slope:g}", unit),
+                         measured(*equivalents[slope], factor), scaled(equivalents[slope][0], factor), kind)
 
 
 def misuse_figures(subject):

@@ -20,7 +20,7 @@ def equivalents_table(channels):
         factor, unit = in_unit(channel.unit)
         ranges, _, counts = channel.cycles
         below, above, skipped, gaps = (channel.row[name] or 0 for name in ("below", "above", "skipped", "gaps"))
-        rows.append([in_words(channel.name), unit, *(measured(*figure, factor) for figure in channel.equivalents()),
+        rows.append([in_words(channel.name), unit, *(measured(*figure, factor) for figure in channel.equivalents().values()),
                      ranges.max(initial=0.0) * factor, number(counts.sum(), 6), measured(*channel.damage()),
                      measured(*channel.remaining_hours()), f"{below + above}, {skipped}, {gaps}"])
     header = ["Channel", "Unit", *(f"Range, slope\u00a0{m:g}" for m in SLOPES), "Largest range", "Cycles", "Damage",

@@ -159,10 +159,11 @@ class Channel:
         return self.count.cycles()
 
     def equivalents(self):
-        """Damage-equivalent ranges as figures at SLOPES; (None, None) without any time."""
-        if not (self.hours > 0.0 and self.cycles_per_hour and self.cycles_per_hour > 0.0):
-            return [(None, None)] * len(SLOPES)
-        return [equivalent_range(self.cycles, m, self.hours * self.cycles_per_hour, self.range_std()) for m in SLOPES]
+        """{slope: damage-equivalent range} as figures at SLOPES; (None, None) without any time."""
+        equivalent_cycles = self.hours * (self.cycles_per_hour or 0.0)
+        if not equivalent_cycles > 0.0:
+            return dict.fromkeys(SLOPES, (None, None))
+        return {m: equivalent_range(self.cycles, m, equivalent_cycles, self.range_std()) for m in SLOPES}
 
     def damage(self):
         """Figure, or (None, None) without an S-N curve."""

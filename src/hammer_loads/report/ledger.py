@@ -2,7 +2,7 @@
 from report.blocks import Table
 from report.costs import back_calculation, damage_of, judged_channel, rule_of, shares_table
 from report.cycle_figures import cycle_figures
-from report.cycles import SLOPES, Channel, Count
+from report.cycles import Channel, Count
 from report.formats import in_unit, in_words, measured, number, titled
 
 # Of some days; tallies.deviation_sum counts 1024 for the width of a class.
@@ -57,7 +57,7 @@ def days_table(epoch, channels_by_day):
     for (date, days), channels in zip(epoch.by_date(), channels_by_day):
         row = [date, days.hours.sum(), int(days.blows.sum())]
         for channel in channels:
-            row.append(measured(*channel.equivalents()[SLOPES.index(5.0)], in_unit(channel.unit)[0]))
+            row.append(measured(*channel.equivalents()[5.0], in_unit(channel.unit)[0]))
             row += [measured(*channel.damage())] if channel.curve is not None else []
         rows.append(row)
     return Table("By the day on which a cycle closed", header, rows)

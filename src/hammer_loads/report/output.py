@@ -44,15 +44,13 @@ def foreign_entry(name):
     return None
 
 
-def check_file(name, inputs, force):
-    for given in inputs:
-        if os.path.exists(name) and os.path.exists(given) and os.path.samefile(name, given):
-            raise Problem(f"{name}: is the input {given}, must be another file")
+def check_file(name, force):
+    """An input is no page, and so it is never replaced."""
     check_existing(name, force, stat.S_ISREG, "regular file", foreign_page)
 
 
 def check_directory(name, needed, force):
-    """needed: paths of inputs and other outputs; a directory that holds them cannot be replaced."""
+    """needed: paths of other outputs; a directory that holds them cannot be replaced, nor one that holds an input: it is no table."""
     place = os.path.realpath(name)
     for held, path in (("the working directory", os.getcwd()), *((path, path) for path in needed)):
         if os.path.commonpath([place, os.path.realpath(path)]) == place:
@@ -116,7 +114,8 @@ def write_tables(databases, directory):
             tables.setdefault(file_name(database, table), []).append((database, table))
     for name, sources in tables.items():
         columns = list(dict.fromkeys(c for database, table in sources for c in database.columns(table)))
-        units = {column: unit for source in sources for column, unit in units_of(*source)}
+        units = {column: unit for database, table in sources for column, unit in database.rows(
+            "SELECT column_name, unit FROM columns WHERE table_name = ?", table)}
         with open(directory / name, "w", encoding="utf-8", newline="") as file:
             listed = ", ".join(f"{c} [{units.get(c, '-')}]" for c in ["file", *columns])
             file.write(one_line(f"{COMMENT}, units: {listed}") + "\n")
@@ -124,11 +123,6 @@ def write_tables(databases, directory):
             writer.writerow(["file", *map(plain, columns)])
             for database, table in sources:
                 writer.writerows(rows_of(database, table, columns))
-
-
-def units_of(database, table):
-    """(column, unit) by the table `columns`."""
-    return database.rows("SELECT column_name, unit FROM columns WHERE table_name = ?", table)
 
 
 def rows_of(database, table, columns):

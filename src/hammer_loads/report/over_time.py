@@ -96,9 +96,7 @@ def histogram(quantity, values):
     counts = numpy.histogram(values[values < edges[-1]], edges)[0]
     picture = Picture(titled(quantity.title.lower(), quantity.unit), "blows")
     picture.bars(edges, counts)
-    low, high = numpy.floor(values[values < edges[0]].min(initial=edges[0])), edges[-1]
-    if values.max() >= high:
-        high = numpy.nextafter(numpy.ceil(values.max()), numpy.inf)
+    low, high = min(edges[0], numpy.floor(values.min())), max(edges[-1], numpy.nextafter(numpy.ceil(values.max()), numpy.inf))
     every = numpy.unique([low, *edges, high])
     rows = [[f"{number(low)} to {number(high)}", int(count), number(100.0 * count / len(values), 3)]
             for low, high, count in zip(every, every[1:], numpy.histogram(values, every)[0]) if count]

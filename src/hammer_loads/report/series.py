@@ -36,7 +36,7 @@ class Series:
         return Series(self.points[self.points.run == run], self.deviation, self.of_runs)
 
     def _begins(self, together):
-        """Where stretches of uninterrupted work begin; so many values of runs stand alone."""
+        """Marks of the values at which stretches of uninterrupted work begin; so many values of runs stand alone."""
         if self.of_runs:
             return pandas.Series(numpy.arange(len(self)) % together == 0)
         steps = self.points.groupby("run").x.diff()

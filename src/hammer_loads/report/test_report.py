@@ -89,7 +89,7 @@ def the_subject(databases, machine):
 
 
 def run(given, folder):
-    output.check_file(given.html, given.files, given.force)
+    output.check_file(given.html, given.force)
     content = test_report(the_subject(inputs.databases(given, folder), given.machine), package_version(), given.site)
     output.publish_file(given.html, content, given.force)
     print(f"{given.html}: {len(content) / 1e3:.0f} kB")
