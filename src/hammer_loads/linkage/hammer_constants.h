@@ -25,75 +25,81 @@ struct HammerConstant {
     kLearned,  ///< no column: the crank's filter estimates it better
     kFollows,  ///< no column: it follows from other constants
   } enters;
+  enum class Sign { kAny, kNotNegative, kPositive } sign;  ///< of a possible hammer's
   bool optional{};  ///< a hammer file may leave it out; then the default of HammerParameters counts
 };
 
-namespace usual {
+namespace constant {
+
+template <double LinkLengths::*member>
+double& of(HammerParameters& p) {
+  return p.lengths.*member;
+}
+template <double HammerParameters::*member>
+double& of(HammerParameters& p) {
+  return p.*member;
+}
 
 inline double exact(const HammerParameters&) { return 0.0; }
 inline double length(const HammerParameters&) { return 3e-4; }
-constexpr double kCentre = 1e-3;   // [m]
-constexpr double kWeighed = 0.02;  // relative, for the rocker's mass and inertia
-constexpr double kGuessed = 0.5;   // relative, for masses of crank and connecting rod, which data sheets rarely give
+inline double centre(const HammerParameters&) { return 1e-3; }
+inline double centreAngle(const HammerParameters& p) { return centre(p) / p.rocker_com_distance; }
+/// Mass and inertia of the rocker, which is weighed.
+template <double HammerParameters::*member>
+double weighed(const HammerParameters& p) {
+  return 0.02 * p.*member;
+}
+/// Masses of crank and connecting rod, which data sheets rarely give.
+template <double HammerParameters::*member>
+double guessed(const HammerParameters& p) {
+  return 0.5 * std::abs(p.*member);
+}
 
-}  // namespace usual
+}  // namespace constant
 
 inline constexpr std::size_t kHammerConstantCount = std::tuple_size_v<HammerDeviations>;
 
-/// In the order of the file. Absent deviations: contract.
-inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstants{{
-    {"crank_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.crank; }, usual::length, -1.0,
-     HammerConstant::Enters::kMotion},
-    {"rod_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rod; }, usual::exact, 1.0,
-     HammerConstant::Enters::kFollows},
-    {"rocker_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rocker; }, usual::length, 1.0,
-     HammerConstant::Enters::kMotion},
-    {"pivot_distance_m", "m", [](HammerParameters& p) -> double& { return p.lengths.pivot_distance; }, usual::length,
-     1.0, HammerConstant::Enters::kMotion},
-    {"rocker_com_distance_m", "m", [](HammerParameters& p) -> double& { return p.rocker_com_distance; },
-     [](const HammerParameters&) { return usual::kCentre; }, -1.0, HammerConstant::Enters::kLoads},
-    {"rocker_com_angle_deg", "deg", [](HammerParameters& p) -> double& { return p.rocker_com_angle; },
-     [](const HammerParameters& p) { return usual::kCentre / p.rocker_com_distance; }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"rocker_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.rocker_mass; },
-     [](const HammerParameters& p) { return usual::kWeighed * p.rocker_mass; }, -1.0, HammerConstant::Enters::kLoads},
-    {"rocker_inertia_about_pivot_kg_m2", "kg m2",
-     [](HammerParameters& p) -> double& { return p.rocker_inertia_about_pivot; },
-     [](const HammerParameters& p) { return usual::kWeighed * p.rocker_inertia_about_pivot; }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"striking_distance_m", "m", [](HammerParameters& p) -> double& { return p.striking_distance; }, usual::length, 1.0,
-     HammerConstant::Enters::kBlow},
-    {"striking_offset_m", "m", [](HammerParameters& p) -> double& { return p.striking_offset; }, usual::exact, 1.0,
-     HammerConstant::Enters::kBlow, true},
-    {"striking_friction", "", [](HammerParameters& p) -> double& { return p.striking_friction; }, usual::exact, 1.0,
-     HammerConstant::Enters::kBlow, true},
-    {"crank_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.crank_mass; },
-     [](const HammerParameters& p) { return usual::kGuessed * p.crank_mass; }, 1.0, HammerConstant::Enters::kLoads},
-    {"crank_com_along_m", "m", [](HammerParameters& p) -> double& { return p.crank_com_along; },
-     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.crank_com_along); }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"crank_com_across_m", "m", [](HammerParameters& p) -> double& { return p.crank_com_across; },
-     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.crank_com_across); }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"crank_inertia_about_com_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.crank_inertia_about_com; },
-     [](const HammerParameters& p) { return usual::kGuessed * p.crank_inertia_about_com; }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"rod_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.rod_mass; },
-     [](const HammerParameters& p) { return usual::kGuessed * p.rod_mass; }, 1.0, HammerConstant::Enters::kLoads},
-    {"rod_com_along_m", "m", [](HammerParameters& p) -> double& { return p.rod_com_along; },
-     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.rod_com_along); }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"rod_com_across_m", "m", [](HammerParameters& p) -> double& { return p.rod_com_across; },
-     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.rod_com_across); }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"rod_inertia_about_com_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.rod_inertia_about_com; },
-     [](const HammerParameters& p) { return usual::kGuessed * p.rod_inertia_about_com; }, 1.0,
-     HammerConstant::Enters::kLoads},
-    {"drive_inertia_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.drive_inertia; }, usual::exact, 1.0,
-     HammerConstant::Enters::kLearned},
-    {"drive_reaction_ratio", "", [](HammerParameters& p) -> double& { return p.drive_reaction_ratio; }, usual::exact,
-     1.0, HammerConstant::Enters::kLoads, true},
-}};
+/// In the order of the file, the lengths first. Absent deviations: contract.
+inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstants = [] {
+  using namespace constant;
+  using P = HammerParameters;
+  using L = LinkLengths;
+  using Enters = HammerConstant::Enters;
+  using Sign = HammerConstant::Sign;
+  return std::array<HammerConstant, kHammerConstantCount>{{
+      {"crank_length_m", "m", of<&L::crank>, length, -1.0, Enters::kMotion, Sign::kPositive},
+      {"rod_length_m", "m", of<&L::rod>, exact, 1.0, Enters::kFollows, Sign::kPositive},
+      {"rocker_length_m", "m", of<&L::rocker>, length, 1.0, Enters::kMotion, Sign::kPositive},
+      {"pivot_distance_m", "m", of<&L::pivot_distance>, length, 1.0, Enters::kMotion, Sign::kPositive},
+      {"rocker_com_distance_m", "m", of<&P::rocker_com_distance>, centre, -1.0, Enters::kLoads, Sign::kPositive},
+      {"rocker_com_angle_deg", "deg", of<&P::rocker_com_angle>, centreAngle, 1.0, Enters::kLoads, Sign::kAny},
+      {"rocker_mass_kg", "kg", of<&P::rocker_mass>, weighed<&P::rocker_mass>, -1.0, Enters::kLoads, Sign::kPositive},
+      {"rocker_inertia_about_pivot_kg_m2", "kg m2", of<&P::rocker_inertia_about_pivot>,
+       weighed<&P::rocker_inertia_about_pivot>, 1.0, Enters::kLoads, Sign::kPositive},
+      {"striking_distance_m", "m", of<&P::striking_distance>, length, 1.0, Enters::kBlow, Sign::kPositive},
+      {"striking_offset_m", "m", of<&P::striking_offset>, exact, 1.0, Enters::kBlow, Sign::kAny, true},
+      {"striking_friction", "", of<&P::striking_friction>, exact, 1.0, Enters::kBlow, Sign::kNotNegative, true},
+      {"crank_mass_kg", "kg", of<&P::crank_mass>, guessed<&P::crank_mass>, 1.0, Enters::kLoads, Sign::kNotNegative},
+      {"crank_com_along_m", "m", of<&P::crank_com_along>, guessed<&P::crank_com_along>, 1.0, Enters::kLoads,
+       Sign::kAny},
+      {"crank_com_across_m", "m", of<&P::crank_com_across>, guessed<&P::crank_com_across>, 1.0, Enters::kLoads,
+       Sign::kAny},
+      {"crank_inertia_about_com_kg_m2", "kg m2", of<&P::crank_inertia_about_com>, guessed<&P::crank_inertia_about_com>,
+       1.0, Enters::kLoads, Sign::kNotNegative},
+      {"rod_mass_kg", "kg", of<&P::rod_mass>, guessed<&P::rod_mass>, 1.0, Enters::kLoads, Sign::kNotNegative},
+      {"rod_com_along_m", "m", of<&P::rod_com_along>, guessed<&P::rod_com_along>, 1.0, Enters::kLoads, Sign::kAny},
+      {"rod_com_across_m", "m", of<&P::rod_com_across>, guessed<&P::rod_com_across>, 1.0, Enters::kLoads, Sign::kAny},
+      {"rod_inertia_about_com_kg_m2", "kg m2", of<&P::rod_inertia_about_com>, guessed<&P::rod_inertia_about_com>, 1.0,
+       Enters::kLoads, Sign::kNotNegative},
+      {"drive_inertia_kg_m2", "kg m2", of<&P::drive_inertia>, exact, 1.0, Enters::kLearned, Sign::kPositive},
+      {"drive_reaction_ratio", "", of<&P::drive_reaction_ratio>, exact, 1.0, Enters::kLoads, Sign::kAny, true},
+  }};
+}();
+
+/// A constant's value in the unit of its key.
+inline double inFile(const HammerConstant& constant, double value) {
+  return std::string(constant.unit) == "deg" ? value / kDegree : value;
+}
 
 /// Place of a key in kHammerConstants, if it is there.
 inline std::optional<std::size_t> indexOfConstant(const std::string& key) {

@@ -1,9 +1,8 @@
 #include "hammer_loads/linkage/mechanism.h"
 
 #include <cmath>
-#include <utility>
 
-#include "hammer_loads/util/constants.h"
+#include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -12,23 +11,16 @@ namespace {
 /// Largest accepted miss of the change-point condition, relative to the crank (model.md 2).
 constexpr double kChangePointTolerance = 1e-3;
 
-enum class Sign { kAny, kNotNegative, kPositive };
+/// The first of kHammerConstants, which CrankRocker::make() checks.
+constexpr std::size_t kLengths = 4;
 
-struct Rule {
-  const char* key;
-  double value;
-  const char* unit;
-  Sign sign;
-};
+using Sign = HammerConstant::Sign;
 
-void check(const Rule& rule, std::vector<std::string>& problems) {
-  const double least = rule.sign == Sign::kPositive      ? kLeastParameter
-                       : rule.sign == Sign::kNotNegative ? 0.0
-                                                         : -kMostParameter;
-  if (rule.value >= least && rule.value <= kMostParameter) return;
-  const char* sign = rule.sign == Sign::kPositive ? "> 0" : rule.sign == Sign::kNotNegative ? ">= 0" : "finite";
-  problems.push_back(
-      format("%s: %.9g %s, must be %s, from %g to %g", rule.key, rule.value, rule.unit, sign, least, kMostParameter));
+void check(const char* key, double value, const char* unit, Sign sign, std::vector<std::string>& problems) {
+  const double least = sign == Sign::kPositive ? kLeastParameter : sign == Sign::kNotNegative ? 0.0 : -kMostParameter;
+  if (value >= least && value <= kMostParameter) return;
+  const char* rule = sign == Sign::kPositive ? "> 0" : sign == Sign::kNotNegative ? ">= 0" : "finite";
+  problems.push_back(format("%s: %.9g %s, must be %s, from %g to %g", key, value, unit, rule, least, kMostParameter));
 }
 
 double squaredSize(Planar a) { return a.re * a.re + a.im * a.im; }
@@ -60,16 +52,10 @@ LinkMoments momentsOf(const HammerParameters& p, const CrankRocker::Ratios& rati
 
 Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
   Checked<CrankRocker> result;
-  const std::pair<const char*, double> named[] = {{"crank_length_m", given.crank},
-                                                  {"rod_length_m", given.rod},
-                                                  {"rocker_length_m", given.rocker},
-                                                  {"pivot_distance_m", given.pivot_distance}};
-  for (const auto& [key, value] : named) {
-    if (!(value >= kLeastParameter && value <= kMostParameter)) {
-      result.problems.push_back(
-          format("%s: %.9g m, must be > 0, from %g to %g", key, value, kLeastParameter, kMostParameter));
-    }
-  }
+  check("crank_length_m", given.crank, "m", Sign::kPositive, result.problems);
+  check("rod_length_m", given.rod, "m", Sign::kPositive, result.problems);
+  check("rocker_length_m", given.rocker, "m", Sign::kPositive, result.problems);
+  check("pivot_distance_m", given.pivot_distance, "m", Sign::kPositive, result.problems);
   if (!result.problems.empty()) return result;
 
   const double l0 = given.pivot_distance, l1 = given.crank, l3 = given.rocker;
@@ -115,10 +101,6 @@ Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
   k.lambda3_squared = k.lambda3 * k.lambda3;
   k.lambda03 = k.lambda0 * k.lambda3;
   k.sigma_squared = k.sigma * k.sigma;
-  k.sigma_k_cos = k.sigma * k.k_cos;
-  k.sigma_k_sin = k.sigma * k.k_sin;
-  k.sigma_w0 = k.sigma * k.w0;
-  k.sigma_lambda2_less_1 = k.sigma * (k.lambda2 - 1.0);
   k.lambda3_sigma = k.lambda3 * k.sigma;
   k.lambda3_over_sigma_squared = k.lambda3 / k.sigma_squared;
   result.value = linkage;
@@ -130,28 +112,13 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
   const Checked<CrankRocker> linkage = CrankRocker::make(p.lengths);
   result.problems = linkage.problems;
   result.notes = linkage.notes;
-  for (const Rule& rule :
-       {Rule{"rocker_com_distance_m", p.rocker_com_distance, "m", Sign::kPositive},
-        Rule{"rocker_com_angle_deg", p.rocker_com_angle / kDegree, "deg", Sign::kAny},
-        Rule{"rocker_mass_kg", p.rocker_mass, "kg", Sign::kPositive},
-        Rule{"rocker_inertia_about_pivot_kg_m2", p.rocker_inertia_about_pivot, "kg m2", Sign::kPositive},
-        Rule{"striking_distance_m", p.striking_distance, "m", Sign::kPositive},
-        Rule{"striking_offset_m", p.striking_offset, "m", Sign::kAny},
-        Rule{"striking_friction", p.striking_friction, "", Sign::kNotNegative},
-        Rule{"crank_mass_kg", p.crank_mass, "kg", Sign::kNotNegative},
-        Rule{"crank_com_along_m", p.crank_com_along, "m", Sign::kAny},
-        Rule{"crank_com_across_m", p.crank_com_across, "m", Sign::kAny},
-        Rule{"crank_inertia_about_com_kg_m2", p.crank_inertia_about_com, "kg m2", Sign::kNotNegative},
-        Rule{"rod_mass_kg", p.rod_mass, "kg", Sign::kNotNegative},
-        Rule{"rod_com_along_m", p.rod_com_along, "m", Sign::kAny},
-        Rule{"rod_com_across_m", p.rod_com_across, "m", Sign::kAny},
-        Rule{"rod_inertia_about_com_kg_m2", p.rod_inertia_about_com, "kg m2", Sign::kNotNegative},
-        Rule{"drive_inertia_kg_m2", p.drive_inertia, "kg m2", Sign::kPositive},
-        Rule{"drive_reaction_ratio", p.drive_reaction_ratio, "", Sign::kAny},
-        Rule{"rod_damping_ratio", p.rod.damping_ratio, "", Sign::kNotNegative},
-        Rule{"pin_play_m", p.rod.play, "m", Sign::kNotNegative}}) {
-    check(rule, result.problems);
+  HammerParameters copy = p;
+  for (std::size_t i = kLengths; i < kHammerConstants.size(); ++i) {
+    const HammerConstant& constant = kHammerConstants[i];
+    check(constant.key, inFile(constant, constant.field(copy)), constant.unit, constant.sign, result.problems);
   }
+  check("rod_damping_ratio", p.rod.damping_ratio, "", Sign::kNotNegative, result.problems);
+  check("pin_play_m", p.rod.play, "m", Sign::kNotNegative, result.problems);
   const double least_inertia = p.rocker_mass * p.rocker_com_distance * p.rocker_com_distance;
   if (p.rocker_inertia_about_pivot > 0.0 && p.rocker_inertia_about_pivot < least_inertia) {
     result.problems.push_back(format(
@@ -171,7 +138,6 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
   mechanism.parameters_ = p;
   mechanism.parameters_.lengths = linkage.value->lengths();
   mechanism.moments_ = momentsOf(mechanism.parameters_, mechanism.linkage_.ratios());
-  mechanism.rocker_first_moment_ = p.rocker_mass * p.rocker_com_distance;
   mechanism.cos_com_angle_ = std::cos(p.rocker_com_angle);
   mechanism.sin_com_angle_ = std::sin(p.rocker_com_angle);
   result.value = mechanism;

@@ -116,7 +116,6 @@ class CrankRocker {
     double w0{};                   ///< lambda2 (lambda0 - 1)/lambda0
     double lambda0_squared{}, lambda3_squared{}, lambda03{};  ///< lambda0^2, lambda3^2, lambda0 lambda3
     double sigma_squared{}, lambda3_sigma{}, lambda3_over_sigma_squared{};
-    double sigma_k_cos{}, sigma_k_sin{}, sigma_w0{}, sigma_lambda2_less_1{};  ///< sigma times k_cos, ..., lambda2 - 1
   };
   const Ratios& ratios() const noexcept { return ratios_; }
 
@@ -183,7 +182,7 @@ class Mechanism {
   /// Parameters as given, with the rod's length corrected to the change-point condition.
   const HammerParameters& parameters() const noexcept { return parameters_; }
   /// First moment of the rocker about D, m3 ls [kg m].
-  double rockerFirstMoment() const noexcept { return rocker_first_moment_; }
+  double rockerFirstMoment() const noexcept { return moments_.rocker; }
   double cosComAngle() const noexcept { return cos_com_angle_; }  ///< cos a
   double sinComAngle() const noexcept { return sin_com_angle_; }  ///< sin a
   const LinkMoments& moments() const noexcept { return moments_; }
@@ -193,7 +192,7 @@ class Mechanism {
   CrankRocker linkage_;
   HammerParameters parameters_;
   LinkMoments moments_;
-  double rocker_first_moment_{}, cos_com_angle_{}, sin_com_angle_{};
+  double cos_com_angle_{}, sin_com_angle_{};
 };
 
 /// Moment BY the rotor ON the hull about +y: -(by_crank e + by_hull alpha), with e the crank's acceleration relative to

@@ -30,10 +30,6 @@ constexpr NumberRule kRules[kHammerConstantCount] = {kLength,        kLength,   
                                                      kInertiaOrNone, kInertia,  NumberRule::within(-10.0, 10.0)};
 constexpr const char* kRatio = "drive_reaction_ratio";
 
-double inFile(const HammerConstant& constant, double value) {
-  return std::string(constant.unit) == "deg" ? value / kDegree : value;
-}
-
 void name(const std::string& key, double deviation, std::string& usual) {
   usual += format("%s%s %.3g", usual.empty() ? "" : ", ", key.c_str(), deviation);
 }
