@@ -57,8 +57,11 @@ void addScalarLoads(const Mechanism& mechanism) {
   }
   add("scalar/linkage with pins", kStates, [mechanism, cranks] {
     const NearBlow near_blow(0.01);
-    for (const CrankMotion& crank : cranks)
-      benchmark::DoNotOptimize(linkLoads(mechanism, Level::kLinkage, crank, kGravity, near_blow));
+    for (const CrankMotion& crank : cranks) {
+      const LinkMotion links = linkMotion(mechanism.linkage(), crank.angle);
+      benchmark::DoNotOptimize(hullWrench(mechanism, links, crank, kGravity));
+      benchmark::DoNotOptimize(pinForces(mechanism, Level::kLinkage, links, crank, kGravity, near_blow));
+    }
   });
 }
 

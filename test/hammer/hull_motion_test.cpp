@@ -7,7 +7,6 @@
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/hammer/hull_model.h"
-#include "hammer_loads/hammer/link_loads.h"
 #include "support/free_run.h"
 #include "support/mo100.h"
 

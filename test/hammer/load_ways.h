@@ -201,8 +201,8 @@ inline LoadWay scalar(const char* name, Level level, Parts parts) {
             std::vector<LinkLoads> loads;
             for (const double angle : c.angles) {
               const CrankMotion crank{CrankAngle::fromAngle(angle), c.speed, c.acceleration};
-              loads.push_back(parts == Parts::kPins ? linkLoads(mechanism, level, crank, c.gravity, kNearBlow)
-                                                    : LinkLoads{hullWrench(model, crank, c.gravity), {}});
+              loads.push_back({hullWrench(model, crank, c.gravity), {}});
+              if (parts == Parts::kPins) loads.back().pins = pinForces(mechanism, level, crank, c.gravity, kNearBlow);
             }
             return loads;
           }};

@@ -8,7 +8,8 @@
 
 #include <cmath>
 
-#include "hammer_loads/hammer/link_loads.h"
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/pin_forces.h"
 
 namespace hammer_loads::test {
 
@@ -16,6 +17,11 @@ namespace hammer_loads::test {
 enum class Positions {
   kInverseTrigonometry,  ///< (2), (3) as printed: arctg and arccos, then sine and cosine of the angles
   kTrigonometry,         ///< the same triangles by the law of cosines and sqrt(1 - cos^2), without an angle
+};
+
+struct LinkLoads {
+  HullWrench wrench;
+  PinReactions pins;
 };
 
 class PrintedFormulas {

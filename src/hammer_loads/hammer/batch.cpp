@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "hammer_loads/hammer/link_loads.h"
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/pin_forces.h"
 
 // Compiled once for each of these, and chosen by the loader (before ThreadSanitizer works).
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \

@@ -1,7 +1,6 @@
 #include "hammer_loads/hammer/blow.h"
 
 #include <cmath>
-#include <limits>
 
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
@@ -13,11 +12,10 @@ namespace {
 
 double sign(double value) noexcept { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; }
 
-double squaredDistance(HullPoint p) noexcept { return p.x * p.x + p.z * p.z; }
-
 /// J* = J + m_n l_N^2 [kg m2].
 double strikingInertia(const StrikingRocker& rocker) noexcept {
-  return rocker.inertia_about_pivot + rocker.reduced_rod_mass * squaredDistance(rocker.rod_joint);
+  const HullPoint& n = rocker.rod_joint;
+  return rocker.inertia_about_pivot + rocker.reduced_rod_mass * (n.x * n.x + n.z * n.z);
 }
 
 /// Impulse of the tool on a rocker; P1's w = -psi' is counter-clockwise in (x, z).
@@ -56,7 +54,7 @@ RockerBlow earlyBlow(const StrikingRocker& rocker, const BlowInertia& inertia, d
   RockerBlow blow;
   blow.rocker_speed_before = inertia.u_before * speed;
   blow.rocker_speed_after = factor * blow.rocker_speed_before;
-  blow.restitution = std::numeric_limits<double>::quiet_NaN();
+  blow.restitution = kNaN;
   const HullPoint k = rocker.striking_point;
   const double lost = 0.5 * inertia.before() * (1.0 - factor * factor) * speed * speed;
   const double sum = blow.rocker_speed_before + blow.rocker_speed_after;  // < 0, as is k.x
@@ -100,14 +98,6 @@ RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, doub
   blow.support_impulse_x = blow.tool_impulse_x - change * moment_z;
   blow.support_impulse_z = blow.tool_impulse_z + change * moment_x;
   return blow;
-}
-
-HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
-  const ToolImpulse tool = toolImpulse(rocker, speed_before, speed_after);
-  const double change = speed_after - speed_before;
-  const double per_speed_z = tool.z / change, per_speed_x = tool.x / change;
-  return {-(per_speed_z + rocker.reduced_rod_mass * rocker.rod_joint.x) / rocker.mass,
-          (per_speed_x - rocker.reduced_rod_mass * rocker.rod_joint.z) / rocker.mass};
 }
 
 RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept {
@@ -156,17 +146,14 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
 void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) noexcept {
   constexpr double kDeviations = 2.0;  // contract of the message Blow
   const StrikingRocker rocker = strikingRocker(mechanism, level == Level::kLinkage ? level : Level::kRocker);
-  const HullPoint& n = rocker.rod_joint;
-  const double inertia = rocker.inertia_about_pivot + rocker.reduced_rod_mass * (n.x * n.x + n.z * n.z);
-  const double most = 0.5 * inertia * blow.rocker_speed_before * blow.rocker_speed_before;
+  const double most = 0.5 * strikingInertia(rocker) * blow.rocker_speed_before * blow.rocker_speed_before;
   const auto isOutside = [](double value, double deviation, double limit) {
     return value < -kDeviations * deviation || value > limit + kDeviations * deviation;
   };
   blow.impossible =
       isOutside(blow.restitution, blow.restitution_std, 1.0) || isOutside(blow.energy, blow.energy_std, most);
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (blow.impossible || !(blow.restitution >= 0.0 && blow.restitution <= 1.0)) blow.restitution = kNone;
-  if (blow.impossible || !(blow.energy >= 0.0 && blow.energy <= most)) blow.energy = kNone;
+  if (blow.impossible || !(blow.restitution >= 0.0 && blow.restitution <= 1.0)) blow.restitution = kNaN;
+  if (blow.impossible || !(blow.energy >= 0.0 && blow.energy <= most)) blow.energy = kNaN;
 }
 
 RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept {

@@ -132,16 +132,6 @@ inline LinkState linkState(const LinkMotion& links, const CrankMotion& crank) no
           links.v * crank.speed,     links.rocker.u * crank.speed,
           transmissionAngle(links)};
 }
-inline LinkState linkState(const HullModel& model, const CrankMotion& crank) noexcept {
-  return linkState(linkMotion(model.mechanism().linkage(), crank.angle), crank);
-}
-
-/// Forces in the pins and drive torque at the model's level; links: at the crank's angle; near_blow: transmission angle
-/// below which they are flagged, angle_error: of the crank, within which of the blow they are NaN [rad].
-inline PinReactions pinForces(const HullModel& model, const LinkMotion& links, const CrankMotion& crank,
-                              const HullMotion& hull, double near_blow, double angle_error = 0.0) noexcept {
-  return pinForces(model.mechanism(), model.level(), links, crank, hull, NearBlow(near_blow, angle_error));
-}
 
 /// Blow by the change of the crank's speed; if that is not known, the crank keeps its speed.
 inline RockerBlow measuredBlow(const HullModel& model, const CrankBlow& crank) noexcept {
@@ -168,32 +158,6 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
   HullWrench wrench = hullWrench(model, links, crank, hull);
   wrench.torque_y += drive.torque(crank.acceleration, hull.acceleration);
   return wrench;
-}
-
-/// Wrench on the hull at one crank angle for any speed [rad/s] and acceleration [rad/s2]. The links' motion is computed
-/// once. The object refers to its arguments.
-class WrenchAtAngle {
- public:
-  WrenchAtAngle(const HullModel& model, const DriveReaction& drive, const HullMotion& hull,
-                const LinksAtAngle& at) noexcept
-      : model_(model), drive_(drive), hull_(hull), at_(at) {}
-  HullWrench operator()(double speed, double acceleration) const noexcept {
-    HullWrench wrench = hullWrench(model_, at_.links, {at_.angle, speed, acceleration}, hull_);
-    wrench.torque_y += drive_.torque(acceleration, hull_.acceleration);
-    return wrench;
-  }
-
- private:
-  const HullModel& model_;
-  const DriveReaction& drive_;
-  const HullMotion& hull_;
-  const LinksAtAngle& at_;
-};
-
-/// Wrench by motion relative to the hull alone, without weight and in a hull at rest.
-inline HullWrench motionWrench(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
-                               const CrankMotion& crank) noexcept {
-  return hullWrench(model, drive, links, crank, Gravity{});
 }
 
 /// Models of the other hammers of MachineColumns; in their order.

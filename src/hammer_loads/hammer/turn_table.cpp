@@ -1,7 +1,7 @@
 #include "hammer_loads/hammer/turn_table.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "hammer_loads/hammer/batch.h"
@@ -11,24 +11,6 @@
 
 namespace hammer_loads {
 namespace {
-
-/// Results of several states, column by column.
-struct Columns {
-  explicit Columns(std::size_t count) {
-    for (std::vector<double>& column : columns) column.resize(count);
-  }
-  WrenchArrays wrenches() { return {columns[0].data(), columns[1].data(), columns[2].data()}; }
-  PinArrays pins() {
-    return {columns[3].data(), columns[4].data(), columns[5].data(),  columns[6].data(), columns[7].data(),
-            columns[8].data(), columns[9].data(), columns[10].data(), columns[11].data()};
-  }
-  HullWrench wrench(std::size_t i) const { return {columns[0][i], columns[1][i], columns[2][i]}; }
-  PinReactions pin(std::size_t i) const {
-    const auto force = [&](std::size_t c) { return PinForce{columns[c][i], columns[c + 1][i]}; };
-    return {force(3), force(5), force(7), force(9), columns[11][i], false};
-  }
-  std::array<std::vector<double>, 12> columns;
-};
 
 /// Weight along the tool on a half-sine in crank angle; angles are counted back from the blow. S as in HalfSinePulse.
 ConstantSpeedPulse pulseOfHalfSine(const TurnTable& table) {
@@ -79,13 +61,17 @@ std::vector<TurnRow> turnRows(const TurnTable& table, std::size_t first, std::si
     angle[i] = (degrees > 180.0 ? degrees - 360.0 : degrees) * kDegree;
   }
   const CrankStates states{angle.data(), speed.data(), acceleration.data(), count};
-  Columns columns(count);
-  if (table.pins) linkLoads(table.model, states, table.gravity, columns.wrenches(), columns.pins());
-  hullWrenches(table.model, states, table.gravity,
-               columns.wrenches());  // last: linkLoads has the rocker's at level pulse
+  Eigen::Matrix<double, Eigen::Dynamic, 12> out(count, 12);
+  const auto at = [&](Eigen::Index column) { return out.col(column).data(); };
+  const WrenchArrays wrenches{at(0), at(1), at(2)};
+  if (table.pins)
+    linkLoads(table.model, states, table.gravity, wrenches,
+              {at(3), at(4), at(5), at(6), at(7), at(8), at(9), at(10), at(11)});
+  hullWrenches(table.model, states, table.gravity, wrenches);  // last: linkLoads has the rocker's at level pulse
   for (std::size_t i = 0; i < count; ++i) {
-    result[i].wrench = columns.wrench(i);
-    if (table.pins) result[i].pins = columns.pin(i);
+    const auto o = out.row(static_cast<Eigen::Index>(i));
+    result[i].wrench = {o[0], o[1], o[2]};
+    if (table.pins) result[i].pins = {{o[3], o[4]}, {o[5], o[6]}, {o[7], o[8]}, {o[9], o[10]}, o[11], false};
   }
   if (first + count == rows && count > 0) {  // the batch takes the blow itself as after it
     const Evaluation at_blow = evaluate(table.model, {{0.0, Side::kBeforeBlow}, table.speed, 0.0}, table.gravity);

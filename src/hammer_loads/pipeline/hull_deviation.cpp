@@ -58,6 +58,14 @@ Eigen::Vector3d correlationOf(const Eigen::Matrix3d& covariance) noexcept {
   return {coefficient(0, 1), coefficient(0, 2), coefficient(1, 2)};
 }
 
+/// Wrench at one crank angle as a function of speed and acceleration.
+auto wrenchAt(const HullModel& model, const DriveReaction& drive, const HullMotion& hull,
+              const LinksAtAngle& at) noexcept {
+  return [&](double speed, double acceleration) {
+    return hullWrench(model, drive, at.links, {at.angle, speed, acceleration}, hull);
+  };
+}
+
 }  // namespace
 
 void addCovariance(const Eigen::Matrix3d& covariance, HullDeviation& deviation) noexcept {
@@ -76,8 +84,7 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
                             const LinksBeside& links, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept {
   if (!(covariance(1, 1) > 0.0)) return unknownDeviation();
-  const Gradient g =
-      gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
+  const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) { return wrenchAt(model, drive, hull, at); });
   const Eigen::Matrix3d of_load = g * covariance * g.transpose();
   return {deviationOf(of_load),        {},
           correlationOf(of_load),      Eigen::Vector3d::Zero(),
@@ -91,8 +98,7 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
   columns.setZero();
   if (!(uncertainty.own(1, 1) > 0.0)) return unknownDeviation();
   const DriveReaction drive = driveReaction(model, drive_inertia), none = driveReaction(model, 0.0);
-  const Gradient g =
-      gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
+  const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) { return wrenchAt(model, drive, hull, at); });
   columns.leftCols<ConstantErrors::kSize>() = g.lazyProduct(uncertainty.by_constant.topRows<3>());
   columns.middleCols<kMachineColumns>(ConstantErrors::kTable) +=
       hammer.wrench(drive_inertia, links.here, motionOf(crank), hull);
@@ -172,7 +178,7 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
   if (!(own(1, 1) > 0.0)) return {};
   const HullMotion at_rest;
   const Gradient g =
-      gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, at_rest, at); });
+      gradient(crank, links, [&](const LinksAtAngle& at) { return wrenchAt(model, drive, at_rest, at); });
   const auto of_sensor = columns.leftCols<ConstantErrors::kTable>();
   const Eigen::Matrix3d errors = covarianceRoot<3>(g * own * g.transpose() + of_sensor * of_sensor.transpose());
   WrenchSpread spread;

@@ -183,8 +183,8 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
   result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
   result_.crank.acceleration += rod.crank;
   result_.pins = elastic_.runs() ? elastic_.pins(result_.hull.motion, settings_.near_blow, result_.deviation.angle)
-                                 : pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow,
-                                             result_.deviation.angle);
+                                 : pinForces(mechanism_, model_.level(), links.here.links, motion, result_.hull.motion,
+                                             NearBlow(settings_.near_blow, result_.deviation.angle));
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
                 result_.deviation);
 }

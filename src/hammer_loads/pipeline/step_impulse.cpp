@@ -110,8 +110,8 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexc
         SmoothPiece& piece = result.pieces[result.count++];
         piece.duration = to - from;
         const PartEnd begin = endAt(step, a), end = endAt(step, b);
-        piece.from = motionWrench(model, drive, begin.links, motionOf(a));
-        piece.to = motionWrench(model, drive, end.links, motionOf(b));
+        piece.from = hullWrench(model, drive, begin.links, motionOf(a), Gravity{});
+        piece.to = hullWrench(model, drive, end.links, motionOf(b), Gravity{});
         const HullWrench impulse = change(model, drive, begin, end).all;
         piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
         if (ends_at == nullptr || !ends_at->strikes) return;

@@ -127,8 +127,9 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
     output.drive_reaction_y = drive_.torque(output.crank.acceleration, hull.acceleration);
   }
   last_output_ = stamp;
-  const LinkState state = at_sample ? result.links : linkState(*model_, motionOf(output.crank));
-  output.near_blow = state.transmission_angle < near_blow_;
+  const double transmission = at_sample ? result.links.transmission_angle
+                                        : transmissionAngle(linksAt(*model_, output.crank.position.angle).links);
+  output.near_blow = transmission < near_blow_;
   if (at_sample) {
     output.deviation = result.deviation;
     boundMean(links, result.doubt.own, result, output);
