@@ -132,7 +132,7 @@ TEST_F(ShippedLinkage, RefusesWhatCannotBeWithKeyValueAndRule) {
   EXPECT_EQ(problem(p), "hammer_cylinder_linkage_branch: 0.5, must be 1 or -1");
   p = given_;
   p.linkage->guide_length = 0.0;
-  EXPECT_EQ(problem(p), "hammer_cylinder_rocker_link_length_m: 0 m, must be from 1e-06 to 1e+03 m");
+  EXPECT_EQ(problem(p), "hammer_cylinder_rocker_link_length_m: 0 m, must be from 1e-06 to 1000 m");
   p = given_;
   p.rod_x = p.rod_z = 0.0;
   EXPECT_EQ(problem(p), "hammer_cylinder_joint: hammer_joint, an anchor lies on its axis, must be beside it");

@@ -47,7 +47,7 @@ TEST(Chain, IncludesFixedNeighboursAndReportsMovingOnes) {
   const Checked<Chain> made = oddChain();
   ASSERT_TRUE(made.value);
   EXPECT_EQ(made.value->link(3).body.mass, 14.0);
-  EXPECT_NEAR(made.value->link(3).body.p.z(), 1.0, 1e-15);
+  EXPECT_NEAR(made.value->link(3).body.com.z(), 1.0, 1e-15);
   ASSERT_EQ(made.notes.size(), 1U);
   EXPECT_EQ(made.notes[0], "robot_description: link loose: 7 kg move beside the chain and are not counted");
 }
@@ -151,7 +151,7 @@ TEST(Chain, ReportsEachFault) {
            Bad{"negative mass",
                robot(link("base_link", "") + negative + hinge),
                {},
-               {"mass of link hammer_hull: -3 kg, must be >= 0",
+               {"mass of link hammer_hull: -3 kg, must be from 0",
                 "inertia of link hammer_hull: principal moments 1, 1, 3"}},
            Bad{"massless",
                robot(link("base_link", "") + link("hammer_hull", "") + hinge),

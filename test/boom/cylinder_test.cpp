@@ -119,15 +119,15 @@ TEST_F(Cylinders, ReportsEachFault) {
     return made.problems.empty() ? "" : made.problems.front();
   };
   EXPECT_TRUE(Cylinder::make(good, kBulkModulus, chain_).value);
-  EXPECT_EQ(problem([](auto& p) { p.bore = -0.1; }), "boom_cylinder_bore_m: -0.1 m, must be a finite number > 0");
+  EXPECT_EQ(problem([](auto& p) { p.bore = -0.1; }), "boom_cylinder_bore_m: -0.1 m, must be from 1e-06 to 1000 m");
   EXPECT_EQ(problem([](auto& p) { p.rod_diameter = 0.2; }),
             "boom_cylinder_rod_diameter_m: 0.2 m, must be < boom_cylinder_bore_m = 0.11 m");
   EXPECT_EQ(problem([](auto& p) { p.closed_length = 0.6; }),
             "boom_cylinder_closed_length_m: 0.6 m, must be > boom_cylinder_stroke_m = 0.65 m");
   EXPECT_EQ(problem([](auto& p) { p.base_x = std::nan(""); }),
-            "boom_cylinder_base_x_m: nan m, must be a finite number");
+            "boom_cylinder_base_x_m: nan m, must be from -1000 to 1000 m");
   EXPECT_EQ(problem([](auto& p) { p.bore_hose_volume = 0.0; }),
-            "boom_cylinder_bore_hose_volume_m3: 0 m3, must be a finite number > 0");
+            "boom_cylinder_bore_hose_volume_m3: 0 m3, must be from 1e-12 to 1e+06 m3");
   EXPECT_EQ(problem([](auto& p) { p.joint = "knee_joint"; }),
             "boom_cylinder_joint: knee_joint, must be a revolute joint of the chain");
   EXPECT_EQ(problem([](auto& p) { p.rod_x = p.rod_z = 0.0; }),

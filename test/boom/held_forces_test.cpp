@@ -1,10 +1,10 @@
 // Forces that wait for the sensors' time: what goes out is what went in, whatever the lengths.
-#include "hammer_loads/boom/held_forces.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "hammer_loads/boom/mode_history.h"
 
 namespace hammer_loads {
 namespace {

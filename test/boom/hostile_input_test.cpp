@@ -94,10 +94,8 @@ TEST(HostileInput, VerdictsAreOnTheSafeSide) {
   const JointVector zero = JointVector::Zero(4);
   boom.moveCompliant({test::workingPosition(), zero, zero}, kLevel);
   const Wrench huge{Eigen::Vector3d(1e308, 0.0, 1.7e308), Eigen::Vector3d(1e308, 1e308, 1e308)};
-  const RigidVerdict verdict = boom.rigidVerdict(huge, 0.018);
-  EXPECT_EQ(verdict.error, kInfinity);
-  EXPECT_FALSE(verdict.suffices);
-  EXPECT_FALSE(boom.holdDown(huge).holds());
+  EXPECT_EQ(boom.rigidError(huge, 0.018), kInfinity);
+  EXPECT_LT(boom.holdDown(huge).least, 1.0);
 }
 
 }  // namespace

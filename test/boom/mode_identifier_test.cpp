@@ -64,11 +64,11 @@ INSTANTIATE_TEST_SUITE_P(BulkModulus, Oil,
 
 TEST(ModeIdentifier, FindsNothingWithoutReadings) {
   IdentifierSession run(0.7, Sensor::kImu);
-  const double before = run.identifier().frequencyDeviation(0);
+  const double before = run.identifier().frequencyVariance(0);
   const JointVector torque = JointVector::Constant(4, 1e3);
   for (int i = 0; i < 5000; ++i) run.boom_->vibration().advance(kMillisecond, {torque, torque, torque});
   EXPECT_EQ(run.identifier().frequencyRatio(0), 1.0);
-  EXPECT_GE(run.identifier().frequencyDeviation(0), before);
+  EXPECT_GE(run.identifier().frequencyVariance(0), before);
   EXPECT_FALSE(run.identifier().identified());
 }
 

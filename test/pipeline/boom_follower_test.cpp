@@ -106,7 +106,7 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanHoldDownForceAtTheTool) {
   const HoldDown once = *rigid.follower.state().hold_down;
   EXPECT_EQ(rigid.follower.firstToGive(), "boom_cylinder");
   EXPECT_EQ(once.least, once.cylinder[0]);
-  EXPECT_TRUE(once.holds());
+  EXPECT_TRUE(once.least >= 1.0);
 
   // The same force at the tool's end, moments about the rear edge by hand: all masses against the force.
   const Boom& boom = rigid.follower.boom();
@@ -116,8 +116,8 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanHoldDownForceAtTheTool) {
   const double rear = boom.parameters().supports->rear_x;
   double weight = 0.0;
   for (int i = 0; i < boom.chain().links(); ++i) {
-    const PointMass& body = boom.chain().link(i).body;
-    weight += body.mass * kGravity * ((boom.pose().link(i) * body.p).x() - rear);
+    const RigidBody& body = boom.chain().link(i).body;
+    weight += body.mass * kGravity * ((boom.pose().link(i) * body.com).x() - rear);
   }
   EXPECT_EQ(once.edge, 2);
   EXPECT_NEAR(once.machine, weight / (force.z() * (tool.x() - rear) - force.x() * tool.z()), 1e-9);

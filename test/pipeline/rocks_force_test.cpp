@@ -62,7 +62,7 @@ TEST(RocksForce, DoesNotGrowOnABoomAtRest) {
       distrusted += boom.pressureTrust().isLost();
       if (time < 1.2 || time > 2.0) return;
       const Eigen::Vector3d right = m.on_boom.oil_stiffness * truth.displacement;  // of oil that is as in the file
-      farthest = std::max(farthest, (boom.boom().vibration().identifier()->displacement().tail<3>() - right).norm());
+      farthest = std::max(farthest, (boom.boom().vibration().displacement().tail<3>() - right).norm());
       hangs = right.norm();
     });
     std::printf("%.2f mrad off of %.2f, distrusted for %zu samples\n", 1e3 * farthest, 1e3 * hangs, distrusted);

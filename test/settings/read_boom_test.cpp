@@ -51,9 +51,9 @@ class BoomFile : public testing::Test {
 TEST_F(BoomFile, EachFaultIsOneLine) {
   expectOne("damping_ratio: 0.05", "damping_ratio: 1.5", "damping_ratio: 1.5, must be > 0 and < 1");
   expectOne("damping_ratio: 0.05", "damping_ratio: lots", "damping_ratio: ");
-  expectOne("bulk_modulus_Pa: 1.0e+9", "bulk_modulus_Pa: -1.0", "bulk_modulus_Pa: -1 Pa, must be a finite number > 0");
+  expectOne("bulk_modulus_Pa: 1.0e+9", "bulk_modulus_Pa: -1.0", "bulk_modulus_Pa: -1 Pa, must be from 1 to 1e+15 Pa");
   expectOne("arm_cylinder_bore_m: 0.100", "arm_cylinder_bore_m: 0.0",
-            "arm_cylinder_bore_m: 0 m, must be a finite number > 0");
+            "arm_cylinder_bore_m: 0 m, must be from 1e-06 to 1000 m");
   expectOne("arm_cylinder_joint: arm_joint", "arm_cylinder_joint: elbow",
             "arm_cylinder_joint: elbow, must be a revolute");
   expectOne("arm_cylinder_joint: arm_joint", "arm_cylinder_joint: boom_joint", "arm_cylinder_");

@@ -1,14 +1,13 @@
 #include "hammer_loads/boom/boom.h"
 
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <set>
 #include <utility>
 
+#include "hammer_loads/boom/figure_limits.h"
 #include "hammer_loads/boom/load_errors.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
-#include "hammer_loads/util/known_count.h"
 
 namespace hammer_loads {
 namespace {
@@ -16,38 +15,28 @@ namespace {
 constexpr double kMostRefreshAngle = 0.05;  // [rad]: frequencies off by some 2 %; modes of another pose run away
 // Limit: kMostRefreshAngle
 
-/// Notes a value that is not good: key, value, unit, whether it is good, rule.
-using Check = std::function<void(const char*, double, const char*, bool, const char*)>;
-
-void checkOil(const BoomParameters& p, const Check& check) {
-  check("bulk_modulus_Pa", p.bulk_modulus, " Pa", p.bulk_modulus > 0.0, "a finite number > 0");
-  const double modulus = p.bulk_modulus;
-  if (std::isfinite(modulus) && modulus > 0.0)
-    check("bulk_modulus_Pa", modulus, " Pa", modulus >= 1.0 && modulus <= 1e15, "from 1 to 1e15 Pa");
-  const double zeta = p.vibration.damping_ratio;
-  check("damping_ratio", zeta, "", zeta > 0.0 && zeta < 1.0, "> 0 and < 1");
-  check("mode_refresh_angle_rad", p.vibration.refresh_angle, " rad",
-        p.vibration.refresh_angle >= 0.0 && p.vibration.refresh_angle <= kMostRefreshAngle,
-        format("from 0 to %g", kMostRefreshAngle).c_str());
-  check("rigid_tolerance", p.rigid_tolerance, "", p.rigid_tolerance > 0.0, "a finite number > 0");
-}
-
-void checkSupports(const Supports& s, const Check& check) {
-  check("support_front_x_m", s.front_x, " m", s.front_x > s.rear_x,
-        format("> support_rear_x_m = %.9g m", s.rear_x).c_str());
-  check("support_front_half_width_m", s.front_half_width, " m", s.front_half_width > 0.0, "a finite number > 0");
-  check("support_rear_x_m", s.rear_x, " m", true, "a finite number");
-  check("support_rear_half_width_m", s.rear_half_width, " m", s.rear_half_width > 0.0, "a finite number > 0");
-}
-
 void checkParameters(const BoomParameters& p, std::vector<std::string>& problems) {
-  const Check check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
-    if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g%s, must be %s", key, value, unit, rule));
+  const auto check = [&](const char* key, double value, const char* unit, double least, double most) {
+    checkRange(key, value, unit, least, most, problems);
   };
   const bool no_oil = p.cylinders.empty() && p.bulk_modulus == 0.0 && p.vibration.damping_ratio == 0.0 &&
                       p.vibration.refresh_angle == 0.0 && p.rigid_tolerance == 0.0;
-  if (!no_oil) checkOil(p, check);
-  if (p.supports) checkSupports(*p.supports, check);
+  if (!no_oil) {
+    check("bulk_modulus_Pa", p.bulk_modulus, "Pa", 1.0, 1e15);
+    check("mode_refresh_angle_rad", p.vibration.refresh_angle, "rad", 0.0, kMostRefreshAngle);
+    const double zeta = p.vibration.damping_ratio, tolerance = p.rigid_tolerance;
+    if (!(zeta > 0.0 && zeta < 1.0)) problems.push_back(format("damping_ratio: %.9g, must be > 0 and < 1", zeta));
+    if (!(tolerance > 0.0 && std::isfinite(tolerance)))
+      problems.push_back(format("rigid_tolerance: %.9g, must be a finite number > 0", tolerance));
+  }
+  if (!p.supports) return;
+  const Supports& s = *p.supports;
+  check("support_front_x_m", s.front_x, "m", -figure::kMostLength, figure::kMostLength);
+  check("support_front_half_width_m", s.front_half_width, "m", figure::kLeastLength, figure::kMostLength);
+  check("support_rear_x_m", s.rear_x, "m", -figure::kMostLength, figure::kMostLength);
+  check("support_rear_half_width_m", s.rear_half_width, "m", figure::kLeastLength, figure::kMostLength);
+  if (!(s.front_x > s.rear_x))
+    problems.push_back(format("support_front_x_m: %.9g m, must be > support_rear_x_m = %.9g m", s.front_x, s.rear_x));
 }
 
 std::vector<Section> makeSections(const std::vector<SectionParameters>& given, const Chain& chain,
@@ -74,7 +63,7 @@ void checkInertia(const Chain& chain, const std::vector<Cylinder>& cylinders, st
     const double sum = 0.5 * chain.lower()[j] + 0.5 * chain.upper()[j];
     middle[j] = std::isfinite(sum) ? sum : 0.0;
   }
-  const JointMatrix M = ChainDynamics(chain).massMatrix(middle);
+  const JointMatrix M = MassMatrix(chain).at(middle);
   for (const Cylinder& cylinder : cylinders) {
     const int j = cylinder.joint();
     if (M(j, j) > 0.0) continue;
@@ -86,21 +75,8 @@ void checkInertia(const Chain& chain, const std::vector<Cylinder>& cylinders, st
 }  // namespace
 
 Checked<Boom> Boom::make(const RobotDescription& description, const BoomParameters& parameters) {
-  std::vector<std::string> problems;
-  checkParameters(parameters, problems);
-  return build(description, parameters, std::move(problems));
-}
-
-Checked<Boom> Boom::make(const RobotDescription& description, const ChainRequest& request) {
-  BoomParameters parameters;
-  parameters.chain = request;
-  return build(description, parameters, {});
-}
-
-Checked<Boom> Boom::build(const RobotDescription& description, const BoomParameters& parameters,
-                          std::vector<std::string> problems) {
   Checked<Boom> result;
-  result.problems = std::move(problems);
+  checkParameters(parameters, result.problems);
   const Checked<Chain> chain = Chain::make(description, parameters.chain);
   result.problems.insert(result.problems.end(), chain.problems.begin(), chain.problems.end());
   result.notes = chain.notes;
@@ -139,7 +115,6 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
     : chain_(chain),
       cylinders_(std::move(cylinders)),
       parameters_(parameters),
-      dynamics_(chain),
       vibration_(chain, cylinders_, parameters.vibration),
       steel_(chain, cylinders_, std::move(sections)) {
   const JointVector zero = JointVector::Zero(chain.joints());
@@ -152,7 +127,7 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   deviation_.setZero(rows);
   weight_std_ = zero;
   bending_ = JointMatrix::Zero(joints, 0);
-  response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
+  response_at_ = JointVector::Constant(joints, kNaN);
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }
 
@@ -167,8 +142,8 @@ void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept 
     at_[i] = cylinders_[i].at(pose_.cosine[joint], pose_.sine[joint]);
   }
   weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
-  dynamics_.place(pose_, bodies_);
-  motion_ = dynamics_.torqueOfMotion(pose_, bodies_, motion);
+  placeBodies(chain_, pose_, bodies_);
+  motion_ = torqueOfMotion(chain_, pose_, bodies_, motion);
 }
 
 void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
@@ -199,19 +174,17 @@ Boom::TipVibration Boom::tipVibration() const noexcept {
 }
 
 ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {
-  return reducedAtTip(vibration_.modes(), hammerTorque({direction, Eigen::Vector3d::Zero()}));
-}
-
-JointMotion Boom::vibratingMotion() const noexcept {
-  JointMotion motion = joints_;
-  motion.velocity += vibration_.velocity();
-  motion.acceleration += vibration_.acceleration();
-  return motion;
+  const BoomModes& modes = vibration_.modes();
+  const JointVector modal = modalForce(modes, hammerTorque({direction, Eigen::Vector3d::Zero()}));
+  const double mobility = modal.squaredNorm(), compliance = modal.cwiseQuotient(modes.omega).squaredNorm();
+  return {mobility > 0.0 ? 1.0 / mobility : kInfinity, compliance > 0.0 ? 1.0 / compliance : kInfinity};
 }
 
 ChainLoads Boom::chainLoads(bool rigid) const noexcept {
+  JointMotion motion = joints_;
+  if (!rigid) motion.velocity += vibration_.velocity(), motion.acceleration += vibration_.acceleration();
   ChainLoads links;
-  dynamics_.chainLoads(pose_, bodies_, rigid ? joints_ : vibratingMotion(), g_B_, links);
+  findChainLoads(chain_, pose_, bodies_, motion, g_B_, links);
   return links;
 }
 
@@ -245,14 +218,9 @@ JointVector Boom::jointZeros() const noexcept {
   return zeros;
 }
 
-RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {
+double Boom::rigidError(const Wrench& w_peak, double pulse_length) const noexcept {
   const double damping = vibration_.known() ? vibration_.mode(0).zeta : parameters_.vibration.damping_ratio;
-  const double error = rigidError(vibration_.modes(), damping, hammerTorque(w_peak), pulse_length);
-  return {error, error <= parameters_.rigid_tolerance};
-}
-
-HoldDown Boom::holdDown(const Wrench& w_mean) const noexcept {
-  return hammer_loads::holdDown(chain_, pose_, joints_.position, cylinders_, parameters_.supports, w_mean, g_B_);
+  return hammer_loads::rigidError(vibration_.modes(), damping, hammerTorque(w_peak), pulse_length);
 }
 
 }  // namespace hammer_loads

@@ -13,6 +13,8 @@
 #include "hammer_loads/boom/steel_loads.h"
 #include "hammer_loads/boom/vibration.h"
 #include "hammer_loads/boom/vibration_spread.h"
+#include "hammer_loads/util/inline.h"
+#include "hammer_loads/util/known_count.h"
 
 namespace hammer_loads {
 
@@ -55,12 +57,6 @@ struct BoomDeviations {
   std::array<Wrench, kMaxJoints> joint;       ///< reactions at the joint, each component
 };
 
-/// Verdict whether the boom may be taken as rigid for a pulse.
-struct RigidVerdict {
-  double error{};   ///< rigidError() of the pulse [-]
-  bool suffices{};  ///< true if the error is within rigid_tolerance
-};
-
 /// Boom with its vibration. Call for each sample move() if the boom has moved, advance() if the vibration is wanted,
 /// then loads(). After make() nothing allocates or throws; loads() reports an input whose results are not finite.
 class Boom {
@@ -68,7 +64,11 @@ class Boom {
   /// Makes a boom, or reports every problem of description and boom file at once, one line each.
   static Checked<Boom> make(const RobotDescription& description, const BoomParameters& parameters);
   /// Makes a boom from the description alone: rigid, no cylinders, supports not known.
-  static Checked<Boom> make(const RobotDescription& description, const ChainRequest& request = {});
+  static Checked<Boom> make(const RobotDescription& description, const ChainRequest& request = {}) {
+    BoomParameters parameters;
+    parameters.chain = request;
+    return make(description, parameters);
+  }
   /// Makes the same boom without sections, with the links' bodies in place of all that were given as weighed; empty for
   /// impossible bodies. description: that of this boom. Cylinders are not checked again, as no body changes their
   /// place.
@@ -90,8 +90,15 @@ class Boom {
   Eigen::Vector3d gravityAtTip() const noexcept;
   /// Jacobian of the tip at the pose, see tipJacobian().
   const Jacobian& tipJacobian() const noexcept { return jacobian_; }
+  /// J^T w of a load on the tip: its torque on each joint about the joint's axis, positive when it drives the joint
+  /// forward [N m] ([N] for a prismatic joint). The part that holds the joint gives the opposite.
   HAMMER_LOADS_INLINE JointVector hammerTorque(const Wrench& w_tip) const noexcept {
-    return jointTorqueOfTipLoad(jacobian_, w_tip);
+    JointVector torque(jacobian_.cols());
+    withCount<4>(chain_.joints(), [&](auto joints) {
+      for (int j = 0; j < joints; ++j)
+        torque[j] = jacobian_.col(j).head<3>().dot(w_tip.force) + jacobian_.col(j).tail<3>().dot(w_tip.torque);
+    });
+    return torque;
   }
 
   /// Torque of weight and motion on a joint [N m].
@@ -105,7 +112,8 @@ class Boom {
     Eigen::Matrix<double, 6, 1> displacement, velocity, acceleration;
   };
   TipVibration tipVibration() const noexcept;
-  /// Reduced mass and stiffness at the hull along a unit vector in the tip's axes, at the pose of the modes.
+  /// Reduced mass and stiffness at the hull along a unit vector in the tip's axes, at the pose of the modes. Infinite
+  /// where the vibrating joints do not move the hull along it.
   ReducedHull reducedHull(const Eigen::Vector3d& direction) const noexcept;
 
   /// Loads by inertia and weight of the links in the present motion; rigid: without vibration.
@@ -146,10 +154,12 @@ class Boom {
   JointVector bendingDeviation() const noexcept;
   /// Faults of a cylinder under these loads, sum of CylinderFlag. The steady part is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
-  /// Verdict for half-sine pulses of that peak and length [s], at the pose of the modes. It takes some 0.1 ms, too long
-  /// for each sample.
-  RigidVerdict rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept;
-  /// Factors by which weight and cylinders hold the hull down against a mean load of the hammer on the tip.
+  /// rigidError() of half-sine pulses of that peak and length [s], at the pose of the modes. It takes some 0.1 ms, too
+  /// long for each sample.
+  double rigidError(const Wrench& w_peak, double pulse_length) const noexcept;
+  /// Factors by which weight and cylinders hold the hull down against a mean load of the hammer on the tip, such as the
+  /// mean hold-down force along +z at the striking line. Static; no sliding; supports on level ground carry pressure
+  /// only.
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 
   const Chain& chain() const noexcept { return chain_; }
@@ -164,13 +174,10 @@ class Boom {
  private:
   Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Section> sections,
        const BoomParameters& parameters);
-  static Checked<Boom> build(const RobotDescription& description, const BoomParameters& parameters,
-                             std::vector<std::string> problems);
 
   Chain chain_;
   std::vector<Cylinder> cylinders_;
   BoomParameters parameters_;
-  ChainDynamics dynamics_;
   Vibration vibration_;
   SteelLoadFinder steel_;
   ChainPose pose_;
@@ -181,7 +188,6 @@ class Boom {
   JointVector weight_, motion_;
   std::array<CylinderPosition, kMaxJoints> at_;
 
-  JointMotion vibratingMotion() const noexcept;
   void findResponse() noexcept;
   JointVector findWeightDeviation() const noexcept;
   JointMatrix findBending() const noexcept;

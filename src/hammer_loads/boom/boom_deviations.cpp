@@ -72,12 +72,12 @@ void Boom::findResponse() noexcept {
   Eigen::Index column = 0;
   for (const Cylinder& cylinder : cylinders_) {
     motion.acceleration = JointVector::Unit(joints, cylinder.joint());
-    dynamics_.chainLoads(pose_, bodies_, motion, weightless, links);
+    findChainLoads(chain_, pose_, bodies_, motion, weightless, links);
     steel_.find({pose_, links, {none, none}, at_.data()}, load);
     storeResponse(column++, jointTorque(chain_, pose_, links), load);
   }
   motion.acceleration = zero;
-  dynamics_.chainLoads(pose_, bodies_, motion, weightless, links);
+  findChainLoads(chain_, pose_, bodies_, motion, weightless, links);
   for (int k = 0; k < 6; ++k) {
     const Wrench unit = k < 3 ? wrenchOf(Eigen::Vector3d::Unit(k), none) : wrenchOf(none, Eigen::Vector3d::Unit(k - 3));
     steel_.find({pose_, links, unit, at_.data()}, load);
@@ -131,7 +131,7 @@ void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexce
 double Boom::ownInertia(int link, int joint, int other) const noexcept {
   const auto j = static_cast<std::size_t>(joint), k = static_cast<std::size_t>(other);
   if (pose_.prismatic[j] || pose_.prismatic[k]) return 0.0;
-  const PlacedBody& body = bodies_[static_cast<std::size_t>(link)];
+  const RigidBody& body = bodies_[static_cast<std::size_t>(link)];
   const Eigen::Vector3d com = pose_.link(link).translation() + body.com, &a = pose_.axis_B[j], &b = pose_.axis_B[k];
   return a.dot(body.inertia * b) + body.mass * a.cross(com - pose_.p_BJ_B[j]).dot(b.cross(com - pose_.p_BJ_B[k]));
 }
@@ -170,7 +170,7 @@ JointVector Boom::bendingDeviation() const noexcept {
 JointVector Boom::findWeightDeviation() const noexcept {
   JointVector variance = JointVector::Zero(chain_.joints());
   for (int i = 1; i < chain_.links(); ++i) {
-    const PointMass& body = chain_.link(i).body;
+    const RigidBody& body = chain_.link(i).body;
     const Pose& X_BL = pose_.link(i);
     const WeighedLink* weighed = findLink(parameters_.chain.weighed, chain_.link(i).name);
     const Eigen::Vector3d x_B = X_BL.linear().col(0), z_B = X_BL.linear().col(2);
@@ -185,7 +185,7 @@ JointVector Boom::findWeightDeviation() const noexcept {
         variance[j] += square(weighed->moment_x_std * of(x_B)) + square(weighed->moment_z_std * of(z_B));
         continue;
       }
-      variance[j] += square(parameters_.link_mass_std * of(body.mass * (X_BL * body.p - pose_.p_BJ_B[joint]))) +
+      variance[j] += square(parameters_.link_mass_std * of(body.mass * (X_BL * body.com - pose_.p_BJ_B[joint]))) +
                      square(parameters_.link_com_std * body.mass) * (square(of(x_B)) + square(of(z_B)));
     }
   }

@@ -15,20 +15,13 @@ void clear(BoomModes& modes) noexcept {
   modes.oil_share.resize(0, 0), modes.shape.resize(0, 0), modes.inertia.resize(modes.mass.rows(), 0);
 }
 
-VibrationReading emptyReading(double value) {
-  VibrationReading reading;
-  for (auto* row : {&reading.displacement, &reading.velocity, &reading.acceleration}) row->setZero();
-  reading.value = value;
-  return reading;
-}
-
 }  // namespace
 
-void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
+void findModes(MassMatrix& mass, const std::vector<Cylinder>& cylinders, const JointVector& position,
                const Eigen::Vector3d& g_B, const LogOil& oil, BoomModes& modes) noexcept {
   modes.count = static_cast<int>(cylinders.size());
   modes.zero_moment_arm = false;
-  modes.mass = dynamics.massMatrix(position);
+  modes.mass = mass.at(position);
   modes.stiffness.resize(modes.count);
   for (int i = 0; i < modes.count; ++i) {
     const Cylinder& cylinder = cylinders[static_cast<std::size_t>(i)];
@@ -49,7 +42,7 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
   // With the cylinders' K: K^-1/2 M K^-1/2 y = (1 + weight's share) y/omega^2, well conditioned since every K is
   // positive.
   const JointVector soft = modes.stiffness.cwiseSqrt().cwiseInverse();
-  const JointMatrix by_weight = dynamics.weightStiffness(position, g_B);
+  const JointMatrix by_weight = weightStiffness(mass.chain(), position, g_B);
   JointMatrix scaled = M, stiff = JointMatrix::Identity(n, n);
   for (int j = 0; j < n; ++j) {
     scaled.col(j).array() *= soft.array() * soft[j];
@@ -114,21 +107,17 @@ JointVector modalOf(const BoomModes& modes, const JointVector& joints) noexcept 
   return modal;
 }
 
-ReducedHull reducedAtTip(const BoomModes& modes, const JointVector& tip_velocity) noexcept {
-  const JointVector modal = modalForce(modes, tip_velocity);
-  const double mobility = modal.squaredNorm(), compliance = modal.cwiseQuotient(modes.omega).squaredNorm();
-  return {mobility > 0.0 ? 1.0 / mobility : kInfinity, compliance > 0.0 ? 1.0 / compliance : kInfinity};
-}
-
 VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, double rate) {
-  VibrationReading reading = emptyReading(rate);
+  VibrationReading reading;
+  reading.value = rate;
   for (Eigen::Index j = 0; j < J.cols(); ++j) reading.velocity[j] = n_T.dot(J.col(j).tail<3>());
   return reading;
 }
 
 VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
                                         const Eigen::Vector3d& g_T, double acceleration) {
-  VibrationReading reading = emptyReading(acceleration + n_T.dot(g_T));
+  VibrationReading reading;
+  reading.value = acceleration + n_T.dot(g_T);
   // n . (v + omega x p) and n . (omega x g), where the vibration tilts the sensor and gravity turns against it.
   const Eigen::Vector3d p_n = p_T.cross(n_T), g_n = g_T.cross(n_T);
   for (Eigen::Index j = 0; j < J.cols(); ++j) {
@@ -140,7 +129,8 @@ VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d
 }
 
 VibrationReading jointAngleReading(int joint, double angle) {
-  VibrationReading reading = emptyReading(angle);
+  VibrationReading reading;
+  reading.value = angle;
   reading.displacement[joint] = 1.0;
   return reading;
 }
@@ -148,7 +138,6 @@ VibrationReading jointAngleReading(int joint, double angle) {
 VibrationReading oilTorqueReading(int joint, double torque) {
   VibrationReading reading;
   reading.of_oil = true;
-  reading.oil.setZero();
   reading.oil[joint] = 1.0;
   reading.value = torque;
   return reading;

@@ -28,7 +28,7 @@ struct BoomModes {
   JointMatrix inertia;    ///< M shape, of all joints, per mode [sqrt(kg m2)]
 };
 
-/// Joint torques of the hammer over one step, signs as in jointTorqueOfTipLoad() [N m].
+/// Joint torques of the hammer over one step, signs as in Boom::hammerTorque() [N m].
 struct TorqueStep {
   JointVector from, to;  ///< at the step's ends; where the load jumps (a blow), end a step there and start the next
   JointVector mean;      ///< over the step; linear between the ends makes it their mean
@@ -38,7 +38,7 @@ struct TorqueStep {
 using LogOil = Eigen::Matrix<double, kMaxJoints, 1>;
 
 /// Modes at a pose; at most one cylinder per joint. g_B: gravity in the root's axes [m/s2]. No allocation.
-void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
+void findModes(MassMatrix& mass, const std::vector<Cylinder>& cylinders, const JointVector& position,
                const Eigen::Vector3d& g_B, const LogOil& oil, BoomModes& modes) noexcept;
 
 /// Modal forces of joint torques [N m] and the joint displacements or velocities that modal ones make, of all joints.
@@ -54,10 +54,6 @@ struct ReducedHull {
   double stiffness{};  ///< 1/(d^T J K^-1 J^T d) [N/m]
 };
 
-/// Along a direction through the tip's origin: tip_velocity = that velocity per joint rate, d^T J [m]. Infinite where
-/// the vibrating joints do not move the hull along it.
-ReducedHull reducedAtTip(const BoomModes& modes, const JointVector& tip_velocity) noexcept;
-
 /// Clock of a reading's stamps. A sensor with a clock of its own may have a constant delay.
 enum class Clock { kCrank, kImu, kPressures };
 
@@ -67,7 +63,7 @@ enum class Clock { kCrank, kImu, kPressures };
 struct VibrationReading {
   /// One entry per joint of the chain, then zeros.
   using Row = Eigen::Matrix<double, kMaxJoints, 1>;
-  Row displacement, velocity, acceleration, oil;
+  Row displacement = Row::Zero(), velocity = displacement, acceleration = displacement, oil = displacement;
   bool of_oil{};  ///< `oil` counts, else the three others
   int channel{-1};
   double value{};

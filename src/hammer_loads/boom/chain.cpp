@@ -13,6 +13,10 @@
 namespace hammer_loads {
 namespace {
 
+/// Least mass of a weighed link [kg] and least inertia [kg m2]; largest deviation of its first moment [kg m].
+constexpr double kLeastMass = 1e-9, kMostMoment = figure::kMostMass * figure::kMostLength;
+// Limit: kLeastMass, kMostMoment
+
 bool moves(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
          joint.type == urdf::Joint::PRISMATIC;
@@ -26,6 +30,12 @@ Eigen::Matrix3d toEigen(const KDL::Rotation& R) {
   return M;
 }
 
+RigidBody toEigen(KDL::RigidBodyInertia body) {  // its RefPoint() is not const
+  const KDL::RotationalInertia about_com = body.RefPoint(body.getCOG()).getRotationalInertia();
+  return {body.getMass(), toEigen(body.getCOG()),
+          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(about_com.data)};
+}
+
 /// Position and rotation of a segment as functions of its joint.
 ChainLink toLink(const KDL::Segment& segment) {
   ChainLink link;
@@ -36,7 +46,7 @@ ChainLink toLink(const KDL::Segment& segment) {
   link.steady = R;
   link.sine = link.cosine = Eigen::Matrix3d::Zero();
   link.slide = link.axis = Eigen::Vector3d::Zero();
-  link.body = {segment.getInertia().getMass(), toEigen(segment.getInertia().getCOG())};
+  link.body = toEigen(segment.getInertia());
   // None is how KDL 1.4 and 1.5 both call a fixed joint.
   const KDL::Joint::JointType type = segment.getJoint().getType();
   if (type == KDL::Joint::None) return link;
@@ -53,6 +63,11 @@ ChainLink toLink(const KDL::Segment& segment) {
   link.sine = K * R;
   link.cosine = -K * K * R;
   return link;
+}
+
+bool isBefore(const std::string& name, urdf::LinkConstSharedPtr link) {
+  while (link && link->name != name) link = link->getParent();
+  return link != nullptr;
 }
 
 }  // namespace
@@ -138,22 +153,16 @@ class ChainBuilder {
       if (!named.insert(w.name).second) refuse(", given twice, must be different links");
       if (there.count(w.name) == 0)
         refuse(format(", must be a link between %s and %s", request_.root.c_str(), request_.tip.c_str()));
-      checkNumber(w.name + "_mass_kg", w.mass, " kg", w.mass > 0.0 && w.mass <= figure::kMostMass,
-                  "> 0 and at most 1e9 kg");
-      checkNumber(w.name + "_com_x_m", w.com_x, " m", std::abs(w.com_x) <= figure::kMostLength, "within 1000 m");
-      checkNumber(w.name + "_com_z_m", w.com_z, " m", std::abs(w.com_z) <= figure::kMostLength, "within 1000 m");
-      checkNumber(w.name + "_inertia_kg_m2", w.inertia, " kg m2", w.inertia > 0.0 && w.inertia <= figure::kMostMass,
-                  "> 0 and at most 1e9 kg m2");
-      checkNumber(w.name + "_moment_x_std_kg_m", w.moment_x_std, " kg m", w.moment_x_std >= 0.0,
-                  "a finite number >= 0");
-      checkNumber(w.name + "_moment_z_std_kg_m", w.moment_z_std, " kg m", w.moment_z_std >= 0.0,
-                  "a finite number >= 0");
+      const auto check = [&](const char* key, double value, const char* unit, double least, double most) {
+        checkRange(w.name + "_" + key, value, unit, least, most, result_.problems);
+      };
+      check("mass_kg", w.mass, "kg", kLeastMass, figure::kMostMass);
+      check("com_x_m", w.com_x, "m", -figure::kMostLength, figure::kMostLength);
+      check("com_z_m", w.com_z, "m", -figure::kMostLength, figure::kMostLength);
+      check("inertia_kg_m2", w.inertia, "kg m2", kLeastMass, figure::kMostMass);
+      check("moment_x_std_kg_m", w.moment_x_std, "kg m", 0.0, kMostMoment);
+      check("moment_z_std_kg_m", w.moment_z_std, "kg m", 0.0, kMostMoment);
     }
-  }
-
-  void checkNumber(const std::string& key, double value, const char* unit, bool good, const char* rule) {
-    if (good && std::isfinite(value)) return;
-    result_.problems.push_back(format("%s: %.9g%s, must be %s", key.c_str(), value, unit, rule));
   }
 
   /// A weighed link's body; other axes' inertias change with that about y.
@@ -174,8 +183,7 @@ class ChainBuilder {
     in_chain_.insert(request_.root);
     const auto root = tree_.getSegment(request_.root);
     ChainLink base = toLink(KDL::Segment(request_.root));
-    const KDL::RigidBodyInertia base_body = ownBody(*model_.getLink(request_.root)) + fixedNeighbours(root);
-    base.body = {base_body.getMass(), toEigen(base_body.getCOG())};
+    base.body = toEigen(ownBody(*model_.getLink(request_.root)) + fixedNeighbours(root));
     data_.links.push_back(std::move(base));
     data_.lower.resize(0), data_.upper.resize(0);
     for (const urdf::JointConstSharedPtr& joint : path_) addLink(*joint);
@@ -252,6 +260,33 @@ std::string linksMissing(const RobotDescription& description, const ChainRequest
   return {};
 }
 
+std::optional<ChainRequest> chainOver(const RobotDescription& description, const std::vector<std::string>& joints) {
+  const urdf::ModelInterface* model = description.model();
+  if (model == nullptr) return std::nullopt;
+  for (const std::string& name : joints) {
+    const urdf::JointConstSharedPtr joint = model->getJoint(name);
+    if (!joint) return std::nullopt;
+    // The last joint is the one that has all of them before it.
+    std::size_t met = 0;
+    std::string first;  // link before the first joint
+    for (urdf::LinkConstSharedPtr link = model->getLink(joint->child_link_name); link->parent_joint;
+         link = link->getParent()) {
+      const auto times = std::count(joints.begin(), joints.end(), link->parent_joint->name);
+      if (times > 0) first = link->parent_joint->parent_link_name;
+      met += static_cast<std::size_t>(times);
+    }
+    if (met != joints.size()) continue;
+    ChainRequest request;
+    const urdf::LinkConstSharedPtr hull = model->getLink(request.tip);
+    if (!hull || !isBefore(joint->child_link_name, hull)) request.tip = joint->child_link_name;
+    if (!isBefore(request.root, model->getLink(first))) request.root = model->getRoot()->name;
+    request.joints = joints;
+    request.massless = true;
+    return request;
+  }
+  return std::nullopt;
+}
+
 Checked<Chain> Chain::make(const RobotDescription& description, const ChainRequest& request) {
   Checked<Chain> result;
   result.problems = description.problems();
@@ -266,10 +301,8 @@ std::optional<int> Chain::jointIndex(const std::string& name) const noexcept {
 }
 
 WeighedLink Chain::body(int index) const {
-  const ChainLink& link = this->link(index);
-  KDL::RigidBodyInertia inertia = data_->kdl->getSegment(static_cast<unsigned>(index - 1)).getInertia();
-  const double about_y = inertia.RefPoint(inertia.getCOG()).getRotationalInertia().data[4];
-  return {link.name, link.body.mass, link.body.p.x(), link.body.p.z(), about_y, 0.0, 0.0};
+  const RigidBody& body = link(index).body;
+  return {link(index).name, body.mass, body.com.x(), body.com.z(), body.inertia(1, 1), 0.0, 0.0};
 }
 
 std::optional<int> Chain::linkIndex(const std::string& name) const noexcept {

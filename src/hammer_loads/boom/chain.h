@@ -56,10 +56,11 @@ std::string linksMissing(const RobotDescription& description, const ChainRequest
 /// them one behind the other, or cannot be read.
 std::optional<ChainRequest> chainOver(const RobotDescription& description, const std::vector<std::string>& joints);
 
-/// A body's mass and where it acts.
-struct PointMass {
-  double mass{};                                ///< [kg]
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< centre of mass from a frame's origin in its axes [m]
+/// A rigid body in a link's frame.
+struct RigidBody {
+  double mass{};                                      ///< [kg]
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< centre of mass [m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass [kg m2]
 };
 
 /// A link of the chain and how it hangs on the one before. With q its joint's position, in the frame P of the one
@@ -72,7 +73,7 @@ struct ChainLink {
   Eigen::Matrix3d steady, sine, cosine;
   Eigen::Vector3d origin, slide;
   Eigen::Vector3d axis;  ///< axis of the joint in P; zero when fixed
-  PointMass body;        ///< in its own frame, with what is fixed to it beside the chain
+  RigidBody body;        ///< with what is fixed to it beside the chain; of the root without inertia
 };
 
 /// A chain that can carry loads: at most kMaxJoints revolute or prismatic joints, mass beyond the last of them. Built

@@ -8,29 +8,16 @@
 namespace hammer_loads {
 namespace {
 
-RigidBody bodyOf(const KDL::Segment& segment) {
-  KDL::RigidBodyInertia given = segment.getInertia();  // its RefPoint() is not const
-  RigidBody body;
-  body.mass = given.getMass();
-  const KDL::Vector com = given.getCOG();
-  body.com = {com.x(), com.y(), com.z()};
-  const KDL::RotationalInertia about_com = given.RefPoint(com).getRotationalInertia();
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) body.inertia(r, c) = about_com.data[3 * r + c];
-  }
-  return body;
-}
-
 HAMMER_LOADS_INLINE Eigen::Vector3d accelerationAt(const BodyMotion& m, const Eigen::Vector3d& r) noexcept {
   return m.acceleration + m.angular_acceleration.cross(r) + m.rate.cross(m.rate.cross(r));
 }
 
-PlacedBody placed(const RigidBody& body, const Pose& X_BL) noexcept {
+RigidBody placed(const RigidBody& body, const Pose& X_BL) noexcept {
   const Eigen::Matrix3d R = X_BL.linear();
   return {body.mass, R * body.com, R * body.inertia * R.transpose()};
 }
 
-HAMMER_LOADS_INLINE Wrench loadOf(const PlacedBody& body, const Pose& X_BL, const BodyMotion& m) noexcept {
+HAMMER_LOADS_INLINE Wrench loadOf(const RigidBody& body, const Pose& X_BL, const BodyMotion& m) noexcept {
   const Eigen::Vector3d force = -body.mass * accelerationAt(m, body.com);
   const Eigen::Vector3d moment = body.inertia * m.angular_acceleration + m.rate.cross(body.inertia * m.rate);
   return {force, (X_BL.translation() + body.com).cross(force) - moment};
@@ -65,17 +52,12 @@ void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& m
 
 }  // namespace
 
-std::vector<RigidBody> bodiesOf(const Chain& chain) {
-  std::vector<RigidBody> bodies(1);
-  for (const KDL::Segment& segment : chain.kdl().segments) bodies.push_back(bodyOf(segment));
-  return bodies;
+void placeBodies(const Chain& chain, const ChainPose& pose, PlacedBodies& result) noexcept {
+  for (int i = 1; i < chain.links(); ++i)
+    result[static_cast<std::size_t>(i)] = placed(chain.link(i).body, pose.link(i));
 }
 
-void placeBodies(const std::vector<RigidBody>& bodies, const ChainPose& pose, PlacedBodies& result) noexcept {
-  for (std::size_t i = 1; i < bodies.size(); ++i) result[i] = placed(bodies[i], pose.X_BL[i]);
-}
-
-void findChainLoads(const Chain& chain, const PlacedBodies& bodies, const ChainPose& pose, const JointMotion& motion,
+void findChainLoads(const Chain& chain, const ChainPose& pose, const PlacedBodies& bodies, const JointMotion& motion,
                     const Eigen::Vector3d& g_B, ChainLoads& result) noexcept {
   findMotions(chain, pose, motion, -g_B, result.motion);
   Wrench load;
@@ -100,49 +82,16 @@ Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const BodyMotion& motio
   return loadOf(placed(body, X_BL), X_BL, motion);
 }
 
-struct ChainDynamics::Solvers {
-  explicit Solvers(const Chain& given)
-      : chain(given),
-        composite_bodies(chain.kdl(), KDL::Vector::Zero()),
-        position(chain.kdl().getNrOfJoints()),
-        mass(chain.kdl().getNrOfJoints()),
-        bodies(bodiesOf(given)) {}
-
-  Chain chain;  ///< keeps alive what the solvers refer to
-  KDL::ChainDynParam composite_bodies;
-  KDL::JntArray position;
-  KDL::JntSpaceInertiaMatrix mass;
-  std::vector<RigidBody> bodies;
-};
-
-ChainDynamics::ChainDynamics(const Chain& chain) : solvers_(std::make_unique<Solvers>(chain)) {}
-ChainDynamics::~ChainDynamics() = default;
-ChainDynamics::ChainDynamics(const ChainDynamics& other) : ChainDynamics(other.solvers_->chain) {}
-ChainDynamics& ChainDynamics::operator=(const ChainDynamics& other) { return *this = ChainDynamics(other); }
-ChainDynamics::ChainDynamics(ChainDynamics&&) noexcept = default;
-ChainDynamics& ChainDynamics::operator=(ChainDynamics&&) noexcept = default;
-
-void ChainDynamics::place(const ChainPose& pose, PlacedBodies& bodies) const noexcept {
-  placeBodies(solvers_->bodies, pose, bodies);
-}
-
-JointVector ChainDynamics::torqueOfMotion(const ChainPose& pose, const PlacedBodies& bodies,
-                                          const JointMotion& motion) const noexcept {
-  const Chain& chain = solvers_->chain;
+JointVector torqueOfMotion(const Chain& chain, const ChainPose& pose, const PlacedBodies& bodies,
+                           const JointMotion& motion) noexcept {
   if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return JointVector::Zero(chain.joints());
   ChainLoads loads;
-  chainLoads(pose, bodies, motion, Eigen::Vector3d::Zero(), loads);
+  findChainLoads(chain, pose, bodies, motion, Eigen::Vector3d::Zero(), loads);
   return jointTorque(chain, pose, loads);
 }
 
-void ChainDynamics::chainLoads(const ChainPose& pose, const PlacedBodies& bodies, const JointMotion& motion,
-                               const Eigen::Vector3d& g_B, ChainLoads& result) const noexcept {
-  findChainLoads(solvers_->chain, bodies, pose, motion, g_B, result);
-}
-
 /// Second derivatives of the weight's potential: a joint turns everything beyond it, or slides it, against gravity.
-JointMatrix ChainDynamics::weightStiffness(const JointVector& position, const Eigen::Vector3d& g_B) const noexcept {
-  const Chain& chain = solvers_->chain;
+JointMatrix weightStiffness(const Chain& chain, const JointVector& position, const Eigen::Vector3d& g_B) noexcept {
   ChainPose pose;
   forwardKinematics(chain, position, pose);
   JointMatrix K = JointMatrix::Zero(pose.joints, pose.joints);
@@ -151,7 +100,7 @@ JointMatrix ChainDynamics::weightStiffness(const JointVector& position, const Ei
   for (int i = chain.links() - 1; i > 0; --i) {
     const ChainLink& link = chain.link(i);
     mass += link.body.mass;
-    moment_B += link.body.mass * (pose.link(i) * link.body.p);
+    moment_B += link.body.mass * (pose.link(i) * link.body.com);
     if (link.joint < 0) continue;
     const auto j = static_cast<std::size_t>(link.joint);
     const Eigen::Vector3d& axis = pose.axis_B[j];
@@ -166,11 +115,32 @@ JointMatrix ChainDynamics::weightStiffness(const JointVector& position, const Ei
   return K;
 }
 
-JointMatrix ChainDynamics::massMatrix(const JointVector& position) noexcept {
-  Solvers& s = *solvers_;
-  s.position.data = position;
-  s.composite_bodies.JntToMass(s.position, s.mass);
-  return s.mass.data;
+struct MassMatrix::Solver {
+  explicit Solver(const Chain& given)
+      : chain(given),
+        composite_bodies(chain.kdl(), KDL::Vector::Zero()),
+        position(chain.kdl().getNrOfJoints()),
+        mass(chain.kdl().getNrOfJoints()) {}
+
+  Chain chain;  ///< keeps alive what KDL refers to
+  KDL::ChainDynParam composite_bodies;
+  KDL::JntArray position;
+  KDL::JntSpaceInertiaMatrix mass;
+};
+
+MassMatrix::MassMatrix(const Chain& chain) : solver_(std::make_unique<Solver>(chain)) {}
+MassMatrix::~MassMatrix() = default;
+MassMatrix::MassMatrix(const MassMatrix& other) : MassMatrix(other.chain()) {}
+MassMatrix& MassMatrix::operator=(const MassMatrix& other) { return *this = MassMatrix(other); }
+MassMatrix::MassMatrix(MassMatrix&&) noexcept = default;
+MassMatrix& MassMatrix::operator=(MassMatrix&&) noexcept = default;
+
+const Chain& MassMatrix::chain() const noexcept { return solver_->chain; }
+
+JointMatrix MassMatrix::at(const JointVector& position) noexcept {
+  solver_->position.data = position;
+  solver_->composite_bodies.JntToMass(solver_->position, solver_->mass);
+  return solver_->mass.data;
 }
 
 }  // namespace hammer_loads

@@ -57,7 +57,7 @@ JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const
   for (int i = pose.links - 1; i > 0; --i) {
     const ChainLink& link = chain.link(i);
     mass += link.body.mass;
-    moment_B += link.body.mass * (pose.link(i) * link.body.p);
+    moment_B += link.body.mass * (pose.link(i) * link.body.com);
     if (link.joint < 0) continue;
     const auto j = static_cast<std::size_t>(link.joint);
     torque[link.joint] = link.prismatic ? mass * pose.axis_B[j].dot(g_B)
@@ -69,9 +69,9 @@ JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const
 PointMass massFrom(const Chain& chain, const ChainPose& pose, int first) noexcept {
   PointMass all;
   for (int i = first; i < pose.links; ++i) {
-    const PointMass& body = chain.link(i).body;
+    const RigidBody& body = chain.link(i).body;
     all.mass += body.mass;
-    all.p += body.mass * (pose.link(i) * body.p);
+    all.p += body.mass * (pose.link(i) * body.com);
   }
   if (all.mass > 0.0) all.p /= all.mass;
   return all;

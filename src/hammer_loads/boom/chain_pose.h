@@ -5,8 +5,6 @@
 
 #include "hammer_loads/boom/chain.h"
 #include "hammer_loads/boom/wrench.h"
-#include "hammer_loads/util/inline.h"
-#include "hammer_loads/util/known_count.h"
 
 namespace hammer_loads {
 
@@ -32,23 +30,14 @@ Jacobian tipJacobian(const ChainPose& pose) noexcept;
 /// The wrench shifted to the origin of a link of the chain, axes of that link.
 Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexcept;
 
-/// J^T w of a load on the tip: what it does per joint rate, so torque of the load on the joint about its axis, positive
-/// when it drives the joint forward [N m] ([N] for a prismatic joint). The part that holds the joint gives the
-/// opposite.
-HAMMER_LOADS_INLINE JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept {
-  JointVector torque(tip.cols());
-  withCount<4>(static_cast<int>(tip.cols()), [&](auto joints) {
-    for (int j = 0; j < joints; ++j)
-      torque[j] = tip.col(j).head<3>().dot(w_tip.force) + tip.col(j).tail<3>().dot(w_tip.torque);
-  });
-  return torque;
-}
-inline JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_tip) noexcept {
-  return jointTorqueOfTipLoad(tipJacobian(pose), w_tip);
-}
-
 /// Joint torques by the links' weight, with g_B the gravity in the root's axes [m/s2].
 JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept;
+
+/// Mass, and its centre in the root's frame.
+struct PointMass {
+  double mass{};                                ///< [kg]
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< [m]
+};
 
 /// All links from `first` to the tip as one body in the root's frame.
 PointMass massFrom(const Chain& chain, const ChainPose& pose, int first) noexcept;

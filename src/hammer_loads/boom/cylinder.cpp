@@ -11,92 +11,73 @@
 namespace hammer_loads {
 namespace {
 
-/// Beyond these no figure of a cylinder lies, and no product of figures overflows.
-constexpr double kLeastLength = 1e-6;                      // [m]
 constexpr double kMostVolume = 1e6, kLeastVolume = 1e-12;  // [m3]
 constexpr double kMostPressure = 1e12;                     // [Pa]
 
-/// Finite figures that no cylinder has.
-void checkRange(const CylinderParameters& p, std::vector<std::string>& problems) {
+void checkRanges(const CylinderParameters& p, std::vector<std::string>& problems) {
   const auto check = [&](const char* key, double value, const char* unit, double least, double most) {
-    if (value >= least && value <= most) return;
-    problems.push_back(
-        format("%s_%s: %.9g %s, must be from %.0e to %.0e %s", p.name.c_str(), key, value, unit, least, most, unit));
+    checkRange(p.name + "_" + key, value, unit, least, most, problems);
   };
-  for (const auto& [key, value] : {std::pair{"base_x_m", p.base_x}, std::pair{"base_z_m", p.base_z},
-                                   std::pair{"rod_x_m", p.rod_x}, std::pair{"rod_z_m", p.rod_z}}) {
-    check(key, value, "m", -figure::kMostLength, figure::kMostLength);
-  }
-  for (const auto& [key, value] : {std::pair{"bore_m", p.bore}, std::pair{"rod_diameter_m", p.rod_diameter},
-                                   std::pair{"closed_length_m", p.closed_length}, std::pair{"stroke_m", p.stroke}}) {
-    check(key, value, "m", kLeastLength, figure::kMostLength);
-  }
+  constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
+  // Limit: kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
+  check("base_x_m", p.base_x, "m", -figure::kMostLength, figure::kMostLength);
+  check("base_z_m", p.base_z, "m", -figure::kMostLength, figure::kMostLength);
+  check("rod_x_m", p.rod_x, "m", -figure::kMostLength, figure::kMostLength);
+  check("rod_z_m", p.rod_z, "m", -figure::kMostLength, figure::kMostLength);
+  check("bore_m", p.bore, "m", figure::kLeastLength, figure::kMostLength);
+  check("rod_diameter_m", p.rod_diameter, "m", figure::kLeastLength, figure::kMostLength);
+  check("closed_length_m", p.closed_length, "m", figure::kLeastLength, figure::kMostLength);
+  check("stroke_m", p.stroke, "m", figure::kLeastLength, figure::kMostLength);
   check("bore_hose_volume_m3", p.bore_hose_volume, "m3", kLeastVolume, kMostVolume);
   check("rod_hose_volume_m3", p.rod_hose_volume, "m3", kLeastVolume, kMostVolume);
   check("relief_pressure_Pa", p.relief_pressure, "Pa", 1.0, kMostPressure);
+  check("friction_force_N", p.friction_force, "N", 0.0, 1e6);
+  if (!std::isnan(p.friction_force_std)) check("friction_force_std_N", p.friction_force_std, "N", 0.0, 1e6);
+  check("friction", p.friction, "", 0.0, kMostFriction);
+  check("friction_std", p.friction_std, "", 0.0, kMostFriction);
+  check("stiffness_std", p.stiffness_std, "", 0.0, 1.0);
+  check("joint_zero_rad", p.joint_zero, "rad", -kMostZero, kMostZero);
+  check("joint_zero_std_rad", p.joint_zero_std, "rad", 0.0, kMostZero);
+  check("pressure_offset_Pa", p.pressure_offset, "Pa", -1e7, 1e7);
+  check("pressure_offset_std_Pa", p.pressure_offset_std, "Pa", 0.0, 1e7);
   if (!p.linkage) return;
   check("rocker_link_base_x_m", p.linkage->guide_x, "m", -figure::kMostLength, figure::kMostLength);
   check("rocker_link_base_z_m", p.linkage->guide_z, "m", -figure::kMostLength, figure::kMostLength);
-  check("rocker_link_length_m", p.linkage->guide_length, "m", kLeastLength, figure::kMostLength);
-  check("coupler_length_m", p.linkage->coupler_length, "m", kLeastLength, figure::kMostLength);
+  check("rocker_link_length_m", p.linkage->guide_length, "m", figure::kLeastLength, figure::kMostLength);
+  check("coupler_length_m", p.linkage->coupler_length, "m", figure::kLeastLength, figure::kMostLength);
   if (std::abs(p.linkage->branch) != 1.0 && p.linkage->branch != 0.0)
     problems.push_back(format("%s_linkage_branch: %.9g, must be 1 or -1", p.name.c_str(), p.linkage->branch));
 }
 
-/// Friction and sensor errors.
-void checkOptional(const CylinderParameters& p, std::vector<std::string>& problems) {
-  const auto within = [&](const char* key, double value, const char* unit, double least, double most) {
-    if (value >= least && value <= most) return;
-    problems.push_back(
-        format("%s_%s: %.9g%s, must be from %g to %g%s", p.name.c_str(), key, value, unit, least, most, unit));
-  };
-  constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
-  // Limit: kLeastLength, kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
-  within("friction_force_N", p.friction_force, " N", 0.0, 1e6);
-  if (!std::isnan(p.friction_force_std)) within("friction_force_std_N", p.friction_force_std, " N", 0.0, 1e6);
-  within("friction", p.friction, "", 0.0, kMostFriction);
-  within("friction_std", p.friction_std, "", 0.0, kMostFriction);
-  within("stiffness_std", p.stiffness_std, "", 0.0, 1.0);
-  within("joint_zero_rad", p.joint_zero, " rad", -kMostZero, kMostZero);
-  within("joint_zero_std_rad", p.joint_zero_std, " rad", 0.0, kMostZero);
-  within("pressure_offset_Pa", p.pressure_offset, " Pa", -1e7, 1e7);
-  within("pressure_offset_std_Pa", p.pressure_offset_std, " Pa", 0.0, 1e7);
-}
-
 void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems) {
   const char* name = p.name.c_str();
-  const auto check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
-    if (!good || !std::isfinite(value)) {
-      problems.push_back(format("%s_%s: %.9g %s, must be %s", name, key, value, unit, rule));
-    }
-  };
-  const char* positive = "a finite number > 0";
-  for (const auto& [key, value] : {std::pair{"base_x_m", p.base_x}, std::pair{"base_z_m", p.base_z},
-                                   std::pair{"rod_x_m", p.rod_x}, std::pair{"rod_z_m", p.rod_z}}) {
-    check(key, value, "m", true, "a finite number");
-  }
-  for (const auto& [key, value] : {std::pair{"bore_m", p.bore}, std::pair{"rod_diameter_m", p.rod_diameter},
-                                   std::pair{"closed_length_m", p.closed_length}, std::pair{"stroke_m", p.stroke}}) {
-    check(key, value, "m", value > 0.0, positive);
-  }
-  check("bore_hose_volume_m3", p.bore_hose_volume, "m3", p.bore_hose_volume > 0.0, positive);
-  check("rod_hose_volume_m3", p.rod_hose_volume, "m3", p.rod_hose_volume > 0.0, positive);
-  check("relief_pressure_Pa", p.relief_pressure, "Pa", p.relief_pressure > 0.0, positive);
-  if (!problems.empty()) return;
-  checkRange(p, problems);
-  if (!problems.empty()) return;
-  checkOptional(p, problems);
-  check("rod_diameter_m", p.rod_diameter, "m", p.rod_diameter < p.bore,
-        format("< %s_bore_m = %.9g m", name, p.bore).c_str());
-  check("closed_length_m", p.closed_length, "m", p.closed_length > p.stroke,
-        format("> %s_stroke_m = %.9g m", name, p.stroke).c_str());
+  if (!(p.rod_diameter < p.bore))
+    problems.push_back(
+        format("%s_rod_diameter_m: %.9g m, must be < %s_bore_m = %.9g m", name, p.rod_diameter, name, p.bore));
+  if (!(p.closed_length > p.stroke))
+    problems.push_back(
+        format("%s_closed_length_m: %.9g m, must be > %s_stroke_m = %.9g m", name, p.closed_length, name, p.stroke));
+}
+
+constexpr double kInPlane = 1e-6;  // [-], [m]: pins and joint count as in one plane
+constexpr int kRangeSteps = 1000;  // over the joint's range
+// Numerical: kInPlane, kRangeSteps
+
+Eigen::Vector2d inPlane(const Eigen::Vector3d& v) { return {v.x(), v.z()}; }
+
+/// Returns true if the joint turns both links about their common y and lies in the plane of the pins.
+bool isPlanar(const ChainLink& link) {
+  const Eigen::Matrix3d at_zero = link.steady + link.cosine;
+  return std::abs(std::abs(link.axis.y()) - 1.0) < kInPlane && std::abs(at_zero(1, 1) - 1.0) < kInPlane &&
+         std::abs(link.origin.y()) < kInPlane;
 }
 
 }  // namespace
 
 Checked<Cylinder> Cylinder::make(const CylinderParameters& p, double bulk_modulus, const Chain& chain) {
   Checked<Cylinder> result;
-  checkSizes(p, result.problems);
+  checkRanges(p, result.problems);
+  if (result.problems.empty()) checkSizes(p, result.problems);
   const std::optional<int> joint = chain.jointIndex(p.joint);
   if (!joint || chain.link(chain.linkBeyond(*joint)).prismatic) {
     result.problems.push_back(
@@ -134,6 +115,56 @@ void Cylinder::findTriangle(const Chain& chain) {
   shorter_side_ = std::min(link.axis.cross(a_P).norm(), link.axis.cross(b_P).norm());
 }
 
+/// The branch that the file gives; else the one whose length fits the stroke.
+void Cylinder::findLinkage(const Chain& chain, std::vector<std::string>& problems) {
+  const ChainLink& link = chain.link(chain.linkBeyond(joint_));
+  const char* name = parameters_.name.c_str();
+  if (!isPlanar(link)) {
+    problems.push_back(format("%s_linkage: bucket, %s must turn about y, with its origin at y = 0 of the link before",
+                              name, parameters_.joint.c_str()));
+    return;
+  }
+  BucketLinkageParameters& given = *parameters_.linkage;
+  const Eigen::Vector2d origin = inPlane(link.origin);
+  const Eigen::Vector3d driven(parameters_.rod_x, 0.0, parameters_.rod_z);
+  const BucketLinkage::Pins pins{Eigen::Vector2d(parameters_.base_x, parameters_.base_z) - origin,
+                                 Eigen::Vector2d(given.guide_x, given.guide_z) - origin,
+                                 inPlane((link.steady + link.cosine) * driven), link.axis.y() > 0.0 ? 1.0 : -1.0};
+  shorter_side_ = std::min(pins.driven.norm(), given.guide_length);
+  if (!(shorter_side_ > 0.0)) return;
+  const auto miss = [&](double branch) {
+    given.branch = branch;
+    linkage_.emplace(pins, given);
+    return worstReach(chain).miss;
+  };
+  if (given.branch == 0.0) {
+    const double one = miss(1.0), other = miss(-1.0);
+    if (one == 0.0 && other == 0.0)
+      problems.push_back(
+          format("%s_linkage_branch: not given, must be 1 or -1: closed length and stroke fit both", name));
+    given.branch = one < other ? 1.0 : -1.0;
+  }
+  linkage_.emplace(pins, given);
+  checkClosure(chain, problems);
+}
+
+void Cylinder::checkClosure(const Chain& chain, std::vector<std::string>& problems) const {
+  const double lower = chain.lower()[joint_], upper = chain.upper()[joint_];
+  double worst = 0.0, worst_angle = 0.0, worst_reach = 0.0;
+  for (int i = 0; i <= kRangeSteps; ++i) {
+    const double angle = lower + (upper - lower) * i / kRangeSteps;
+    const double reach = linkage_->reach(linkage_->at(std::cos(angle), std::sin(angle)));
+    const double miss = std::max(linkage_->leastReach() - reach, reach - linkage_->mostReach());
+    if (miss > worst) worst = miss, worst_angle = angle, worst_reach = reach;
+  }
+  if (!(worst > 0.0)) return;
+  problems.push_back(
+      format("%s_coupler_length_m: %.9g m, cannot close the linkage: at %s = %.6g rad guide pivot and driven pin are "
+             "%.6g m apart, must be from %.6g to %.6g m",
+             parameters_.name.c_str(), parameters_.linkage->coupler_length, parameters_.joint.c_str(), worst_angle,
+             worst_reach, linkage_->leastReach(), linkage_->mostReach()));
+}
+
 bool Cylinder::hasLimits(const Chain& chain, std::vector<std::string>& problems) const {
   if (std::isfinite(chain.lower()[joint_]) && std::isfinite(chain.upper()[joint_])) return true;
   problems.push_back(format("%s_joint: %s, must have limits in robot_description", parameters_.name.c_str(),
@@ -150,10 +181,8 @@ Cylinder::Reach Cylinder::worstReach(const Chain& chain) const {
     if (miss > worst.miss) worst = {miss, angle, length};
   };
   judge(lower), judge(upper);
-  if (linkage_) {
-    // Numerical: kSteps
-    constexpr int kSteps = 1000;  // the extremes between two steps are off by 1e-6 of a length
-    for (int i = 1; i < kSteps; ++i) judge(lower + (upper - lower) * i / kSteps);
+  if (linkage_) {  // the extremes between two steps are off by 1e-6 of a length
+    for (int i = 1; i < kRangeSteps; ++i) judge(lower + (upper - lower) * i / kRangeSteps);
     return worst;
   }
   // Longest and shortest where the anchors are in line with the joint, if within the limits.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/boom/boom.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/functions.h"
 
@@ -45,21 +46,19 @@ void tipOver(const Supports& s, const PointMass& machine, const Eigen::Vector3d&
 
 }  // namespace
 
-HoldDown holdDown(const Chain& chain, const ChainPose& pose, const JointVector& position,
-                  const std::vector<Cylinder>& cylinders, const std::optional<Supports>& supports, const Wrench& w_mean,
-                  const Eigen::Vector3d& g_B) noexcept {
+HoldDown Boom::holdDown(const Wrench& w_mean) const noexcept {
   HoldDown result;
   result.machine = kInfinity;
-  if (supports) {
-    const Pose& X_BH = pose.tip();
-    tipOver(*supports, massFrom(chain, pose, 0), g_B, X_BH.translation(), X_BH.linear() * w_mean.force,
+  if (parameters_.supports) {
+    const Pose& X_BH = pose_.tip();
+    tipOver(*parameters_.supports, massFrom(chain_, pose_, 0), g_B_, X_BH.translation(), X_BH.linear() * w_mean.force,
             X_BH.linear() * w_mean.torque, result);
   }
   result.least = result.machine;
-  const JointVector weight = jointTorqueOfWeight(chain, pose, g_B), load = jointTorqueOfTipLoad(pose, w_mean);
-  for (std::size_t i = 0; i < cylinders.size(); ++i) {
-    const int joint = cylinders[i].joint();
-    result.cylinder[i] = cylinderFactor(cylinders[i], position[joint], weight[joint], load[joint]);
+  const JointVector load = hammerTorque(w_mean);
+  for (std::size_t i = 0; i < cylinders_.size(); ++i) {
+    const int joint = cylinders_[i].joint();
+    result.cylinder[i] = cylinderFactor(cylinders_[i], joints_.position[joint], weight_[joint], load[joint]);
     result.least = std::min(result.least, result.cylinder[i]);
   }
   return result;

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <array>
-#include <optional>
-#include <vector>
 
 #include "hammer_loads/boom/chain_pose.h"
-#include "hammer_loads/boom/cylinder.h"
 
 namespace hammer_loads {
 
@@ -26,14 +23,7 @@ struct HoldDown {
   std::array<double, kMaxJoints>
       cylinder{};  ///< factor at which a relief valve opens, per cylinder; 0 at a zero moment arm
   double least{};  ///< smallest of all factors
-  bool holds() const noexcept { return least >= 1.0; }
 };
-
-/// w_mean: mean load of the hammer on the tip, such as the mean hold-down force along +z at the striking line. Static;
-/// no sliding; supports on level ground carry pressure only. g_B: gravity in the root's axes [m/s2].
-HoldDown holdDown(const Chain& chain, const ChainPose& pose, const JointVector& position,
-                  const std::vector<Cylinder>& cylinders, const std::optional<Supports>& supports, const Wrench& w_mean,
-                  const Eigen::Vector3d& g_B) noexcept;
 
 /// Loads on the tip, forces along its x and z and moment about its y, by the torques that they make on three joints of
 /// the chain: what a cylinder's measured force holds (-force times arm) less hammer, weight, motion and vibration.

@@ -24,6 +24,48 @@ constexpr double kUnknownContact = 1e4;  // deviation of the rock's force at the
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 // Prior: kLeastDamping, kMostDamping
 
+constexpr int kMostStates = 64;
+
+/// New values of two neighbouring states: weighted sums over two states or more, which include both.
+struct TwoOf {
+  static constexpr int kMost = 24;
+  int count{};
+  std::array<int, kMost> state;
+  std::array<double, kMost> by_one, by_other;
+
+  void add(int of, double one, double other) noexcept {
+    const auto i = static_cast<std::size_t>(count++);
+    state[i] = of, by_one[i] = one, by_other[i] = other;
+  }
+};
+
+/// P <- F P F^T, where F makes the states `first` and the one after it. P stays symmetric to the last bit.
+void replaceTwo(Eigen::Ref<Eigen::MatrixXd> P, int first, const TwoOf& of) noexcept {
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
+  // Products of P and a row of F.
+  Column one = of.by_one[0] * P.col(of.state[0]) + of.by_one[1] * P.col(of.state[1]);
+  Column other = of.by_other[0] * P.col(of.state[0]) + of.by_other[1] * P.col(of.state[1]);
+  std::size_t k = 2;
+  for (const auto count = static_cast<std::size_t>(of.count); k + 1 < count; k += 2) {
+    const auto a = P.col(of.state[k]), b = P.col(of.state[k + 1]);
+    one += of.by_one[k] * a + of.by_one[k + 1] * b;
+    other += of.by_other[k] * a + of.by_other[k + 1] * b;
+  }
+  if (k < static_cast<std::size_t>(of.count)) {
+    one += of.by_one[k] * P.col(of.state[k]), other += of.by_other[k] * P.col(of.state[k]);
+  }
+  const auto times = [&](const Column& column, const std::array<double, TwoOf::kMost>& by) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(of.count); ++i) sum += by[i] * column[of.state[i]];
+    return sum;
+  };
+  const double both = 0.5 * (times(one, of.by_other) + times(other, of.by_one));
+  one[first] = times(one, of.by_one), other[first + 1] = times(other, of.by_other);
+  one[first + 1] = other[first] = both;
+  P.col(first) = one, P.col(first + 1) = other;
+  P.row(first) = one.transpose(), P.row(first + 1) = other.transpose();
+}
+
 }  // namespace
 
 ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns, const LogOil& own_std)
@@ -46,18 +88,6 @@ void ModeIdentifier::setFirstGuesses() noexcept {
       covariance_(at(k, kOil), at(l, kOil)) = square(kCommonDeviation) + (k == l ? square(own_std_[k]) : 0.0);
     covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
   }
-}
-
-JointVector ModeIdentifier::displacement() const noexcept {
-  JointVector x(count_);
-  for (int k = 0; k < count_; ++k) x[k] = state_[at(k, kX)];
-  return jointsOf(modes_, x);
-}
-
-JointVector ModeIdentifier::velocity() const noexcept {
-  JointVector v(count_);
-  for (int k = 0; k < count_; ++k) v[k] = state_[at(k, kV)];
-  return jointsOf(modes_, v);
 }
 
 void ModeIdentifier::setModes(const BoomModes& given, const LogOil& stiffer) noexcept {
@@ -105,9 +135,8 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   turn(force_), turn(force_rate_);
   if (struck_) turn(*struck_);
   if (behind_hose_) turn(behind_hose_->torque), turn(behind_hose_->rate);
-  held_.forEach([&](HeldForces::Piece& piece) {
-    for (ModeVector* each : {&piece.from, &piece.to, &piece.mean, &piece.jump}) turn(*each);
-  });
+  for (std::size_t i = 0; i < held_.size(); ++i)
+    for (ModeVector* each : {&held_[i].from, &held_[i].to, &held_[i].mean, &held_[i].jump}) turn(*each);
 }
 
 void ModeIdentifier::forget(int state, double deviation) noexcept {
@@ -239,6 +268,21 @@ void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, k
       of.add(delayAt(Clock::kImu) - first, -force_rate_[k] * r.step, -force_rate_[k] * r.impulse);
     replaceTwo(block(), x, of);
   }
+}
+
+/// Correction for a blow that acts a little later. force: change of the forces by the blow.
+void ModeIdentifier::addBlowToDelay(const ModeVector& force) noexcept {
+  for (int k = 0; k < count_ && isDelayFollowed(Clock::kImu); ++k) {
+    const Mode m = modeAt(k);
+    const double jump = (*struck_)[k];
+    const int x = at(k, kX) - begin();
+    TwoOf of;
+    of.add(x + kX, 1.0, 0.0);
+    of.add(x + kV, 0.0, 1.0);
+    of.add(delayAt(Clock::kImu) - begin(), -jump, 2.0 * m.zeta * m.omega * jump - force[k]);
+    replaceTwo(block(), x, of);
+  }
+  struck_.reset();
 }
 
 /// P <- P + Q: errors of the forces and changes of the oil's temperature; more where readings contradict the identified

@@ -7,9 +7,7 @@
 #include <optional>
 
 #include "hammer_loads/boom/boom_modes.h"
-#include "hammer_loads/boom/covariance_kernels.h"
 #include "hammer_loads/boom/cylinder_oil.h"
-#include "hammer_loads/boom/held_forces.h"
 #include "hammer_loads/boom/mode.h"
 #include "hammer_loads/boom/mode_history.h"
 #include "hammer_loads/estimation/look_back.h"
@@ -114,8 +112,7 @@ class ModeIdentifier {
   double damping(int mode) const noexcept { return damping_[static_cast<std::size_t>(mode)]; }
   double frequencyVariance(int mode) const noexcept;  ///< variance of the logarithm of the frequency [-]
   double dampingVariance(int mode) const noexcept;    ///< variance of the logarithm of the damping [-]
-  double frequencyDeviation(int mode) const noexcept { return std::sqrt(frequencyVariance(mode)); }  ///< standard
-  double dampingDeviation(int mode) const noexcept { return std::sqrt(dampingVariance(mode)); }      ///< standard
+  double dampingDeviation(int mode) const noexcept { return std::sqrt(dampingVariance(mode)); }  ///< standard
   /// True if the frequency of every mode is known to 3 %, which is better than most given stiffnesses.
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
@@ -128,8 +125,6 @@ class ModeIdentifier {
   /// Modal torque of the oil that pressures show with a stamp this long [s] after the present, or before it if
   /// negative.
   double oilTorqueRead(int mode, double ahead) const noexcept;
-  JointVector displacement() const noexcept;  ///< estimated displacement of the joints [rad]
-  JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
   /// The rock's force [N]; a negative value is an estimation error.
   double contact() const noexcept { return state_[kContact]; }
@@ -152,9 +147,16 @@ class ModeIdentifier {
   static constexpr int kSlots = kMaxChannels + kMaxJoints;  ///< offsets of channels, frictions of cylinders
   static constexpr int kDelays = kSlots, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
-  static_assert(kMaxStates <= kMostStates);
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
+  /// Some of the states.
+  struct StateList {
+    std::array<int, kMaxStates> states;  ///< the first of them
+    int count{};
+    void add(int state) noexcept { states[static_cast<std::size_t>(count++)] = state; }
+    const int* begin() const noexcept { return states.data(); }
+    const int* end() const noexcept { return states.data() + count; }
+  };
   enum Part { kX, kV, kOil, kDamping, kParts };  ///< states of a mode; kOil: of the cylinder of the same number
 
   static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }

@@ -241,7 +241,10 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
   if (isDelayFollowed(reading.clock) && S > 0.0) jitter.learn(difference, S, rate);
   if (!(S > 0.0)) return;
   state_.segment(begin(), states()) += difference / S * inUse(gain_S);
-  subtractSquare(block(), inUse(gain_S), S);
+  auto P = block();
+  const auto column = inUse(gain_S);
+  const double by = 1.0 / S;
+  for (Eigen::Index j = 0; j < P.cols(); ++j) P.col(j) -= by * column[j] * column;
   restoreKept(kept, difference / S, S, gain_S);
 }
 
@@ -273,7 +276,7 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
 }
 
 /// States that readings are not to change.
-StateList ModeIdentifier::keptStates() const noexcept {
+ModeIdentifier::StateList ModeIdentifier::keptStates() const noexcept {
   StateList kept;
   if (!learns_) return kept;
   for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kOil)), kept.add(at(k, kDamping));

@@ -112,10 +112,7 @@ bool within(const urdf::Vector3& p, double most) { return within(p.x, most) && w
 void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
   const urdf::Inertial& body = *link.inertial;
   const char* name = link.name.c_str();
-  if (!(body.mass >= 0.0 && body.mass <= figure::kMostMass)) {
-    problems.push_back(format("robot_description: mass of link %s: %.9g kg, must be >= 0 and at most %.0e kg", name,
-                              body.mass, figure::kMostMass));
-  }
+  checkRange("robot_description: mass of link " + link.name, body.mass, "kg", 0.0, figure::kMostMass, problems);
   if (!within(body.origin.position, kMostOffset)) {
     problems.push_back(
         format("robot_description: centre of mass of link %s: must be within %.0e m", name, kMostOffset));
@@ -223,31 +220,20 @@ std::string urdfLimitPassed(const std::string& text) {
   return {};
 }
 
-struct RobotDescription::Read {
-  urdf::ModelInterfaceSharedPtr model;
-  std::vector<std::string> problems;
-};
-
 RobotDescription::RobotDescription(const std::string& text) {
-  const auto read = std::make_shared<Read>();
-  read_ = read;
-  const urdf::ModelInterfaceSharedPtr model = parsed(text, read->problems);
+  const urdf::ModelInterfaceSharedPtr model = parsed(text, problems_);
   if (!model) return;
-  const std::size_t before = read->problems.size();
-  checkIsTree(*model, read->problems);
-  if (read->problems.size() != before) {
+  const std::size_t before = problems_.size();
+  checkIsTree(*model, problems_);
+  if (problems_.size() != before) {
     release(*model);
     return;
   }
   for (const auto& [name, link] : model->links_) {
-    if (link->inertial) checkInertia(*link, read->problems);
+    if (link->inertial) checkInertia(*link, problems_);
   }
-  for (const auto& [name, joint] : model->joints_) checkJoint(*joint, read->problems);
-  read->model = model;
+  for (const auto& [name, joint] : model->joints_) checkJoint(*joint, problems_);
+  model_ = model;
 }
-
-const urdf::ModelInterface* RobotDescription::model() const noexcept { return read_->model.get(); }
-
-const std::vector<std::string>& RobotDescription::problems() const noexcept { return read_->problems; }
 
 }  // namespace hammer_loads

@@ -20,15 +20,15 @@ class RobotDescription {
   RobotDescription(const char* text) : RobotDescription(std::string(text)) {}
 
   /// Tree of the URDF; null when the text is no URDF, passes a limit (UrdfLimits) or is no tree.
-  const urdf::ModelInterface* model() const noexcept;
+  const urdf::ModelInterface* model() const noexcept { return model_.get(); }
   /// Problems, one line each: the reason for a null tree, or a link whose mass or inertia no body can have (negative,
   /// not finite, beyond every machine, or principal moments that violate the triangle inequality), or a joint whose
   /// place or axis is invalid.
-  const std::vector<std::string>& problems() const noexcept;
+  const std::vector<std::string>& problems() const noexcept { return problems_; }
 
  private:
-  struct Read;
-  std::shared_ptr<const Read> read_;
+  std::shared_ptr<const urdf::ModelInterface> model_;
+  std::vector<std::string> problems_;
 };
 
 /// The bounds exceed any machine and are far below what exhausts a thread's stack.

@@ -9,11 +9,9 @@
 namespace hammer_loads {
 namespace {
 
-void checkNumbers(const SectionParameters& p, std::vector<std::string>& problems) {
+void checkRanges(const SectionParameters& p, std::vector<std::string>& problems) {
   const auto check = [&](const char* key, double value, const char* unit, double least, double most) {
-    if (value >= least && value <= most) return;
-    problems.push_back(
-        format("%s_section_%s: %.9g %s, must be from %g to %g", p.name.c_str(), key, value, unit, least, most));
+    checkRange(p.name + "_section_" + key, value, unit, least, most, problems);
   };
   constexpr const char* kOrigin[] = {"x_m", "y_m", "z_m"};
   constexpr const char* kCom[] = {"com_beyond_x_m", "com_beyond_y_m", "com_beyond_z_m"};
@@ -50,7 +48,7 @@ Checked<Section> Section::make(const SectionParameters& p, const Chain& chain) {
     result.problems.push_back(format("sections: %s, must be names of letters, digits and _", name));
     return result;
   }
-  checkNumbers(p, result.problems);
+  checkRanges(p, result.problems);
   const std::optional<int> link = chain.linkIndex(p.link);
   if (!link || *link == 0 || *link == chain.tip()) {
     result.problems.push_back(format("%s_section_link: %s, must be a link between %s and %s", name, p.link.c_str(),

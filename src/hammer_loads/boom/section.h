@@ -9,13 +9,6 @@
 
 namespace hammer_loads {
 
-/// A rigid body in a link's frame.
-struct RigidBody {
-  double mass{};                                      ///< [kg]
-  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< centre of mass [m]
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass [kg m2]
-};
-
 /// The part of a cut link that lies beyond the cut, in the link's frame.
 struct PartBeyond {
   double mass{};                                  ///< mass_beyond_kg [kg], >= 0, at most the link's

@@ -18,7 +18,7 @@ constexpr double kMostOil = ModeIdentifier::kMostOil;
 }  // namespace
 
 Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings)
-    : dynamics_(chain),
+    : mass_(chain),
       cylinders_(std::move(cylinders)),
       settings_(settings),
       position_(JointVector::Zero(chain.joints())),
@@ -46,7 +46,7 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
   if (!position_.allFinite()) position_ = position;
   log_oil_ += stiffer;
-  findModes(dynamics_, cylinders_, position_, g_B, log_oil_, modes_);
+  findModes(mass_, cylinders_, position_, g_B, log_oil_, modes_);
   if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
   if (swing_.size() != modes_.count) swing_.setZero(modes_.count);
   posed_ = true;

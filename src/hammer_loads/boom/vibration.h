@@ -136,7 +136,7 @@ class Vibration {
   void followSwing(double step) noexcept;
   double contactAtLoad(int mode) const noexcept { return contact_ * contact_by_newton_[mode]; }
 
-  ChainDynamics dynamics_;
+  MassMatrix mass_;
   std::vector<Cylinder> cylinders_;
   VibrationSettings settings_;
   LogOil own_oil_ = LogOil::Zero();  ///< deviation of each cylinder's oil against the common one

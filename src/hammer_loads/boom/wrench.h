@@ -19,6 +19,14 @@ inline Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), 
 
 /// Wrench of the load at the origin of Q: f_Q = R f_P, t_Q = R t_P + p x f_Q with X_QP = (R, p). Error below 1e-15 of
 /// |t| + |p||f|. tf2 0.7.6's doTransform leaves out p x f.
-Wrench shifted(const Pose& X_QP, const Wrench& w_P) noexcept;
+inline Wrench shifted(const Pose& X_QP, const Wrench& w_P) noexcept {
+  Wrench w_Q;
+  w_Q.force.noalias() = X_QP.linear() * w_P.force;
+  w_Q.torque.noalias() = X_QP.linear() * w_P.torque;
+  w_Q.torque += X_QP.translation().cross(w_Q.force);
+  return w_Q;
+}
+
+inline Wrench operator+(const Wrench& a, const Wrench& b) noexcept { return {a.force + b.force, a.torque + b.torque}; }
 
 }  // namespace hammer_loads

@@ -19,9 +19,9 @@ Eigen::Vector2d firstMoment(const Boom& boom, int joint, int link) {
   while (last < chain.links() && chain.link(last).joint < 0) ++last;
   Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();
   for (int i = first; i < chain.links(); ++i) {
-    const PointMass& body = chain.link(i).body;
+    const RigidBody& body = chain.link(i).body;
     const Eigen::Vector3d at_B =
-        i < last ? Eigen::Vector3d(pose.link(i) * body.p) : Eigen::Vector3d(pose.link(last).translation());
+        i < last ? Eigen::Vector3d(pose.link(i) * body.com) : Eigen::Vector3d(pose.link(last).translation());
     moment_B += body.mass * (at_B - pose.p_BJ_B[static_cast<std::size_t>(joint)]);
   }
   const Eigen::Vector3d moment = pose.link(link).linear().transpose() * moment_B;

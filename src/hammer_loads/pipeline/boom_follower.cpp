@@ -273,7 +273,7 @@ void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double m
   if (pulse && pulse->frequency > 0.0 && follow_vibration_) {
     BoomChoice& choice = state_.choice;
     choice.pulse_length = kPi / pulse->frequency;
-    choice.rigid_error = boom_.rigidVerdict(onTip({0.0, pulse->amplitude, 0.0}), choice.pulse_length).error;
+    choice.rigid_error = boom_.rigidError(onTip({0.0, pulse->amplitude, 0.0}), choice.pulse_length);
     choice.lowest_frequency = state_.frequency.size() > 0 ? state_.frequency[0] : 0.0;
     choice.judged = true;
   }

@@ -52,10 +52,7 @@ DrivenSignal::Settings turningSignal(const HammerParameters& p) {
 }  // namespace
 
 HullMobility::HullMobility(const Boom& boom, const Eigen::Vector3d& position)
-    : chain_(boom.chain()),
-      dynamics_(chain_),
-      unit_(position),
-      refresh_angle_(boom.parameters().vibration.refresh_angle) {
+    : chain_(boom.chain()), mass_(chain_), unit_(position), refresh_angle_(boom.parameters().vibration.refresh_angle) {
   for (const Cylinder& cylinder : boom.cylinders()) joints_.push_back(cylinder.joint());
 }
 
@@ -66,7 +63,7 @@ std::optional<HullMobility::Mobility> HullMobility::movedTo(const JointVector& p
   at_ = position;
   forwardKinematics(chain_, position, pose_);
   const Jacobian tip = tipJacobian(pose_);
-  const JointMatrix all = dynamics_.massMatrix(position);
+  const JointMatrix all = mass_.at(position);
   JointMatrix M(n, n);
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints> of_d(3, n);
   for (int i = 0; i < n; ++i) {

@@ -37,7 +37,7 @@ class HullMobility {
 
  private:
   Chain chain_;
-  ChainDynamics dynamics_;
+  MassMatrix mass_;
   ChainPose pose_;
   std::vector<int> joints_;
   Eigen::Vector3d unit_;
