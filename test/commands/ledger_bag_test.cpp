@@ -18,10 +18,7 @@ class LedgerOfBags : public test::BagFiles {
   test::Outcome add(const std::string& bags, const std::string& more = {}) const {
     return run("--no-bag " + bags + " --ledger " + ledger() + " " + more);
   }
-  std::vector<life::LedgerEpoch> epochs() const {
-    auto reader = life::LedgerReader::open(ledger());
-    return reader.value ? reader.value->epochs() : std::vector<life::LedgerEpoch>{};
-  }
+  std::vector<life::LedgerEpoch> epochs() const { return life::LedgerReader(ledger()).epochs(); }
 };
 
 TEST_F(LedgerOfBags, HasEachRecordingOnce) {

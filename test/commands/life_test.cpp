@@ -27,15 +27,15 @@ class Ledger {
   Ledger() : path_(testing::TempDir() + "life_" + std::to_string(getpid()) + ".sqlite") {
     remove();
     life::LifeSettings settings;
-    settings.channels = {{"hull_wrench/force_z", life::LoadGrid::make(-10.5, 10.5, 21).value.value()}};
-    settings.hot_spots = {{"toe",
-                           {{"hull_wrench/force_z", 2.0}},
-                           life::LoadGrid::make(-20.5, 20.5, 41).value.value(),
-                           life::SnCurve::make(1000.0, 1e3, 5.0, 5.0).value.value(),
-                           {}}};
+    settings.channels = {{"hull_wrench/force_z", life::LoadGrid::make(-10.5, 10.5, 21).value.value()},
+                         {"stress/toe",
+                          life::LoadGrid::make(-20.5, 20.5, 41).value.value(),
+                          "toe",
+                          {{"hull_wrench/force_z", 2.0}},
+                          life::SnCurve::make(1000.0, 1e3, 5.0, 5.0).value.value()}};
     settings.period = 60 * kSecond;
     settings.equivalent_cycles_per_hour = 450.0;
-    life::LifeRecorder recorder = life::LifeRecorder::make(settings, {"hull_wrench/force_z"}).value.value();
+    life::LifeRecorder recorder(settings, {"hull_wrench/force_z"});
     std::int64_t stamp = 20000 * kDay;
     for (const double value : {-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0}) {
       const double deviation = 0.01;

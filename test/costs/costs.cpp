@@ -153,7 +153,7 @@ void addLife() {
   const std::vector<double> values = hammerLoad();
   add("life/cycle counter", kSamples, [counter = std::make_shared<life::CycleCounter>(grid), values] {
     for (const double value : values) counter->add(value);
-    benchmark::DoNotOptimize(counter->residue().data());
+    benchmark::DoNotOptimize(counter->tally().counted);
   });
   life::LifeSettings settings;
   std::vector<std::string> names;
@@ -163,7 +163,7 @@ void addLife() {
   }
   settings.period = INT64_MAX;
   add("life/20 channels with deviations, each", (kSamples - kChannels) * kChannels,
-      [recorder = std::make_shared<life::LifeRecorder>(life::LifeRecorder::make(settings, names).value.value()), values,
+      [recorder = std::make_shared<life::LifeRecorder>(settings, names), values,
        deviations = std::vector<double>(kChannels, 100.0), stamp = std::int64_t{0}]() mutable {
         for (std::size_t i = 0; i + kChannels < values.size(); ++i)
           recorder->sample(stamp += 1000000, &values[i], deviations.data());

@@ -26,7 +26,7 @@ class Session {
 
   void run() {
     while (!bytes_.empty()) step();
-    sum_.append(piece_.take());
+    append(piece_.take(), sum_);
     const CycleCount whole = whole_.take();
     require(textOf(whole) == textOf(sum_));
     require(isPossible(whole));
@@ -68,7 +68,7 @@ class Session {
 
   /// A new counter, as after a restart.
   void cut() {
-    sum_.append(piece_.take());
+    append(piece_.take(), sum_);
     piece_ = CycleCounter(grid_);
   }
 

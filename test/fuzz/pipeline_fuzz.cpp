@@ -15,6 +15,7 @@
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/settings/readers.h"
+#include "support/count_text.h"
 
 namespace hammer_loads {
 namespace {
@@ -152,7 +153,7 @@ class Session {
       const life::TurnLoads* turn = life_->turnLoads(loads.ends[i]);
       if (turn == nullptr) continue;
       require(turn->start <= turn->end);
-      for (std::size_t k = 0; k < turn->mean.size(); ++k) require(!(turn->minimum[k] > turn->maximum[k]));
+      for (const life::ChannelTurn& c : turn->channels) require(!(c.minimum.value > c.maximum.value));
     }
   }
 

@@ -31,20 +31,19 @@ inline const std::vector<std::string> kInputs{"hull_wrench/force_z", "joint_load
 
 inline LifeSettings settings(std::int64_t classes = 200) {
   LifeSettings s;
-  s.channels = {{kInputs[0], LoadGrid::make(-1000.0, 1000.0, classes).value.value()}};
-  s.hot_spots = {{"toe",
-                  {{kInputs[1], 0.1}},
-                  LoadGrid::make(-100.0, 100.0, classes).value.value(),
-                  SnCurve::make(50.0, 1e6, 3.0, 5.0).value.value(),
-                  FkmMeanStress{0.2}}};
+  s.channels = {{kInputs[0], LoadGrid::make(-1000.0, 1000.0, classes).value.value()},
+                {"stress/toe",
+                 LoadGrid::make(-100.0, 100.0, classes).value.value(),
+                 "toe",
+                 {{kInputs[1], 0.1}},
+                 SnCurve::make(50.0, 1e6, 3.0, 5.0).value.value(),
+                 FkmMeanStress{0.2}}};
   s.period = 60 * kSecond;
   s.equivalent_cycles_per_hour = 3600.0;
   return s;
 }
 
-inline LifeRecorder recorder(const LifeSettings& of = settings()) {
-  return LifeRecorder::make(of, kInputs).value.value();
-}
+inline LifeRecorder recorder(const LifeSettings& of = settings()) { return LifeRecorder(of, kInputs); }
 inline LedgerMachine machine(const std::string& identity = "mo100", const LifeSettings& of = settings()) {
   return ledgerMachine(of, identity);
 }
@@ -106,18 +105,14 @@ struct Contents {
 
 inline Contents contentsOf(const std::string& path) {
   Contents contents;
-  Checked<LedgerReader> reader = LedgerReader::open(path);
-  if (!reader.value) {
-    contents.problem = reader.problems.at(0);
-    return contents;
-  }
-  contents.epochs = reader.value->epochs();
+  LedgerReader reader(path);
+  contents.epochs = reader.epochs();
   for (const LedgerEpoch& epoch : contents.epochs) {
     contents.totals.emplace_back();
-    for (const LedgerChannel& channel : epoch.machine.channels)
-      contents.totals.back().push_back(reader.value->counts(epoch, channel).total);
+    for (const CountedChannel& channel : epoch.machine.channels)
+      contents.totals.back().push_back(reader.counts(epoch, channel).total);
   }
-  contents.problem = reader.value->problem();
+  contents.problem = reader.problem();
   return contents;
 }
 

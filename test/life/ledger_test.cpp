@@ -92,7 +92,7 @@ TEST(Ledger, AnotherMachineOrGridBeginsAnEpoch) {
     EXPECT_EQ(LedgerRun(file.path(), of, name).end(part.take()), kWritten);
   };
   LifeSettings finer = settings(300), steeper = settings();
-  steeper.hot_spots[0].curve = SnCurve::make(50.0, 1e6, 4.0, 5.0).value.value();
+  steeper.channels[1].curve = SnCurve::make(50.0, 1e6, 4.0, 5.0).value.value();
   steeper.equivalent_cycles_per_hour = 60.0;
   run("1", machine("a"), settings());
   run("2", machine("a", steeper), steeper);  // other judgement, same counts
@@ -146,11 +146,11 @@ std::vector<std::string> daysWithPeriod(std::int64_t period) {
     }
     EXPECT_EQ(ledger.end(part.take()), kWritten);
   }
-  LedgerReader reader = LedgerReader::open(file.path()).value.value();
+  LedgerReader reader(file.path());
   const LedgerEpoch epoch = reader.epochs().at(0);
   std::vector<std::string> days;
   for (const LedgerDay& day : epoch.days) days.push_back(day.date + " " + std::to_string(day.duration));
-  for (const LedgerChannel& channel : epoch.machine.channels) {
+  for (const CountedChannel& channel : epoch.machine.channels) {
     const LedgerCounts counts = reader.counts(epoch, channel);
     for (const CycleCount& count : counts.days) days.push_back(textOf(count));
     days.push_back(textOf(counts.total));

@@ -23,13 +23,16 @@ TEST(TurnLoads, AreThoseOfSamplesAndTheExtremesBetween) {
   EXPECT_FALSE(turn.whole);
   EXPECT_EQ(turn.start, 10 * kMs);
   EXPECT_EQ(turn.end, 34 * kMs);
-  EXPECT_EQ(turn.minimum, (std::vector<double>{1.0, -2.0}));
-  EXPECT_EQ(turn.maximum, (std::vector<double>{4.0, 5.0}));
-  EXPECT_EQ(turn.maximum_instant, (std::vector<std::int64_t>{24 * kMs, 10 * kMs}));
-  EXPECT_EQ(turn.minimum_instant, (std::vector<std::int64_t>{10 * kMs, 20 * kMs}));
-  EXPECT_NEAR(turn.mean[0], (20.0 + 14.0 + 18.0 + 8.0) / 24.0, 1e-14);
-  EXPECT_NEAR(turn.mean[1], (15.0 - 10.0 + 0.0) / 24.0, 1e-14);
-  EXPECT_EQ(turn.skipped, (std::vector<std::uint64_t>{0, 1}));
+  const auto expect = [](const LoadExtreme& extreme, double value, std::int64_t instant) {
+    EXPECT_EQ(extreme.value, value);
+    EXPECT_EQ(extreme.instant, instant);
+  };
+  expect(turn.channels[0].minimum, 1.0, 10 * kMs);
+  expect(turn.channels[1].minimum, -2.0, 20 * kMs);
+  expect(turn.channels[0].maximum, 4.0, 24 * kMs);
+  expect(turn.channels[1].maximum, 5.0, 10 * kMs);
+  EXPECT_NEAR(turn.channels[0].mean, (20.0 + 14.0 + 18.0 + 8.0) / 24.0, 1e-14);
+  EXPECT_NEAR(turn.channels[1].mean, (15.0 - 10.0 + 0.0) / 24.0, 1e-14);
 }
 
 // 10 turns of a curve that jumps at the blow, irregularly sampled: min, max and mean are the curve's.
@@ -47,10 +50,10 @@ TEST(TurnLoads, MeanIsTheCurvesHoweverItIsSampled) {
       EXPECT_EQ(turn.whole, turns > 0);
       // a value held over at most 0.95 ms at each end, where the slope is at most 70 1/s; trapezoidal rule 3e-5
       if (turn.whole) {
-        EXPECT_NEAR(turn.mean[0], 3.0 + 7.0 / 3.0, 70.0 * 0.95e-3 * 0.95e-3 / period + 3e-5);
+        EXPECT_NEAR(turn.channels[0].mean, 3.0 + 7.0 / 3.0, 70.0 * 0.95e-3 * 0.95e-3 / period + 3e-5);
       }
-      EXPECT_NEAR(turn.minimum[0], 3.0, 1e-3);
-      EXPECT_NEAR(turn.maximum[0], 10.0, 0.1);
+      EXPECT_NEAR(turn.channels[0].minimum.value, 3.0, 1e-3);
+      EXPECT_NEAR(turn.channels[0].maximum.value, 10.0, 0.1);
       next_blow += period;
       ++turns;
     }
@@ -65,10 +68,10 @@ TEST(TurnLoads, AChannelWithoutAValueHasNone) {
   recorder.add(1, half);
   recorder.add(2, half);
   const TurnLoads turn = recorder.endTurn(3);
-  EXPECT_EQ(turn.mean[0], 1.0);
-  EXPECT_TRUE(std::isnan(turn.mean[1]) && std::isnan(turn.minimum[1]) && std::isnan(turn.maximum[1]));
-  EXPECT_EQ(turn.skipped[1], 2U);
-  EXPECT_TRUE(std::isnan(recorder.endTurn(4).mean[0]));  // nothing is left of the turn before
+  EXPECT_EQ(turn.channels[0].mean, 1.0);
+  const auto& [minimum, maximum, mean] = turn.channels[1];
+  EXPECT_TRUE(std::isnan(mean) && std::isnan(minimum.value) && std::isnan(maximum.value));
+  EXPECT_TRUE(std::isnan(recorder.endTurn(4).channels[0].mean));  // nothing is left of the turn before
 }
 
 TEST(TurnLoads, ARestartForgetsTheTurnBegun) {
@@ -81,7 +84,7 @@ TEST(TurnLoads, ARestartForgetsTheTurnBegun) {
   recorder.add(0, &small);
   const TurnLoads& turn = recorder.endTurn(5);
   EXPECT_FALSE(turn.whole);
-  EXPECT_EQ(turn.maximum[0], 1.0);
+  EXPECT_EQ(turn.channels[0].maximum.value, 1.0);
   EXPECT_EQ(turn.start, 0);
 }
 

@@ -83,10 +83,10 @@ TEST(ElasticRanges, ALoadInFrontOfABlowIsMoreCertainThanThoseBehindIt) {
         ASSERT_NE(loads, nullptr);
         ASSERT_GT(std::distance(behind, samples.end()), kSamples);
         // The extreme is between the last sample and the blow.
-        if (behind == samples.begin() || loads->minimum_instant[0] < std::prev(behind)->first) continue;
+        if (behind == samples.begin() || loads->channels[0].minimum.instant < std::prev(behind)->first) continue;
         double largest = 0.0;
         for (auto sample = behind; sample != behind + kSamples; ++sample) largest = std::max(largest, sample->second);
-        EXPECT_LT(loads->of_minimum[0].own, largest) << time;
+        EXPECT_LT(loads->channels[0].minimum.error.own, largest) << time;
         ++turns;
       }
     });

@@ -109,9 +109,10 @@ TEST(Limits, AreExceededByTheValueAloneAndKeptWhereItIsNotKnown) {
 
 TEST(Limits, SumTheDamageOfTheLastHour) {
   const life::LoadGrid grid = *life::LoadGrid::make(-500.0, 500.0, 1000).value;  // classes of 1 MPa
-  const life::LedgerChannel weld{"stress/weld", grid, life::SnCurve::make(50.0, 1e6, 3.0, 5.0).value, {}};
+  life::CountedChannel weld{"stress/weld", grid};
+  weld.curve = life::SnCurve::make(50.0, 1e6, 3.0, 5.0).value;
   const Limit limit{"weld_damage_per_hour", "1/h", LimitedQuantity::kDamage, false, 3.9e-2, kNaN, "stress/weld"};
-  LimitWatch watch({limit}, {{"hull_wrench/force_z", grid, {}, {}}, weld}, {});
+  LimitWatch watch({limit}, {{"hull_wrench/force_z", grid}, weld}, {});
   // 1000 cycles of 100 MPa in each minute of three hours, twice as many in the second hour.
   life::LifePiece piece;
   piece.counts = {life::CycleCount(grid), life::CycleCount(grid)};

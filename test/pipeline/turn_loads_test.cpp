@@ -26,10 +26,10 @@ TEST(TurnLoads, HaveThePulsesPeakAtAnyRateForTheHull) {
         ++turns;
         const HalfSinePulse& pulse = *result.ends[i].pulse;
         // The pulse's amplitude is that of a parabola through points 1.25 ms apart, along the turn's own track.
-        EXPECT_NEAR(turn->maximum[1], pulse.amplitude, 5e-4 * kPeak) << rate;
+        EXPECT_NEAR(turn->channels[1].maximum.value, pulse.amplitude, 5e-4 * kPeak) << rate;
         // A mean is of what was published: at 100 Hz a sample withheld beside the blow is a twentieth of the turn.
         if (std::exchange(withheld, 0) > 0 && rate < 1000.0) continue;
-        EXPECT_NEAR(turn->mean[1], pulse.turn_impulse_z / pulse.period, 0.01 * kPeak) << rate;
+        EXPECT_NEAR(turn->channels[1].mean, pulse.turn_impulse_z / pulse.period, 0.01 * kPeak) << rate;
       }
     });
     EXPECT_GT(turns, 8U) << rate;
@@ -50,14 +50,14 @@ TEST(TurnLoads, AnExtremeBetweenSamplesHasTheDeviationOfItsOwnPlace) {
         for (std::size_t i = 0; i < result.turn_ends; ++i) {
           const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
           if (turn == nullptr || !turn->whole || result.ends[i].turn <= kZeroKnown) continue;
-          const StampNs instant = turn->minimum_instant[0];
+          const StampNs instant = turn->channels[0].minimum.instant;
           const auto close = std::find_if(outputs.rbegin(), outputs.rend(),
                                           [&](const WrenchOutput& output) { return output.stamp <= instant; });
           ASSERT_NE(close, outputs.rend());
           if (seconds(instant - close->stamp) > 1e-3) continue;  // withheld beside the blow
           ++turns;
           const double there = close->deviation.wrench.force_x;
-          EXPECT_NEAR(turn->of_minimum[0].deviation(), there, 0.2 * there) << turns;
+          EXPECT_NEAR(turn->channels[0].minimum.error.deviation(), there, 0.2 * there) << turns;
         }
       });
   EXPECT_GT(turns, 5);
@@ -89,9 +89,9 @@ TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
           ++judged;
           double truth = 0.0;
           for (const auto& at : simulation::truthAt(machine, aroundBlow(end))) truth = std::min(truth, at.load.force_x);
-          sum += turn->minimum[0] / truth;
-          most = std::max(most, turn->minimum[0] / truth);
-          EXPECT_NEAR(turn->minimum[0], truth, 2.0 * turn->of_minimum[0].deviation()) << end;
+          sum += turn->channels[0].minimum.value / truth;
+          most = std::max(most, turn->channels[0].minimum.value / truth);
+          EXPECT_NEAR(turn->channels[0].minimum.value, truth, 2.0 * turn->channels[0].minimum.error.deviation()) << end;
         }
         withheld += !result.refusal && !result.isPublished();
       });
@@ -122,7 +122,8 @@ TEST(TurnLoads, AreAsPublishedForAnElasticRod) {
       const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
       if (turn == nullptr || !turn->whole) continue;
       ++turns;
-      counted[0] = std::min(counted[0], turn->minimum[0]), counted[1] = std::max(counted[1], turn->maximum[0]);
+      counted[0] = std::min(counted[0], turn->channels[0].minimum.value),
+      counted[1] = std::max(counted[1], turn->channels[0].maximum.value);
     }
   });
   EXPECT_GT(turns, 5U);
@@ -147,10 +148,11 @@ TEST(TurnLoads, AreThoseOfTheSamplesForJoints) {
           // session.
           if (turn->whole && blow && *blow == turn->start) {
             ++turns;
-            EXPECT_LE(turn->maximum[channel], greatest);
-            EXPECT_GT(turn->maximum[channel], 0.9 * greatest);
-            EXPECT_GE(turn->maximum_instant[channel], turn->start);
-            EXPECT_LE(turn->maximum_instant[channel], turn->end);
+            const life::LoadExtreme& maximum = turn->channels[channel].maximum;
+            EXPECT_LE(maximum.value, greatest);
+            EXPECT_GT(maximum.value, 0.9 * greatest);
+            EXPECT_GE(maximum.instant, turn->start);
+            EXPECT_LE(maximum.instant, turn->end);
           }
           blow = result.ends[i].stamp;
           greatest = -1e300;

@@ -41,8 +41,8 @@ const std::string kCurve =
 TEST(ReadLife, ReadsStressByModulusAreaOrCoefficient) {
   const Read plain = read(kToe);
   EXPECT_EQ(plain.problems, std::vector<std::string>{});
-  const life::HotSpot& toe = plain.settings.hot_spots.at(0);
-  EXPECT_EQ(life::hotSpotChannel(toe), "stress/toe");
+  const life::CountedChannel& toe = plain.settings.channels.back();
+  EXPECT_EQ(toe.name, "stress/toe");
   EXPECT_EQ(toe.influences.at(0).channel, "hull_wrench/torque_y");
   EXPECT_DOUBLE_EQ(toe.influences.at(0).factor, 5e-4);  // 1 N m over 0.002 m3 is 500 Pa
   EXPECT_DOUBLE_EQ(toe.influences.at(1).factor, 1e-4);
@@ -50,10 +50,10 @@ TEST(ReadLife, ReadsStressByModulusAreaOrCoefficient) {
   const Read direct =
       read(kToe + kCurve + "toe_mean_stress: fkm\ntoe_mean_stress_sensitivity: 0.3\nlife_ledger: /m.sqlite\n");
   EXPECT_EQ(direct.problems, std::vector<std::string>{});
-  EXPECT_EQ(direct.settings.hot_spots.at(0).curve->slopeBelow(), 5.0);
-  EXPECT_EQ(direct.settings.hot_spots.at(0).mean_stress->sensitivity, 0.3);
+  EXPECT_EQ(direct.settings.channels.back().curve->slopeBelow(), 5.0);
+  EXPECT_EQ(direct.settings.channels.back().mean_stress->sensitivity, 0.3);
   EXPECT_EQ(direct.settings.ledger, "/m.sqlite");
-  EXPECT_FALSE(read(kToe + kCurve + "toe_mean_stress: none\n").settings.hot_spots.at(0).mean_stress);
+  EXPECT_FALSE(read(kToe + kCurve + "toe_mean_stress: none\n").settings.channels.back().mean_stress);
 }
 
 TEST(ReadLife, NamesEachFault) {

@@ -45,7 +45,7 @@ int run(const std::string& directory, std::uint64_t samples) {
   const std::string path = directory + "/ledger.sqlite";
   std::filesystem::remove(path);
   const std::vector<double> series = loads();
-  life::LifeRecorder recorder = life::LifeRecorder::make(settings, kInputs).value.value();
+  life::LifeRecorder recorder(settings, kInputs);
   life::TurnLoadsRecorder turn_loads(kInputs.size());
   life::LedgerRun ledger(path, life::ledgerMachine(settings, "soak"), "run");
 
@@ -70,8 +70,8 @@ int run(const std::string& directory, std::uint64_t samples) {
     recorder.sample(stamp, &series[at], nullptr);
     turn_loads.add(stamp, &series[at]);
     if (i % kSamplesOfTurn == kSamplesOfTurn - 1) {
-      const life::TurnLoads& turn = turn_loads.endTurn(stamp);
-      wrong_turns += !(turn.minimum[0] <= turn.mean[0] && turn.mean[0] <= turn.maximum[0]);
+      const life::ChannelTurn& turn = turn_loads.endTurn(stamp).channels[0];
+      wrong_turns += !(turn.minimum.value <= turn.mean && turn.mean <= turn.maximum.value);
       recorder.turn();
       ++turns;
     }
@@ -93,13 +93,13 @@ int run(const std::string& directory, std::uint64_t samples) {
   verdict.demand(!trouble, trouble.value_or(""));
   verdict.demand(wrong_turns == 0, "every turn's mean between its extremes");
   verdict.demand(std::abs(memory.growth()) <= 0.02, "memory of the last quarter within 2 % of the first");
-  Checked<life::LedgerReader> reader = life::LedgerReader::open(path);
-  const std::vector<life::LedgerEpoch> epochs = reader.value.value().epochs();
-  const life::CycleCount total = reader.value->counts(epochs.at(0), epochs[0].machine.channels[0]).total;
+  life::LedgerReader reader(path);
+  const std::vector<life::LedgerEpoch> epochs = reader.epochs();
+  const life::CycleCount total = reader.counts(epochs.at(0), epochs[0].machine.channels[0]).total;
   std::uint64_t blows = 0;
   for (const life::LedgerDay& day : epochs[0].days) blows += day.turns;
   verdict.tell("cells", static_cast<double>(total.closed.size()));
-  verdict.demand(reader.value->problem().empty(), "the ledger is whole");
+  verdict.demand(reader.problem().empty(), "the ledger is whole");
   verdict.demand(total.tally.counted == samples && blows == turns, "every sample and turn is in the ledger once");
   return verdict.exitCode();
 }

@@ -11,6 +11,7 @@
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads {
 namespace {
@@ -20,15 +21,15 @@ constexpr char kNotes[] =
     "Without a full scale every value counts as it is (--exact), and memory grows with the series.\n"
     "nan and inf are skipped; empty lines are ignored.";
 
-/// A number, nan or inf, as a measurement may hold them; nothing for anything else.
+/// A finite number, nan or inf, as a measurement may hold them; nothing for anything else.
 std::optional<double> valueOf(const std::string& text) {
-  const bool plain = text.find_first_not_of("0123456789+-.eE") == std::string::npos;
+  const std::optional<double> number = decimalNumber(text);
+  if (number) return std::isfinite(*number) ? number : std::nullopt;
   char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
+  const double word = std::strtod(text.c_str(), &end);
   const bool whole = end == text.c_str() + text.size();
-  if (plain) return whole && std::isfinite(value) ? std::make_optional(value) : std::nullopt;
-  const bool word = text.find_first_of("0123456789xX(") == std::string::npos;
-  return whole && word ? std::make_optional(value) : std::nullopt;
+  const bool is_word = whole && text.find_first_of("0123456789xX(") == std::string::npos;
+  return is_word ? std::make_optional(word) : std::nullopt;
 }
 
 /// False after a line that is no number, with one line on stderr.
@@ -62,20 +63,10 @@ void warn(const life::SampleTally& tally) {
 template <typename Count>
 int print(const Count& count, const life::SampleTally& tally) {
   warn(tally);
-  std::cout << life::csvText(life::rangesAndMeans(count));
+  std::cout << "range,mean,count\n";
+  for (const life::RangeMean& c : life::rangesAndMeans(count))
+    std::cout << shortNumber(c.range) << ',' << shortNumber(c.mean) << ',' << shortNumber(c.count) << '\n';
   return finishOutput();
-}
-
-int countExactly() {
-  life::ExactCycles counter;
-  return countSeries(counter) ? print(counter, counter.tally()) : kExitFailure;
-}
-
-int countOn(const life::LoadGrid& grid) {
-  life::CycleCounter counter(grid);
-  if (!countSeries(counter)) return kExitFailure;
-  const life::CycleCount count = counter.take();
-  return print(count, count.tally);
 }
 
 int run(int argc, const char* const* argv) {
@@ -96,10 +87,17 @@ int run(int argc, const char* const* argv) {
       ->capture_default_str();
   if (const auto code = line.parse(argc, argv)) return *code;
   std::ios::sync_with_stdio(false);
-  if (full_scale.empty()) return countExactly();
+  if (full_scale.empty()) {
+    life::ExactCycles counter;
+    return countSeries(counter) ? print(counter, counter.tally()) : kExitFailure;
+  }
   const auto grid = life::LoadGrid::make(full_scale[0], full_scale[1], classes);
   for (const std::string& problem : grid.problems) std::cerr << "--" << problem << '\n';
-  return grid.value ? countOn(*grid.value) : kExitWrongUsage;
+  if (!grid.value) return kExitWrongUsage;
+  life::CycleCounter counter(*grid.value);
+  if (!countSeries(counter)) return kExitFailure;
+  const life::CycleCount count = counter.take();
+  return print(count, count.tally);
 }
 
 }  // namespace

@@ -10,37 +10,98 @@
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/life/ledger_reader.h"
+#include "hammer_loads/life/ledger_run.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads {
 namespace {
 
-using life::ChannelReport;
-using life::EpochReport;
+using life::CycleCount;
 using life::Figure;
-using life::PeriodFigures;
+using life::LedgerDay;
+using life::LedgerEpoch;
+using Json = nlohmann::json;
 using Row = std::vector<std::string>;
 
-std::string slopeName(std::size_t i) { return shortNumber(life::kSlopes[i]); }
+std::string slopeName(double slope) { return "equivalent_range_" + shortNumber(slope); }
 
-/// Names and figures that have standard deviations, in the order of the columns.
-std::vector<std::pair<std::string, std::optional<Figure>>> named(const life::ChannelFigures& figures) {
-  std::vector<std::pair<std::string, std::optional<Figure>>> all;
+/// Names of the figures that have standard deviations, in the order of the columns.
+std::vector<std::string> figureNames() {
+  std::vector<std::string> names;
+  for (const double slope : life::kSlopes) names.push_back(slopeName(slope));
+  names.insert(names.end(), {"damage", "remaining_hours"});
+  return names;
+}
+
+// --- Report: the object that --json writes. The other formats show parts of it. -----------------------------------
+
+Json figureJson(const std::optional<Figure>& figure) {
+  if (!figure) return nullptr;
+  return {{"value", figure->value}, {"std", figure->deviation}, {"systematic_std", figure->common}};
+}
+
+Json periodJson(const LedgerEpoch& epoch, const life::CountedChannel& channel, const LedgerDay& period,
+                const CycleCount& count) {
+  constexpr double kNsPerHour = 3600e9;
+  const double hours = static_cast<double>(period.duration) / kNsPerHour;
+  const life::ChannelFigures figures = life::figuresOf(count, channel, hours, epoch.machine.equivalent_cycles_per_hour);
+  Json object{{"hours", hours},
+              {"blows", period.turns},
+              {"cycles", figures.cycles},
+              {"largest_range", figures.largest_range},
+              {"damage", figureJson(figures.damage)},
+              {"remaining_hours", figureJson(figures.remaining_hours)}};
   for (std::size_t i = 0; i < life::kSlopeCount; ++i)
-    all.emplace_back("equivalent_range_" + slopeName(i), figures.equivalent_range[i]);
-  all.emplace_back("damage", figures.damage);
-  all.emplace_back("remaining_hours", figures.remaining_hours);
-  return all;
+    object[slopeName(life::kSlopes[i])] = figureJson(figures.equivalent_range[i]);
+  return object;
+}
+
+/// The whole epoch, and in `days` each day with the cycles that closed on it.
+Json channelJson(life::LedgerReader& reader, const LedgerEpoch& epoch, const life::CountedChannel& channel) {
+  const life::LedgerCounts counts = reader.counts(epoch, channel);
+  LedgerDay all;
+  for (const LedgerDay& day : epoch.days) all.duration += day.duration, all.turns += day.turns;
+  Json object = periodJson(epoch, channel, all, counts.total);
+  object.update({{"channel", channel.name},
+                 {"unit", life::unitOf(channel.name)},
+                 {"least", counts.total.extremes.least},
+                 {"greatest", counts.total.extremes.greatest},
+                 {"samples", counts.total.tally.counted},
+                 {"below", counts.total.tally.below},
+                 {"above", counts.total.tally.above},
+                 {"skipped", counts.total.tally.skipped},
+                 {"gaps", counts.total.tally.gaps},
+                 {"days", Json::array()}});
+  for (std::size_t i = 0; i < epoch.days.size(); ++i) {
+    object["days"].push_back(periodJson(epoch, channel, epoch.days[i], counts.days[i]));
+    object["days"].back()["day"] = epoch.days[i].date;
+  }
+  return object;
+}
+
+/// Every epoch of the ledger; a figure that does not exist is null or not a number.
+Json reportJson(life::LedgerReader& reader) {
+  Json epochs = Json::array();
+  for (const LedgerEpoch& epoch : reader.epochs()) {
+    Json entry{{"epoch", epoch.id},        {"machine", epoch.machine.identity},
+               {"runs", epoch.runs},       {"equivalent_cycles_per_hour", epoch.machine.equivalent_cycles_per_hour},
+               {"residue", "half cycles"}, {"channels", Json::array()}};
+    for (const life::CountedChannel& channel : epoch.machine.channels)
+      entry["channels"].push_back(channelJson(reader, epoch, channel));
+    epochs.push_back(std::move(entry));
+  }
+  return epochs;
 }
 
 // --- Text ---------------------------------------------------------------------------------------------------------
 
 std::string number(double value) { return std::isnan(value) ? "-" : format("%.5g", value); }
 
-std::string withDeviation(const std::optional<Figure>& figure) {
-  if (!figure) return "-";
-  return number(figure->value) + (std::isnan(figure->deviation) ? "" : format(" +- %.2g", figure->deviation));
+std::string withDeviation(const Json& figure) {
+  if (figure.is_null()) return "-";
+  const double deviation = figure["std"];
+  return number(figure["value"]) + (std::isnan(deviation) ? "" : format(" +- %.2g", deviation));
 }
 
 /// Columns aligned, the first to the left.
@@ -63,46 +124,51 @@ std::string aligned(const std::vector<Row>& rows) {
 
 Row figureTitles(Row titles) {
   titles.insert(titles.end(), {"hours", "blows"});
-  for (std::size_t i = 0; i < life::kSlopeCount; ++i) titles.push_back("range m=" + slopeName(i));
+  for (const double slope : life::kSlopes) titles.push_back("range m=" + shortNumber(slope));
   titles.insert(titles.end(), {"largest", "damage"});
   return titles;
 }
 
-Row figureCells(Row cells, const PeriodFigures& period) {
-  cells.insert(cells.end(), {number(period.hours), std::to_string(period.blows)});
-  for (const Figure& range : period.figures.equivalent_range) cells.push_back(withDeviation(range));
-  cells.insert(cells.end(), {number(period.figures.largest_range), withDeviation(period.figures.damage)});
+Row figureCells(Row cells, const Json& period) {
+  cells.insert(cells.end(), {number(period["hours"]), period["blows"].dump()});
+  for (const double slope : life::kSlopes) cells.push_back(withDeviation(period[slopeName(slope)]));
+  cells.insert(cells.end(), {number(period["largest_range"]), withDeviation(period["damage"])});
   return cells;
 }
 
-std::string channelTable(const std::vector<ChannelReport>& channels) {
+std::string channelTable(const Json& channels) {
   Row titles = figureTitles({"channel", "unit"});
   titles.insert(titles.end(), {"hours left", "saturated", "skipped", "gaps"});
   std::vector<Row> rows{titles};
-  for (const ChannelReport& c : channels) {
-    const PeriodFigures& all = c.periods.front();
-    Row row = figureCells({c.name, c.unit}, all);
-    row.insert(row.end(), {withDeviation(all.figures.remaining_hours), std::to_string(c.tally.below + c.tally.above),
-                           std::to_string(c.tally.skipped), std::to_string(c.tally.gaps)});
+  for (const Json& c : channels) {
+    Row row = figureCells({c["channel"], c["unit"]}, c);
+    row.insert(row.end(), {withDeviation(c["remaining_hours"]),
+                           std::to_string(c["below"].get<std::uint64_t>() + c["above"].get<std::uint64_t>()),
+                           c["skipped"].dump(), c["gaps"].dump()});
     rows.push_back(row);
   }
   return aligned(rows);
 }
 
-std::string dayTable(const ChannelReport& channel) {
+std::string dayTable(const Json& channel) {
   std::vector<Row> rows{figureTitles({"day"})};
-  for (std::size_t i = 1; i < channel.periods.size(); ++i)
-    rows.push_back(figureCells({channel.periods[i].day}, channel.periods[i]));
-  return channel.name + " [" + channel.unit + "], by the day on which a cycle closed (UTC)\n" + aligned(rows);
+  for (const Json& day : channel["days"]) rows.push_back(figureCells({day["day"]}, day));
+  return channel["channel"].get<std::string>() + " [" + channel["unit"].get<std::string>() +
+         "], by the day on which a cycle closed (UTC)\n" + aligned(rows);
 }
 
-std::string epochText(const EpochReport& report) {
-  std::string text = format("epoch %lld: machine %s, %llu runs\n", static_cast<long long>(report.epoch.id),
-                            report.epoch.machine.identity.c_str(), static_cast<unsigned long long>(report.epoch.runs));
-  text += "Damage-equivalent loads are ranges at " + shortNumber(report.epoch.machine.equivalent_cycles_per_hour) +
-          " cycles an hour; cycles of ASTM E1049, the residue as half cycles.\n";
-  text += channelTable(report.channels);
-  for (const ChannelReport& channel : report.channels) text += '\n' + dayTable(channel);
+/// For reading: a table of channels per epoch, then the days of each channel.
+std::string lifeText(const Json& epochs) {
+  std::string text;
+  for (const Json& epoch : epochs) {
+    if (!text.empty()) text += '\n';
+    text += "epoch " + epoch["epoch"].dump() + ": machine " + epoch["machine"].get<std::string>() + ", " +
+            epoch["runs"].dump() + " runs\n";
+    text += "Damage-equivalent loads are ranges at " + shortNumber(epoch["equivalent_cycles_per_hour"]) +
+            " cycles an hour; cycles of ASTM E1049, the residue as half cycles.\n";
+    text += channelTable(epoch["channels"]);
+    for (const Json& channel : epoch["channels"]) text += '\n' + dayTable(channel);
+  }
   return text;
 }
 
@@ -119,87 +185,37 @@ std::string quoted(const std::string& text) {
 
 std::string csvHeader() {
   std::string header = "epoch,channel,unit,day,hours,blows,cycles,largest_range";
-  for (const auto& [name, figure] : named({})) header += ',' + name + ',' + name + "_std," + name + "_systematic_std";
+  for (const std::string& name : figureNames()) header += ',' + name + ',' + name + "_std," + name + "_systematic_std";
   return header + ",below,above,skipped,gaps\n";
 }
 
-std::string csvLines(std::int64_t epoch, const ChannelReport& c) {
-  std::string lines;
-  for (const PeriodFigures& p : c.periods) {
-    lines += std::to_string(epoch) + ',' + quoted(c.name) + ',' + quoted(c.unit) + ',' + p.day + ',' + cell(p.hours) +
-             ',' + std::to_string(p.blows) + ',' + cell(p.figures.cycles) + ',' + cell(p.figures.largest_range);
-    for (const auto& [name, figure] : named(p.figures))
-      lines += figure ? ',' + cell(figure->value) + ',' + cell(figure->deviation) + ',' + cell(figure->common) : ",,,";
-    for (const std::uint64_t count : {c.tally.below, c.tally.above, c.tally.skipped, c.tally.gaps})
-      lines += ',' + (&p == c.periods.data() ? std::to_string(count) : "");  // known of all days together
-    lines += '\n';
-  }
-  return lines;
-}
-
-// --- JSON ---------------------------------------------------------------------------------------------------------
-
-using Json = nlohmann::json;
-
-/// Keys are sorted by name; null is written for what is no finite number.
-Json json(const PeriodFigures& p) {
-  Json object{
-      {"hours", p.hours}, {"blows", p.blows}, {"cycles", p.figures.cycles}, {"largest_range", p.figures.largest_range}};
-  for (const auto& [name, figure] : named(p.figures)) {
-    object[name] = nullptr;
-    if (figure)
-      object[name] = {{"value", figure->value}, {"std", figure->deviation}, {"systematic_std", figure->common}};
-  }
-  return object;
-}
-
-Json json(const ChannelReport& c) {
-  Json object = json(c.periods.front());
-  object.update({{"channel", c.name},
-                 {"unit", c.unit},
-                 {"least", c.extremes.least},
-                 {"greatest", c.extremes.greatest},
-                 {"samples", c.tally.counted},
-                 {"below", c.tally.below},
-                 {"above", c.tally.above},
-                 {"skipped", c.tally.skipped},
-                 {"gaps", c.tally.gaps},
-                 {"days", Json::array()}});
-  for (std::size_t i = 1; i < c.periods.size(); ++i) {
-    object["days"].push_back(json(c.periods[i]));
-    object["days"].back()["day"] = c.periods[i].day;
-  }
-  return object;
-}
-
-/// For reading: a table of channels per epoch, then the days of each channel.
-std::string lifeText(const std::vector<EpochReport>& epochs) {
-  std::string text;
-  for (const EpochReport& epoch : epochs) text += (text.empty() ? "" : "\n") + epochText(epoch);
-  return text;
+std::string csvLine(const Json& epoch, const Json& channel, const Json& period) {
+  std::string line = epoch["epoch"].dump() + ',' + quoted(channel["channel"]) + ',' + quoted(channel["unit"]) + ',' +
+                     period.value("day", "all") + ',' + cell(period["hours"]) + ',' + period["blows"].dump() + ',' +
+                     cell(period["cycles"]) + ',' + cell(period["largest_range"]);
+  for (const std::string& name : figureNames())
+    for (const char* part : {"value", "std", "systematic_std"})
+      line += ',' + (period[name].is_null() ? "" : cell(period[name][part]));
+  for (const char* name : {"below", "above", "skipped", "gaps"})
+    line += ',' + (period.contains(name) ? period[name].dump() : "");  // known of all days together
+  return line + '\n';
 }
 
 /// One line per epoch, channel and day, the totals with day `all`; a figure that does not exist is an empty cell.
-std::string lifeCsv(const std::vector<EpochReport>& epochs) {
+std::string lifeCsv(const Json& epochs) {
   std::string text = csvHeader();
-  for (const EpochReport& epoch : epochs) {
-    for (const ChannelReport& channel : epoch.channels) text += csvLines(epoch.epoch.id, channel);
+  for (const Json& epoch : epochs) {
+    for (const Json& channel : epoch["channels"]) {
+      text += csvLine(epoch, channel, channel);
+      for (const Json& day : channel["days"]) text += csvLine(epoch, channel, day);
+    }
   }
   return text;
 }
 
-/// Report as one JSON object; a figure that does not exist is null.
-std::string lifeJson(const std::vector<EpochReport>& epochs) {
-  Json list = Json::array();
-  for (const EpochReport& report : epochs) {
-    Json entry{
-        {"epoch", report.epoch.id},  {"machine", report.epoch.machine.identity},
-        {"runs", report.epoch.runs}, {"equivalent_cycles_per_hour", report.epoch.machine.equivalent_cycles_per_hour},
-        {"residue", "half cycles"},  {"channels", Json::array()}};
-    for (const ChannelReport& channel : report.channels) entry["channels"].push_back(json(channel));
-    list.push_back(entry);
-  }
-  return Json{{"epochs", list}}.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+/// null is written for what is no finite number.
+std::string lifeJson(const Json& epochs) {
+  return Json{{"epochs", epochs}}.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 constexpr char kNotes[] =
@@ -225,17 +241,19 @@ int run(int argc, const char* const* argv) {
     return problem ? fail({*problem}) : 0;
   }
 
-  Checked<life::LedgerReader> reader = life::LedgerReader::open(file);
-  if (!reader.value) return fail(reader.problems);
+  life::LedgerReader reader(file);
+  std::string text;
   if (list_runs) {
-    std::cout << "run,epoch,crank_messages,blows\n";
-    for (const life::LedgerRunInfo& r : reader.value->runs())
-      std::cout << r.name << ',' << r.epoch << ',' << r.messages << ',' << r.turns << '\n';
-    return reader.value->problem().empty() ? finishOutput() : fail({reader.value->problem()});
+    text = "run,epoch,crank_messages,blows\n";
+    for (const life::LedgerRunInfo& r : reader.runs())
+      text += r.name + ',' + std::to_string(r.epoch) + ',' + std::to_string(r.messages) + ',' +
+              std::to_string(r.turns) + '\n';
+  } else {
+    const Json epochs = reportJson(reader);
+    text = as_json ? lifeJson(epochs) : as_csv ? lifeCsv(epochs) : lifeText(epochs);
   }
-  const Checked<std::vector<EpochReport>> report = life::lifeReport(*reader.value);
-  if (!report.value) return fail(report.problems);
-  std::cout << (as_json ? lifeJson(*report.value) : as_csv ? lifeCsv(*report.value) : lifeText(*report.value));
+  if (!reader.problem().empty()) return fail({reader.problem()});
+  std::cout << text;
   return finishOutput();
 }
 

@@ -1,12 +1,12 @@
 /// A count of load cycles on a grid: closed cycles, residue and the number of samples left out. Counts add exactly.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "hammer_loads/util/checked.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::life {
 
@@ -42,7 +42,6 @@ class LoadGrid {
   bool operator==(const LoadGrid& other) const {
     return least_ == other.least_ && greatest_ == other.greatest_ && classes_ == other.classes_;
   }
-  bool operator!=(const LoadGrid& other) const { return !(*this == other); }
 
  private:
   LoadGrid(double least, double greatest, std::uint32_t classes)
@@ -64,6 +63,10 @@ struct ClosedCycles {
   std::uint32_t low{};    ///< class of the lower extreme
   std::uint64_t count{};
 
+  /// Cycles between two classes, in any order.
+  static ClosedCycles between(std::uint32_t b, std::uint32_t c, std::uint64_t count) {
+    return {std::max(b, c) - std::min(b, c), std::min(b, c), count};
+  }
   bool operator==(const ClosedCycles& o) const { return steps == o.steps && low == o.low && count == o.count; }
   /// By range, then by mean.
   bool operator<(const ClosedCycles& o) const { return steps != o.steps ? steps < o.steps : low < o.low; }
@@ -84,7 +87,6 @@ struct SampleTally {
   std::uint64_t range_square{}, range_own{}, range_common{};
 
   void add(const SampleTally& o);
-  bool operator==(const SampleTally& o) const;
 };
 
 /// Numbers of a tally with the names of their columns in a ledger.
@@ -108,8 +110,8 @@ constexpr double kRangeUnits = 64.0;        ///< per class width squared, in its
 
 /// Smallest and largest value that came in, not rounded to the grid; NaN before the first one.
 struct Extremes {
-  double least{std::numeric_limits<double>::quiet_NaN()};
-  double greatest{std::numeric_limits<double>::quiet_NaN()};
+  double least{kNaN};
+  double greatest{kNaN};
 
   void add(double value) noexcept {
     if (!(value >= least)) least = value;
@@ -122,31 +124,22 @@ struct Extremes {
 
 struct CycleCount {
   LoadGrid grid;
-  std::vector<ClosedCycles> closed;    ///< sorted, each (steps, low) once
-  std::vector<std::uint32_t> residue;  ///< classes of the turning points that closed no cycle, in time order
+  std::vector<ClosedCycles> closed;  ///< sorted, each (steps, low) once
+  /// Classes of the turning points that closed no cycle, in time order: at most 2 classes - 1, the running end
+  /// included.
+  std::vector<std::uint32_t> residue;
   SampleTally tally;
   Extremes extremes;
 
   explicit CycleCount(const LoadGrid& on) : grid(on) {}
 
-  /// The count of this series followed by the other one; the grids must be equal.
-  void append(const CycleCount& later);
   /// Extends the count by a later one of the same series: `since` contains the cycles closed since then and the residue
   /// of the whole.
   void advance(const CycleCount& since);
 };
 
-/// Residue of two pieces of a series, the first one's in `residue`; the cycles that close across the seam are added to
-/// `closed`, which need not be sorted before and is not afterwards.
-void joinResidues(std::vector<std::uint32_t>& residue, const std::vector<std::uint32_t>& later,
-                  std::vector<ClosedCycles>& closed);
-
 /// Sorts the cycles and merges those of equal range and mean.
 void sortClosed(std::vector<ClosedCycles>& closed);
-
-/// Returns true if a series can have this count: classes on the grid, closed cycles sorted, no cycle left in the
-/// residue.
-bool isPossible(const CycleCount& count);
 
 /// Mean standard deviation of a sample [channel's unit]; NaN where none was given.
 double meanDeviation(const CycleCount& count);
@@ -167,8 +160,5 @@ struct RangeMean {
 
 /// Closed cycles and the residue as half cycles, sorted by range, then by mean: the count of ASTM E1049-85 5.4.4.
 std::vector<RangeMean> rangesAndMeans(const CycleCount& count);
-
-/// `range,mean,count`, one line for each; with the header alone when there is no cycle.
-std::string csvText(const std::vector<RangeMean>& cycles);
 
 }  // namespace hammer_loads::life

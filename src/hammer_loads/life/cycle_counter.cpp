@@ -54,13 +54,11 @@ CycleCount CycleCounter::take() {
     }
   }
   cells_ = std::move(fresh);  // gives back the pages that cycles of this period have touched
-  if (!overruns_.empty()) {
-    std::sort(overruns_.begin(), overruns_.end());
-    steps = 1;
-    for (const std::uint32_t cell : overruns_) add(cell, kCellPeriod);
-    overruns_.clear();
-    sortClosed(count.closed);
-  }
+  std::sort(overruns_.begin(), overruns_.end());
+  steps = 1;
+  for (const std::uint32_t cell : overruns_) add(cell, kCellPeriod);
+  overruns_.clear();
+  sortClosed(count.closed);
   count.residue = stack_.residue();
   count.tally = std::exchange(tally_, {});
   count.extremes = std::exchange(extremes_, {});

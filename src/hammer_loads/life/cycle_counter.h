@@ -60,8 +60,6 @@ class CycleCounter {
 
   const LoadGrid& grid() const { return grid_; }
   const SampleTally& tally() const { return tally_; }  ///< since the last take()
-  /// Classes of turning points, in time order: at most 2 classes - 1, the running end included.
-  const std::vector<std::uint32_t>& residue() const { return stack_.residue(); }
 
   /// Closed cycles, tally and extremes since the last take(), and the whole residue. For the end of a period, not for
   /// the hot path.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::life {
@@ -79,8 +79,7 @@ Figure damage(const std::vector<RangeMean>& cycles, const SnCurve& curve, const 
 }
 
 Figure remainingHours(const Figure& damage, double hours) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!(damage.value > 0.0)) return {std::numeric_limits<double>::infinity(), kNone, kNone};
+  if (!(damage.value > 0.0)) return {kInfinity, kNaN, kNaN};
   const double life = hours / damage.value;
   const double by_damage = life / damage.value;
   return {std::max(0.0, life - hours), by_damage * damage.deviation, by_damage * damage.common};

@@ -11,6 +11,8 @@
 #include <regex>
 #include <sstream>
 
+#include "hammer_loads/util/number_text.h"
+
 namespace hammer_loads::life {
 
 void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
@@ -40,11 +42,7 @@ Database::Database(const std::string& path, Use use, int patience_ms) {
 }
 
 void Database::fail(const std::string& problem) {
-  if (!problem_.empty()) return;
-  problem_ = problem;
-  for (char& c : problem_) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // of a damaged file's bytes
-  }
+  if (problem_.empty()) problem_ = onOneLine(problem);  // it may quote a damaged file's bytes
 }
 
 bool Database::check(int result) {
@@ -56,14 +54,14 @@ bool Database::check(int result) {
   return false;
 }
 
-void Database::run(const char* sql) {
-  if (good()) check(sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr));
+void Database::run(const std::string& sql) {
+  if (good()) check(sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr));
 }
 
-Database::Statement::Statement(Database& database, const char* sql) : database_(database) {
-  if (!database.good()) return;
+void Database::Statement::prepare(const std::string& sql) {
+  if (!database_.good()) return;
   sqlite3_stmt* statement = nullptr;
-  database.check(sqlite3_prepare_v2(database.handle_.get(), sql, -1, &statement, nullptr));
+  database_.check(sqlite3_prepare_v2(database_.handle_.get(), sql.c_str(), -1, &statement, nullptr));
   statement_.reset(statement);
 }
 
@@ -100,7 +98,7 @@ bool Database::Statement::isNull(int column) const {
 }
 
 double Database::Statement::number(int column) const {
-  return isNull(column) ? std::numeric_limits<double>::quiet_NaN() : sqlite3_column_double(statement_.get(), column);
+  return isNull(column) ? kNaN : sqlite3_column_double(statement_.get(), column);
 }
 
 std::string Database::Statement::text(int column) const {
@@ -118,22 +116,16 @@ CREATE TABLE columns(
   PRIMARY KEY(table_name, column_name)) WITHOUT ROWID;
 )";
 
-std::vector<ColumnText> columnTexts(const std::string& schema) {
+void describeColumns(const std::string& schema, Database& database) {
   static const std::regex begins(R"(CREATE TABLE (\w+)\()"), column(R"re(\s+(\w+) .*-- \[([^\]]+)\] (.+))re");
-  std::vector<ColumnText> texts;
+  Database::Statement insert(database, "INSERT INTO columns VALUES(?1, ?2, ?3, ?4)");
   std::istringstream lines(schema);
   std::string table;
   for (std::string line; std::getline(lines, line);) {
     std::smatch found;
     if (std::regex_search(line, found, begins)) table = found[1];
-    if (std::regex_match(line, found, column)) texts.push_back({table, found[1], found[2], found[3]});
+    if (std::regex_match(line, found, column)) insert.run(table, found[1].str(), found[2].str(), found[3].str());
   }
-  return texts;
-}
-
-void insert(const std::vector<ColumnText>& texts, Database& database) {
-  Database::Statement statement(database, "INSERT INTO columns VALUES(?1, ?2, ?3, ?4)");
-  for (const ColumnText& text : texts) statement.run(text.table, text.column, text.unit, text.description);
 }
 
 }  // namespace hammer_loads::life

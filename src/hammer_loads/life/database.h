@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
-#include <vector>
+
+#include "hammer_loads/util/constants.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -27,23 +27,22 @@ class Database {
   static std::string pathProblem(const std::string& path, Use use);
 
   /// Runs statements without result.
-  void run(const char* sql);
+  void run(const std::string& sql);
 
   /// One statement, to run many times with other values.
   class Statement {
    public:
-    Statement(Database& database, const char* sql);
-    /// Values of ?1, ?2 ...
+    /// values: of ?1, ?2 ..., if the statement has any.
+    template <typename... Values>
+    Statement(Database& database, const std::string& sql, const Values&... values) : database_(database) {
+      prepare(sql);
+      bindAll(values...);
+    }
     template <typename... Values>
     void run(const Values&... values) {
       bindAll(values...);
       while (step()) {
       }
-    }
-    template <typename... Values>
-    Statement& with(const Values&... values) {
-      bindAll(values...);
-      return *this;
     }
     /// One value after another, where their number is not known beforehand: reset(), bind() each place from 1, step().
     void reset();
@@ -55,7 +54,7 @@ class Database {
     void bind(int place, const std::string& value);
     template <typename T>
     void bind(int place, const std::optional<T>& value) {  ///< NULL for nothing
-      value ? bind(place, *value) : bind(place, std::numeric_limits<double>::quiet_NaN());
+      value ? bind(place, *value) : bind(place, kNaN);
     }
     /// Next row of a query; false after the last one, and after an error.
     bool step();
@@ -65,6 +64,7 @@ class Database {
     std::string text(int column) const;
 
    private:
+    void prepare(const std::string& sql);
     void bindInteger(int place, std::int64_t value);
     struct Finalize {
       void operator()(sqlite3_stmt* statement) const;
@@ -72,7 +72,7 @@ class Database {
     template <typename... Values>
     void bindAll(const Values&... values) {
       reset();
-      int place = 0;
+      [[maybe_unused]] int place = 0;
       (bind(++place, values), ...);
     }
     Database& database_;
@@ -96,19 +96,11 @@ class Database {
   std::string problem_;
 };
 
-/// A row of the table `columns`.
-struct ColumnText {
-  std::string table, column;
-  std::string unit;  ///< "-" for a number without unit and for a text; "channel": that of the row's channel
-  std::string description;
-};
-
-/// Rows for a schema with one column a line and a comment `-- [unit] description` behind each, in their order.
-std::vector<ColumnText> columnTexts(const std::string& schema);
-
-/// Schema of the table `columns` itself, in that form.
+/// Schema of the table `columns`, which explains the columns of all tables.
 extern const char* const kColumnsTable;
 
-void insert(const std::vector<ColumnText>& texts, Database& database);
+/// Fills the table `columns` by a schema with one column a line and a comment `-- [unit] description` behind each. The
+/// unit is "-" for a number without unit and for a text, and "channel" for that of the row's channel.
+void describeColumns(const std::string& schema, Database& database);
 
 }  // namespace hammer_loads::life

@@ -38,7 +38,6 @@ class FourPointStack {
 
   /// Turning points of which no four in a row hold a cycle, in time order.
   const std::vector<Point>& residue() const { return points_; }
-  void clear() { points_.clear(); }
 
  private:
   template <typename Closed>

@@ -1,15 +1,12 @@
-/// Reader of a ledger for tables and reports, with the figures of damage and remaining life. A run may write to the
-/// ledger meanwhile.
+/// Reader of a ledger for tables and reports. A run may write to the ledger meanwhile.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "hammer_loads/life/database.h"
-#include "hammer_loads/life/ledger_run.h"
-#include "hammer_loads/util/checked.h"
+#include "hammer_loads/life/life_settings.h"
 
 namespace hammer_loads::life {
 
@@ -46,45 +43,21 @@ struct LedgerCounts {
 /// One state of the file, that at the first query, however long the reading takes.
 class LedgerReader {
  public:
-  /// One line when the file cannot be read or is no ledger.
-  static Checked<LedgerReader> open(const std::string& path);
+  /// A file that cannot be read or is no ledger is a problem().
+  explicit LedgerReader(const std::string& path);
 
   /// In the order in which they began.
   std::vector<LedgerEpoch> epochs();
   /// In the order in which they count.
   std::vector<LedgerRunInfo> runs();
-  LedgerCounts counts(const LedgerEpoch& epoch, const LedgerChannel& channel);
+  LedgerCounts counts(const LedgerEpoch& epoch, const CountedChannel& channel);
 
   /// One line after a failed query, whose result is then not to be used; else empty.
-  std::string problem() const;
+  std::string problem() const { return database_.good() ? "" : path_ + ": " + database_.problem(); }
 
  private:
-  explicit LedgerReader(const std::string& path);
-
   std::string path_;
-  std::unique_ptr<Database> database_;  ///< stays where it is: statements refer to it
+  Database database_;
 };
-
-struct PeriodFigures {
-  std::string day;  ///< date; `all` for the whole epoch
-  double hours{};
-  std::uint64_t blows{};
-  ChannelFigures figures;  ///< a day has the cycles that closed on it
-};
-
-struct ChannelReport {
-  std::string name, unit;
-  std::vector<PeriodFigures> periods;  ///< the whole epoch, then its days
-  SampleTally tally;
-  Extremes extremes;
-};
-
-struct EpochReport {
-  LedgerEpoch epoch;
-  std::vector<ChannelReport> channels;
-};
-
-/// Every epoch of the ledger. A problem of one line when it cannot be read whole.
-Checked<std::vector<EpochReport>> lifeReport(LedgerReader& reader);
 
 }  // namespace hammer_loads::life

@@ -39,11 +39,11 @@ class LedgerRun {
   /// Keeps a piece for the next add() or end(); does not touch the file.
   void keep(LifePiece piece);
   /// Marks the run as not to be counted: the next add() or end() removes it from the ledger.
-  void refuse(const std::string& reason) { id_.refusal = reason; }
-  /// Adds a piece, if there is one, and the waiting ones. Empty if all are written, otherwise one line.
-  std::optional<std::string> add(std::optional<LifePiece> piece = {});
-  /// Adds the last piece and what waits, and ends the run. After a problem it may be called again, with no piece.
-  std::optional<std::string> end(std::optional<LifePiece> last);
+  void refuse(const std::string& reason) { contradiction_ = "run " + id_.name + ": is not counted: " + reason; }
+  /// Adds a piece, unless it is empty, and the waiting ones. Empty if all are written, otherwise one line.
+  std::optional<std::string> add(LifePiece piece = {}) { return keep(std::move(piece)), write(false); }
+  /// Adds the last piece and what waits, and ends the run. After a problem it may be called again, with an empty piece.
+  std::optional<std::string> end(LifePiece last) { return keep(std::move(last)), write(true); }
 
   /// Reason why the run is not counted, one line; empty: it is. Until its end that can change: the ledger may have
   /// less.
@@ -52,9 +52,10 @@ class LedgerRun {
   /// Returns true if it is refused because all of it is in the ledger.
   bool known() const { return known_; }
   /// The refusal that refuse() gives; empty: none.
-  std::string contradiction() const;
-  /// Puts the whole run into a transaction that the caller began and ends. False: it is refused.
-  bool putWhole(Database& database, bool replace) { return put(database, true, replace); }
+  const std::string& contradiction() const { return contradiction_; }
+  /// Puts the run into a transaction that the caller began and ends. end: nothing follows. replace: it replaces runs
+  /// with the same samples. False: it is refused.
+  bool put(Database& database, bool end, bool replace);
   /// Pieces given but not written, those of one day added up.
   std::size_t waiting() const { return waiting_.size(); }
 
@@ -62,30 +63,26 @@ class LedgerRun {
   /// Part of the run that is in the ledger after a commit.
   struct Written {
     std::int64_t commits{};
-    std::size_t pieces{};  ///< number of the waiting pieces that this commit wrote
-    std::size_t marks{};
+    std::size_t pieces{}, marks{};  ///< numbers of those waiting that this commit wrote
     std::uint64_t messages{};
     bool isThat(const RunRow& row) const;
   };
 
   std::optional<std::string> write(bool end);
-  bool put(Database& database, bool end, bool replace);
-  std::string judge(Database& database, std::vector<RunRow>& like, bool end, bool replace);
-  std::string newlyShared(Database& database, const RunRow& own) const;
+  std::string judge(Database& database, const std::vector<RunRow>& like, bool end, bool replace);
   bool isOurs(const std::vector<RunRow>& rows);
   void note(const Written& commit);
-  std::vector<std::int64_t> newMarks() const;
 
   std::string path_;
   LedgerMachine machine_;
   RunId id_;
   std::vector<LifePiece> waiting_;
+  std::vector<std::int64_t> marks_;  ///< marks of pieces given, not known to be written
   std::uint64_t messages_{};         ///< messages of all pieces given
-  std::vector<std::int64_t> marks_;  ///< marks of all pieces given
   Written written_;                  ///< known to be in the ledger
   std::optional<Written> failed_;    ///< reported an error, and may be in the file all the same
   bool ended_{}, known_{};
-  std::string refusal_;
+  std::string refusal_, contradiction_;
 };
 
 /// Reason why the file cannot be written as a ledger, one line; empty when it can. Changes nothing. Waits up to

@@ -90,13 +90,6 @@ std::int64_t valueOf(Database& database, const char* sql) {
 
 enum Column { kId, kName, kLeast, kGreatest, kClasses, kKneeRange, kKneeCycles, kSlope, kSlopeBelow, kSensitivity };
 
-/// Nothing when the row has no curve, or none that SnCurve takes.
-std::optional<SnCurve> curveOf(const Database::Statement& row) {
-  if (row.isNull(kKneeRange)) return std::nullopt;
-  return SnCurve::make(row.number(kKneeRange), row.number(kKneeCycles), row.number(kSlope), row.number(kSlopeBelow))
-      .value;
-}
-
 /// Values that a run writes into some columns of a table: SQL, in which $ is a column, and words.
 struct Rule {
   const char* from;
@@ -138,7 +131,10 @@ const Rule kRules[] = {{"epochs", {"machine"}, kIsText, "a text"},
                         {"steps"},
                         "typeof($) = 'integer' AND $ BETWEEN 1 AND classes - 1 - low",
                         "an integer in [1, classes - 1 - low]"},
-                       {"cycles", {"count"}, kIsCount, kCount},
+                       {"cycles",
+                        {"count"},
+                        "typeof($) = 'integer' AND $ BETWEEN 1 AND 4611686018427387904",
+                        "an integer in [1, 4611686018427387904]"},
                        {"residues JOIN channels USING(channel)",
                         {"class"},
                         "typeof($) = 'integer' AND $ BETWEEN 0 AND classes - 1",
@@ -149,8 +145,8 @@ void check(Database& database, const Rule& rule, const std::string& column) {
   std::string sql = rule.sql;
   for (std::size_t at = sql.find('$'); at != std::string::npos; at = sql.find('$')) sql.replace(at, 1, column);
   const std::string from = rule.from;
-  const std::string query = "SELECT quote(" + column + ") FROM " + from + " WHERE (" + sql + ") IS NOT TRUE LIMIT 1";
-  Database::Statement wrong(database, query.c_str());
+  Database::Statement wrong(database,
+                            "SELECT quote(" + column + ") FROM " + from + " WHERE (" + sql + ") IS NOT TRUE LIMIT 1");
   if (wrong.step())
     database.fail("damaged: " + from.substr(0, from.find(' ')) + ": " + column + " " + wrong.text(0).substr(0, 60) +
                   ", must be " + rule.words);
@@ -186,34 +182,31 @@ void beginAsLedger(Database& database) {
   // A commit must outlast a power cut, the journal's removal included.
   database.run("PRAGMA synchronous = EXTRA; PRAGMA foreign_keys = ON; BEGIN IMMEDIATE");
   if (isLedger(database)) return;
-  database.run((std::string(kTables) + kColumnsTable).c_str());
-  insert(columnTexts(std::string(kTables) + kColumnsTable), database);
-  database.run(("PRAGMA application_id = " + std::to_string(kApplication)).c_str());
-  database.run(("PRAGMA user_version = " + std::to_string(kLedgerVersion)).c_str());
+  const std::string tables = std::string(kTables) + kColumnsTable;
+  database.run(tables + "PRAGMA application_id = " + std::to_string(kApplication) +
+               "; PRAGMA user_version = " + std::to_string(kLedgerVersion));
+  describeColumns(tables, database);
 }
 
-void beginReading(Database& database) {
-  database.run("BEGIN");
-  if (!isLedger(database)) database.fail("holds no ledger");
-  checkLedger(database);
-}
-
-std::vector<LedgerChannel> channelsOf(Database& database, std::int64_t epoch) {
-  Database::Statement rows(database,
-                           "SELECT channel, name, least, greatest, classes, sn_knee_range, sn_knee_cycles, sn_slope, "
-                           "sn_slope_below, mean_stress_sensitivity FROM channels WHERE epoch = ?1 ORDER BY channel");
-  std::vector<LedgerChannel> channels;
-  rows.with(epoch);
-  while (rows.step()) {
-    const Checked<LoadGrid> grid = LoadGrid::make(rows.number(kLeast), rows.number(kGreatest), rows.integer(kClasses));
-    const std::optional<SnCurve> curve = curveOf(rows);
-    if (!grid.value || curve.has_value() == rows.isNull(kKneeRange)) {
-      database.fail("damaged: channel " + rows.text(kName) + " has no possible grid or curve");
+std::vector<CountedChannel> channelsOf(Database& database, std::int64_t epoch) {
+  Database::Statement row(database,
+                          "SELECT channel, name, least, greatest, classes, sn_knee_range, sn_knee_cycles, sn_slope, "
+                          "sn_slope_below, mean_stress_sensitivity FROM channels WHERE epoch = ?1 ORDER BY channel",
+                          epoch);
+  std::vector<CountedChannel> channels;
+  while (row.step()) {
+    const Checked<LoadGrid> grid = LoadGrid::make(row.number(kLeast), row.number(kGreatest), row.integer(kClasses));
+    Checked<SnCurve> curve;
+    if (!row.isNull(kKneeRange))
+      curve =
+          SnCurve::make(row.number(kKneeRange), row.number(kKneeCycles), row.number(kSlope), row.number(kSlopeBelow));
+    if (!grid.value || !curve.problems.empty()) {
+      database.fail("damaged: channel " + row.text(kName) + " has no possible grid or curve");
       break;
     }
     std::optional<FkmMeanStress> mean;
-    if (!rows.isNull(kSensitivity)) mean = FkmMeanStress{rows.number(kSensitivity)};
-    channels.push_back({rows.text(kName), *grid.value, curve, mean, rows.integer(kId)});
+    if (!row.isNull(kSensitivity)) mean = FkmMeanStress{row.number(kSensitivity)};
+    channels.push_back({row.text(kName), *grid.value, {}, {}, curve.value, mean, row.integer(kId)});
   }
   return channels;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace hammer_loads::life {
@@ -20,65 +21,48 @@ void LifePiece::advance(const LifePiece& since) {
   for (std::size_t i = 0; i < counts.size(); ++i) counts[i].advance(since.counts[i]);
 }
 
-Checked<LifeRecorder> LifeRecorder::make(const LifeSettings& settings, const std::vector<std::string>& inputs) {
-  Checked<LifeRecorder> result;
-  LifeRecorder recorder;
-  recorder.period_ = settings.period;
-  const auto addTerm = [&](const std::string& channel, double factor) {
-    const auto found = std::find(inputs.begin(), inputs.end(), channel);
-    if (found == inputs.end()) {
-      result.problems.push_back(channel + ": is no channel of this machine");
-    } else {
-      recorder.terms_.push_back({static_cast<std::size_t>(found - inputs.begin()), factor});
-    }
-  };
-  const auto addCounter = [&](const std::string& name, const LoadGrid& grid, std::size_t first_term) {
-    recorder.names_.push_back(countedName(name, settings.bandwidth));
-    recorder.counters_.emplace_back(grid);
-    recorder.sums_.push_back({first_term, recorder.terms_.size()});
+LifeRecorder::LifeRecorder(const LifeSettings& settings, const std::vector<std::string>& inputs)
+    : period_(settings.period) {
+  const auto termOf = [&](const Influence& influence) {
+    const auto found = std::find(inputs.begin(), inputs.end(), influence.channel);
+    if (found == inputs.end()) throw std::invalid_argument(influence.channel + ": is no channel of this machine");
+    return Term{static_cast<std::size_t>(found - inputs.begin()), influence.factor};
   };
   for (const CountedChannel& channel : settings.channels) {
-    const std::size_t first = recorder.terms_.size();
-    addTerm(channel.name, 1.0);
-    addCounter(channel.name, channel.grid, first);
+    names_.push_back(countedName(channel.name, settings.bandwidth));
+    Counted counted{CycleCounter(channel.grid), {}};
+    for (const Influence& influence : channel.influences) counted.terms.push_back(termOf(influence));
+    if (channel.influences.empty()) counted.terms.push_back(termOf({channel.name, 1.0}));
+    counted_.push_back(std::move(counted));
   }
-  for (const HotSpot& spot : settings.hot_spots) {
-    const std::size_t first = recorder.terms_.size();
-    for (const Influence& influence : spot.influences) addTerm(influence.channel, influence.factor);
-    addCounter(hotSpotChannel(spot), spot.grid, first);
-  }
-  recorder.extremes_.resize(recorder.counters_.size());
-  if (result.problems.empty()) result.value.emplace(std::move(recorder));
-  return result;
 }
 
-double LifeRecorder::valueOf(std::size_t counter, const double* values) const noexcept {
+double LifeRecorder::Counted::valueOf(const double* values) const noexcept {
   double value = 0.0;
-  for (std::size_t t = sums_[counter].begin; t < sums_[counter].end; ++t)
-    value += terms_[t].factor * values[terms_[t].input];
+  for (const Term& term : terms) value += term.factor * values[term.input];
   return value;
 }
 
 /// Errors of samples are independent between the loads of one instant; the sizes of errors by constants add at most.
-LoadError LifeRecorder::errorOf(std::size_t counter, const double* deviations, const double* common) const noexcept {
+LoadError LifeRecorder::Counted::errorOf(const double* deviations, const double* common) const noexcept {
   double variance = 0.0, alike = 0.0;
-  for (std::size_t t = sums_[counter].begin; t < sums_[counter].end; ++t) {
-    const LoadError error = LoadError::at(terms_[t].input, deviations, common);
-    variance += terms_[t].factor * terms_[t].factor * error.own * error.own;
-    alike += std::abs(terms_[t].factor) * error.common;
+  for (const Term& term : terms) {
+    const LoadError error = LoadError::at(term.input, deviations, common);
+    variance += term.factor * term.factor * error.own * error.own;
+    alike += std::abs(term.factor) * error.common;
   }
   return {std::sqrt(variance), alike};
 }
 
 void LifeRecorder::sample(std::int64_t stamp, const double* values, const double* deviations,
                           const double* common) noexcept {
-  for (std::size_t i = 0; i < counters_.size(); ++i) {
-    const double value = valueOf(i, values);
-    counters_[i].add(value);
+  for (Counted& counted : counted_) {
+    const double value = counted.valueOf(values);
+    counted.counter.add(value);
     if (!CycleCounter::isLoad(value)) continue;
-    const LoadError error = errorOf(i, deviations, common);
-    counters_[i].addDeviation(error.deviation());
-    extremes_[i].add(value, error);
+    const LoadError error = counted.errorOf(deviations, common);
+    counted.counter.addDeviation(error.deviation());
+    counted.extremes.add(value, error);
   }
   lastUntil(stamp);
   if (!piece_begun_) {
@@ -89,11 +73,11 @@ void LifeRecorder::sample(std::int64_t stamp, const double* values, const double
 
 void LifeRecorder::between(std::int64_t instant, const double* values, const double* deviations,
                            const double* common) noexcept {
-  for (std::size_t i = 0; i < counters_.size(); ++i) {
-    const double value = valueOf(i, values);
+  for (Counted& counted : counted_) {
+    const double value = counted.valueOf(values);
     if (std::isnan(value)) continue;
-    counters_[i].add(value);
-    if (CycleCounter::isLoad(value)) extremes_[i].add(value, errorOf(i, deviations, common));
+    counted.counter.add(value);
+    if (CycleCounter::isLoad(value)) counted.extremes.add(value, counted.errorOf(deviations, common));
   }
   lastUntil(instant);
 }
@@ -106,17 +90,17 @@ void LifeRecorder::lastUntil(std::int64_t stamp) noexcept {
 
 void LifeRecorder::turn() noexcept {
   ++turns_;
-  for (std::size_t i = 0; i < counters_.size(); ++i) {
-    const LoadError error = extremes_[i].ofRange();
-    counters_[i].addRange(extremes_[i].range(), error.own, error.common);
-    extremes_[i] = {};
+  for (Counted& counted : counted_) {
+    const LoadError error = counted.extremes.ofRange();
+    counted.counter.addRange(counted.extremes.range(), error.own, error.common);
+    counted.extremes = {};
   }
 }
 
 void LifeRecorder::gap() noexcept {
   if (!contiguous_) return;  // before the first sample, or of one gap twice
   contiguous_ = false;
-  for (CycleCounter& counter : counters_) counter.gap();
+  for (Counted& counted : counted_) counted.counter.gap();
 }
 
 bool LifeRecorder::due(std::int64_t stamp) const noexcept {
@@ -129,8 +113,7 @@ LifePiece LifeRecorder::take() {
   piece.stamp = last_;
   piece.duration = std::exchange(duration_, 0);
   piece.turns = std::exchange(turns_, 0);
-  piece.counts.reserve(counters_.size());
-  for (CycleCounter& counter : counters_) piece.counts.push_back(counter.take());
+  for (Counted& counted : counted_) piece.counts.push_back(counted.counter.take());
   piece_begun_ = false;
   return piece;
 }

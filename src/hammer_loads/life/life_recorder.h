@@ -8,7 +8,6 @@
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/life/turn_loads.h"
-#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads::life {
 
@@ -19,7 +18,7 @@ struct LifePiece {
   std::uint64_t turns{};            ///< blows
   std::uint64_t messages{};         ///< messages of the crank, refused ones included
   std::vector<std::int64_t> marks;  ///< marks of some of them, by which a part of a recording is recognised
-  std::vector<CycleCount> counts;   ///< counted channels, then hot spots, in the order of channels()
+  std::vector<CycleCount> counts;   ///< in the order of channels()
 
   /// Extends the piece by a later one of the same run.
   void advance(const LifePiece& since);
@@ -34,8 +33,9 @@ struct LifePiece {
 /// recorder.gap() where samples are missing or time ran back, recorder.turn() at each blow, take() at the end.
 class LifeRecorder {
  public:
-  /// `inputs`: names of the values that sample() will get. A problem for each channel that is not among them.
-  static Checked<LifeRecorder> make(const LifeSettings& settings, const std::vector<std::string>& inputs);
+  /// `inputs`: names of the values that sample() will get. Throws std::invalid_argument for a channel that is not among
+  /// them.
+  LifeRecorder(const LifeSettings& settings, const std::vector<std::string>& inputs);
 
   /// Values of the inputs at an instant [ns], in their order, their standard deviations and the part of these that
   /// constants make; NaN: none, and the last two may be null. No allocation.
@@ -55,33 +55,30 @@ class LifeRecorder {
   /// Ends the piece. Allocates, and takes some ms for many cycles: not for the hot path.
   LifePiece take();
 
-  /// Names of what is counted, hot spots as hotSpotChannel(), and their grids.
+  /// Names under which the channels are counted, and their grids.
   const std::vector<std::string>& channels() const { return names_; }
-  const LoadGrid& grid(std::size_t channel) const { return counters_[channel].grid(); }
+  const LoadGrid& grid(std::size_t channel) const { return counted_[channel].counter.grid(); }
   /// Since the last take().
-  const SampleTally& tally(std::size_t channel) const { return counters_[channel].tally(); }
+  const SampleTally& tally(std::size_t channel) const { return counted_[channel].counter.tally(); }
 
  private:
-  LifeRecorder() = default;
-
   struct Term {
     std::size_t input{};
     double factor{};
   };
-  /// A counter's value: a sum of terms, one of factor 1 for a channel.
-  struct Sum {
-    std::size_t begin{}, end{};  ///< in terms_
+  struct Counted {
+    double valueOf(const double* values) const noexcept;
+    LoadError errorOf(const double* deviations, const double* common) const noexcept;
+
+    CycleCounter counter;
+    std::vector<Term> terms;  ///< terms of the counted sum; one of factor 1 for a load
+    TurnExtremes extremes{};  ///< extremes of the present revolution
   };
 
-  double valueOf(std::size_t counter, const double* values) const noexcept;
-  LoadError errorOf(std::size_t counter, const double* deviations, const double* common) const noexcept;
   void lastUntil(std::int64_t stamp) noexcept;
 
   std::vector<std::string> names_;
-  std::vector<CycleCounter> counters_;
-  std::vector<TurnExtremes> extremes_;  ///< extremes of the present revolution, of each counter
-  std::vector<Sum> sums_;
-  std::vector<Term> terms_;
+  std::vector<Counted> counted_;
   std::int64_t period_{};
   std::int64_t piece_start_{}, last_{};  ///< stamps [ns]
   bool piece_begun_{}, contiguous_{};

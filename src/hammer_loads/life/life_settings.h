@@ -16,39 +16,32 @@
 
 namespace hammer_loads::life {
 
-/// A load channel, named as the topic and field that publish it.
-struct CountedChannel {
-  std::string name;  ///< such as section_loads/NAME/torque_y
-  LoadGrid grid;
-  std::string key{};  ///< short name in the parameter file
-};
-
 /// One load's part in a stress.
 struct Influence {
   std::string channel;  ///< any channel in use, counted or not
   double factor{};      ///< [MPa per unit of the channel]
 };
 
-/// A place whose stress is a sum of loads, formed at each sample and counted as a channel `stress/NAME`.
-struct HotSpot {
-  std::string name;
-  std::vector<Influence> influences;
-  LoadGrid grid;                             ///< [MPa]
-  std::optional<SnCurve> curve;              ///< without one: damage-equivalent stress ranges alone
-  std::optional<FkmMeanStress> mean_stress;  ///< none: the curve is used as it is
+/// A load, named as the topic and field that publish it; or the stress of a hot spot, `stress/NAME`, a sum of loads
+/// that is formed at each sample.
+struct CountedChannel {
+  std::string name;                            ///< such as section_loads/NAME/torque_y
+  LoadGrid grid;                               ///< in the channel's unit
+  std::string key{};                           ///< short name in the parameter file
+  std::vector<Influence> influences{};         ///< loads of a hot spot; empty: the channel is a load itself
+  std::optional<SnCurve> curve{};              ///< without one: damage-equivalent ranges alone
+  std::optional<FkmMeanStress> mean_stress{};  ///< none: the curve is used as it is
+  std::int64_t id{};                           ///< number in the ledger; 0: it is not from one
 };
 
 struct LifeSettings {
-  std::vector<CountedChannel> channels;
-  std::vector<HotSpot> hot_spots;
-  std::int64_t period{};                ///< period of ~load_cycles and the ledger [ns], > 0
-  double equivalent_cycles_per_hour{};  ///< reference for damage-equivalent loads, > 0
-  std::string ledger;                   ///< file; empty: none is kept
-  double bandwidth{};                   ///< frequency up to which the loads are counted [Hz]; 0: all
+  std::vector<CountedChannel> channels;  ///< loads, then hot spots
+  std::int64_t period{};                 ///< period of ~load_cycles and the ledger [ns], > 0
+  double equivalent_cycles_per_hour{};   ///< reference for damage-equivalent loads, > 0
+  std::string ledger;                    ///< file; empty: none is kept
+  double bandwidth{};                    ///< frequency up to which the loads are counted [Hz]; 0: all
 };
 
-/// `stress/NAME`.
-std::string hotSpotChannel(const HotSpot& spot);
 /// Name under which a channel is counted: with a bandwidth `NAME_below_FHz`, so that counts of different bands never
 /// add.
 std::string countedName(const std::string& channel, double bandwidth);
@@ -65,21 +58,11 @@ inline std::string unitOf(const std::string& channel) {
   return has("energy") ? "J" : "-";
 }
 
-struct LedgerChannel {
-  std::string name;
-  LoadGrid grid;
-  std::optional<SnCurve> curve;
-  std::optional<FkmMeanStress> mean_stress;
-  std::int64_t id{};  ///< number in the ledger; 0: it is not from one
-
-  bool hasCountsOf(const LedgerChannel& o) const { return name == o.name && grid == o.grid; }
-};
-
 /// The machine of the counts. Another identity or other channels or grids begin a new epoch: counts of different
 /// machines never mix. Curves and equivalent cycles only judge them: those of the last run hold.
 struct LedgerMachine {
   std::string identity;  ///< identity of hammer and boom, such as a hash of their parameters; no path, host or time
-  std::vector<LedgerChannel> channels;
+  std::vector<CountedChannel> channels;
   double equivalent_cycles_per_hour{};
 };
 
@@ -90,7 +73,6 @@ LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& ide
 struct RunId {
   std::string name;          ///< equal whenever this recording is counted, with whatever sensor parameters
   std::string parameters{};  ///< a digest of those of sensors; empty: not known
-  std::string refusal{};     ///< reason why it is not to be counted, one line; empty: it is
 
   RunId(const char* of) : name(of) {}
   RunId(std::string of) : name(std::move(of)) {}
@@ -110,7 +92,7 @@ struct ChannelFigures {
 };
 
 /// The figures of a count over some hours.
-ChannelFigures figuresOf(const CycleCount& count, const LedgerChannel& channel, double hours,
+ChannelFigures figuresOf(const CycleCount& count, const CountedChannel& channel, double hours,
                          double equivalent_cycles_per_hour);
 
 }  // namespace hammer_loads::life

@@ -5,15 +5,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
+
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::life {
 
 /// Standard deviations, in the load's unit: of this sample alone, and of constants, the same in all samples; NaN: not
 /// known.
 struct LoadError {
-  double own{std::numeric_limits<double>::quiet_NaN()}, common{std::numeric_limits<double>::quiet_NaN()};
+  double own{kNaN}, common{kNaN};
 
   static LoadError of(double deviation, double common) noexcept {
     return {std::sqrt(std::max(0.0, deviation * deviation - common * common)), common};
@@ -28,7 +29,7 @@ struct LoadError {
 /// Least and largest value of a turn with their errors, and the bounds by the deviations of all samples: where a load
 /// is uncertain, its true extreme may exceed those of the values.
 struct TurnExtremes {
-  double least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
+  double least{kInfinity}, greatest{-kInfinity};
   double lowest{least}, highest{greatest};  ///< by one own deviation of any sample
   LoadError of_least, of_greatest;
 
@@ -47,15 +48,23 @@ struct TurnExtremes {
   }
 };
 
-/// One value per channel each; NaN where the channel had no value in the turn.
+/// Least or largest load of one channel over a turn.
+struct LoadExtreme {
+  double value{kNaN};
+  std::int64_t instant{};  ///< the first time that it was reached [ns]
+  LoadError error;         ///< error of the sample, or of the one beside it
+};
+
+/// Loads of one channel over a turn; NaN where it had no value.
+struct ChannelTurn {
+  LoadExtreme minimum, maximum;  ///< extremes of samples and of the instants between them
+  double mean{kNaN};             ///< over time
+};
+
 struct TurnLoads {
-  std::int64_t start{}, end{};           ///< instants of the blows [ns]
-  bool whole{};                          ///< true if it began with a blow; else with the first sample
-  std::vector<double> minimum, maximum;  ///< extremes of samples and of the instants between them
-  std::vector<std::int64_t> minimum_instant, maximum_instant;  ///< the first time that it was reached [ns]
-  std::vector<LoadError> of_minimum, of_maximum;               ///< by the sample or that beside it
-  std::vector<double> mean;                                    ///< over time
-  std::vector<std::uint64_t> skipped;                          ///< values of the turn that were no number
+  std::int64_t start{}, end{};        ///< instants of the blows [ns]
+  bool whole{};                       ///< true if it began with a blow; else with the first sample
+  std::vector<ChannelTurn> channels;  ///< in the order of the values
 };
 
 /// Takes every sample and every extreme between samples, in time order. All memory is allocated at the start.
@@ -70,14 +79,7 @@ class TurnLoadsRecorder {
   /// counts for the extremes, but not for the mean.
   /// Deviations as LifeRecorder::sample().
   void add(std::int64_t instant, const double* values, const double* deviations = nullptr,
-           const double* common = nullptr) noexcept {
-    take(instant, values, deviations, common, true);
-  }
-  /// Takes values at an instant between samples; NaN: not known there, which does not count as a missing number.
-  void between(std::int64_t instant, const double* values, const double* deviations = nullptr,
-               const double* common = nullptr) noexcept {
-    take(instant, values, deviations, common, false);
-  }
+           const double* common = nullptr) noexcept;
   /// The blow at `instant` ends the turn. Valid until the next call.
   const TurnLoads& endTurn(std::int64_t instant) noexcept;
   /// Samples are missing, or time ran back: forgets the turn begun. The next one begins with its first value.
@@ -89,8 +91,6 @@ class TurnLoadsRecorder {
     double first_value{}, last_value{}, sum{};
     bool begun{};
   };
-  void take(std::int64_t instant, const double* values, const double* deviations, const double* common,
-            bool sampled) noexcept;
   void clear() noexcept;
 
   TurnLoads turn_, result_;

@@ -1,7 +1,6 @@
 #include "hammer_loads/pipeline/life_follower.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "hammer_loads/pipeline/hull_deviation.h"
@@ -30,12 +29,12 @@ LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& s
     : pipeline_(&pipeline),
       boom_(pipeline.boom() ? &pipeline.boom()->boom() : nullptr),
       channels_(channelNames(boom_)),
-      recorder_(life::LifeRecorder::make(settings, channels_).value.value()),
+      recorder_(settings, channels_),
       turn_(channels_.size()),
       values_(channels_.size()),
       deviations_(channels_.size()),
       common_(channels_.size()),
-      between_(channels_.size(), std::numeric_limits<double>::quiet_NaN()),
+      between_(channels_.size(), kNaN),
       deviations_there_(between_),
       common_there_(between_) {
   if (settings.bandwidth > 0.0) means_.emplace(pipeline, settings.bandwidth, channels_.size());
@@ -113,7 +112,7 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
 
 void LifeFollower::countBetween(StampNs stamp) noexcept {
   if (!means_) recorder_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
-  turn_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
+  turn_.add(stamp, between_.data(), deviations_there_.data(), common_there_.data());
 }
 
 /// Load between samples with an elastic rod: the extremes of its path, if the path reaches the second sample within the

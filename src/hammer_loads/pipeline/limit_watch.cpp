@@ -16,7 +16,8 @@ void LastHour::add(double time, double amount) noexcept {
 
 double LastHour::sum() const noexcept { return std::accumulate(minutes_.begin(), minutes_.end(), 0.0); }
 
-LimitWatch::LimitWatch(std::vector<Limit> limits, std::vector<life::LedgerChannel> channels, const MisuseCounts& misuse)
+LimitWatch::LimitWatch(std::vector<Limit> limits, std::vector<life::CountedChannel> channels,
+                       const MisuseCounts& misuse)
     : limits_(std::move(limits)),
       states_(limits_.size()),
       channel_(limits_.size()),
@@ -37,7 +38,7 @@ void LimitWatch::followDamage(const life::LifePiece& counted) {
     for (Damage& damage : damage_) damage.total = {};
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (limits_[i].quantity != LimitedQuantity::kDamage) continue;
-    const life::LedgerChannel& channel = channels_[channel_[i]];
+    const life::CountedChannel& channel = channels_[channel_[i]];
     const life::CycleCount& count = counted.counts[channel_[i]];
     const life::Figure total =
         life::damage(life::rangesAndMeans(count), *channel.curve, channel.mean_stress, life::rangeDeviation(count));

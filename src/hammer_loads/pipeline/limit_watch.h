@@ -42,7 +42,7 @@ class LastHour {
 class LimitWatch {
  public:
   /// channels: of the counts that judge() gets. misuse: counted before the first turn.
-  LimitWatch(std::vector<Limit> limits, std::vector<life::LedgerChannel> channels, const MisuseCounts& misuse);
+  LimitWatch(std::vector<Limit> limits, std::vector<life::CountedChannel> channels, const MisuseCounts& misuse);
 
   /// Ends a revolution. counted: the load cycles so far, as of the last period. Returns true if the alarms are to be
   /// published: at the first revolution and at each where an alarm begins, lasts or ends.
@@ -67,7 +67,7 @@ class LimitWatch {
   std::vector<LimitState> states_;
   std::vector<std::size_t> channel_;  ///< index in channels_ for each limit of damage
   std::vector<Damage> damage_;        ///< damage for each limit
-  std::vector<life::LedgerChannel> channels_;
+  std::vector<life::CountedChannel> channels_;
   MisuseCounts before_, misuse_;
   LastHour blank_;
   std::uint64_t counted_until_{};  ///< duration of the count that damage_ is of [ns]

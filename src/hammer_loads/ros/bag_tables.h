@@ -37,7 +37,7 @@ class LifeTables {
   void writeBudget();
   void write(const BudgetFigure& figure);
   void writeReference(const ReferenceComparison& comparison);
-  void writeCount(std::size_t number, const ChannelCycles& message, const life::LedgerChannel& channel);
+  void writeCount(std::size_t number, const ChannelCycles& message, const life::CountedChannel& channel);
 
   struct RaisedAlarm {
     Alarm alarm;

@@ -77,14 +77,15 @@ void fillTurnLoads(const TurnEnd& end, const life::TurnLoads& turn, TurnLoads& m
   message.turn = end.turn;
   message.whole = turn.whole;
   message.start = timeOf(turn.start);
-  std::copy(turn.minimum.begin(), turn.minimum.end(), message.minimum.begin());
-  std::copy(turn.maximum.begin(), turn.maximum.end(), message.maximum.begin());
-  std::copy(turn.mean.begin(), turn.mean.end(), message.mean.begin());
-  for (std::size_t i = 0; i < turn.of_minimum.size(); ++i) {
-    message.minimum_std[i] = turn.of_minimum[i].deviation();
-    message.maximum_std[i] = turn.of_maximum[i].deviation();
-    message.minimum_systematic_std[i] = turn.of_minimum[i].common;
-    message.maximum_systematic_std[i] = turn.of_maximum[i].common;
+  for (std::size_t i = 0; i < turn.channels.size(); ++i) {
+    const auto& [minimum, maximum, mean] = turn.channels[i];
+    message.minimum[i] = minimum.value;
+    message.maximum[i] = maximum.value;
+    message.mean[i] = mean;
+    message.minimum_std[i] = minimum.error.deviation();
+    message.maximum_std[i] = maximum.error.deviation();
+    message.minimum_systematic_std[i] = minimum.error.common;
+    message.maximum_systematic_std[i] = maximum.error.common;
   }
 }
 
@@ -100,7 +101,7 @@ void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::Led
   message.slope.assign(std::begin(life::kSlopes), std::end(life::kSlopes));
   message.channel.resize(machine.channels.size());
   for (std::size_t i = 0; i < machine.channels.size(); ++i) {
-    const life::LedgerChannel& channel = machine.channels[i];
+    const life::CountedChannel& channel = machine.channels[i];
     message.channel[i].name = channel.name;
     message.channel[i].unit = life::unitOf(channel.name);
     fillCount(total.counts[i], message.channel[i]);
@@ -141,16 +142,6 @@ void addBeyond(std::uint64_t samples, const std::string& channel, const std::str
 
 }  // namespace
 
-std::vector<LifeFlow::ScaleKeys> LifeFlow::scaleKeys(const life::LifeSettings& settings) {
-  std::vector<ScaleKeys> keys;
-  const auto add = [&](const std::string& name, const char* unit) {
-    keys.push_back({name + "_full_scale_least" + unit, name + "_full_scale_greatest" + unit});
-  };
-  for (const life::CountedChannel& channel : settings.channels) add(channel.key, "");
-  for (const life::HotSpot& spot : settings.hot_spots) add(spot.name, "_MPa");
-  return keys;
-}
-
 LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOutputs& outputs, life::PieceSink* pieces)
     : pipeline_(pipeline),
       follower_(pipeline, settings.life),
@@ -159,7 +150,6 @@ LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOut
       machine_(life::ledgerMachine(settings.life, digestOf(settings.machine))),
       parameters_(sensorParameters(settings.yaml)),
       counts_before_(pipeline.counts()),
-      scale_keys_(scaleKeys(settings.life)),
       period_(settings.life.period) {
   prepareTurnLoads(follower_.channels(), outputs_.turn_loads.message);
   marks_.reserve(static_cast<std::size_t>(period_ / kMarkEvery) + 64);
@@ -170,8 +160,11 @@ void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& r
   begun_ = true;
   record_time_ = record_time;
   if (follower_.due()) {
-    life::LifePiece piece = sendCycles(record_time);
-    if (pieces_ != nullptr) keep(std::move(piece));
+    life::LifePiece piece = takePiece();
+    if (named_)
+      pieces_->add(piece);
+    else if (pieces_ != nullptr)
+      unnamed_.push_back(std::move(piece));
   }
   if (pieces_ != nullptr) mark(message);
   follower_.follow();
@@ -198,13 +191,16 @@ void LifeFlow::name() {
   unnamed_.clear();
 }
 
-/// With the messages and marks that it belongs to.
-void LifeFlow::keep(life::LifePiece piece) {
+/// Ends the piece and publishes the counts; with the messages and marks that belong to it.
+life::LifePiece LifeFlow::takePiece() {
+  life::LifePiece piece = follower_.take();
   piece.messages = messages_ - std::exchange(messages_kept_, messages_);
-  piece.marks.assign(marks_.begin(), marks_.end());
+  piece.marks = marks_;
   marks_.clear();
-  if (!named_) return unnamed_.push_back(std::move(piece));
-  pieces_->add(piece);
+  if (follower_.since())
+    outputs_.load_cycles.send(
+        record_time_, [&](LoadCycles& m) { fillLoadCycles(*follower_.since(), *follower_.total(), machine_, m); });
+  return piece;
 }
 
 /// Reason why most of the readings cannot be those of this machine with these parameters; empty: they can.
@@ -222,27 +218,17 @@ void LifeFlow::sendTurn(const TurnEnd& end, const ros::Time& record_time) {
 }
 
 void LifeFlow::finish() {
-  life::LifePiece last = sendCycles(record_time_);
+  const life::LifePiece last = takePiece();
   if (pieces_ == nullptr) return;
   name();
-  last.messages = messages_ - std::exchange(messages_kept_, messages_);
-  last.marks = std::move(marks_);
   const std::string reason = contradiction();
   if (!reason.empty()) pieces_->refuse(reason);
   pieces_->end(last);
 }
 
-life::LifePiece LifeFlow::sendCycles(const ros::Time& record_time) {
-  life::LifePiece piece = follower_.take();
-  if (!follower_.since()) return piece;
-  outputs_.load_cycles.send(
-      record_time, [&](LoadCycles& m) { fillLoadCycles(*follower_.since(), *follower_.total(), machine_, m); });
-  return piece;
-}
-
 std::vector<life::SampleTally> LifeFlow::tallies() const {
   std::vector<life::SampleTally> tallies;
-  for (std::size_t i = 0; i < scale_keys_.size(); ++i) {
+  for (std::size_t i = 0; i < machine_.channels.size(); ++i) {
     tallies.push_back(follower_.recorder().tally(i));
     if (follower_.total()) tallies.back().add(follower_.total()->counts[i].tally);
   }
@@ -253,9 +239,10 @@ std::vector<Warning> LifeFlow::warnings() const {
   std::string beyond;
   const std::vector<life::SampleTally> all = tallies();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string& channel = follower_.recorder().channels()[i];
-    addBeyond(all[i].below, channel, scale_keys_[i].least, beyond);
-    addBeyond(all[i].above, channel, scale_keys_[i].greatest, beyond);
+    const life::CountedChannel& channel = machine_.channels[i];
+    const std::string scale = channel.key + "_full_scale_", unit = channel.influences.empty() ? "" : "_MPa";
+    addBeyond(all[i].below, channel.name, scale + "least" + unit, beyond);
+    addBeyond(all[i].above, channel.name, scale + "greatest" + unit, beyond);
   }
   if (beyond.empty()) return {};
   return {{"full scale", "load cycles: loads beyond their full scale count at its end: " + beyond, true}};

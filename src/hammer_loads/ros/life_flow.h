@@ -40,10 +40,9 @@ class LifeFlow {
   std::vector<Warning> warnings() const;
 
  private:
-  life::LifePiece sendCycles(const ros::Time& record_time);
   void mark(const sensor_msgs::JointState& message);
   void name();
-  void keep(life::LifePiece piece);
+  life::LifePiece takePiece();
   std::string contradiction() const;
 
   const Pipeline& pipeline_;
@@ -53,13 +52,6 @@ class LifeFlow {
   life::LedgerMachine machine_;
   std::string parameters_;      ///< digest of those of the sensors
   SampleCounts counts_before_;  ///< counts go on from run to run
-  /// Keys of one channel's full scale.
-  struct ScaleKeys {
-    std::string least, greatest;
-  };
-  static std::vector<ScaleKeys> scaleKeys(const life::LifeSettings& settings);
-
-  std::vector<ScaleKeys> scale_keys_;
   std::int64_t period_;
   ros::Time record_time_;  ///< record time of the last message
   bool begun_{};

@@ -86,7 +86,7 @@ void LifeTables::writeReference(const ReferenceComparison& comparison) {
   }
 }
 
-void LifeTables::writeCount(std::size_t number, const ChannelCycles& m, const life::LedgerChannel& channel) {
+void LifeTables::writeCount(std::size_t number, const ChannelCycles& m, const life::CountedChannel& channel) {
   const auto ofCurve = [&](double (life::SnCurve::*figure)() const) {
     return channel.curve ? ((*channel.curve).*figure)() : kNaN;
   };

@@ -36,11 +36,11 @@ std::vector<Limit> readLimits(ParameterReader& reader, const life::LifeSettings&
                              Limit{"hold_down_force", "N", LimitedQuantity::kHoldDownForce},
                              Limit{"blank_firing_per_hour", "1/h", LimitedQuantity::kBlankFiring}})
     readLimit(reader, limit, limits);
-  for (const life::HotSpot& spot : life.hot_spots)
-    if (spot.curve)
+  for (const life::CountedChannel& channel : life.channels)
+    if (channel.curve)
       readLimit(reader,
-                {spot.name + "_damage_per_hour", "1/h", LimitedQuantity::kDamage, false, kNaN, kNaN,
-                 life::countedName(hotSpotChannel(spot), life.bandwidth)},
+                {channel.key + "_damage_per_hour", "1/h", LimitedQuantity::kDamage, false, kNaN, kNaN,
+                 life::countedName(channel.name, life.bandwidth)},
                 limits);
   return limits;
 }

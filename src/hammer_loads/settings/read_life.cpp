@@ -75,7 +75,7 @@ std::optional<life::FkmMeanStress> readMeanStress(ParameterReader& reader, const
 }
 
 void readHotSpot(ParameterReader& reader, const std::string& name, const std::vector<NamedChannel>& channels,
-                 std::int64_t classes, std::vector<life::HotSpot>& spots) {
+                 std::int64_t classes, std::vector<life::CountedChannel>& counted) {
   std::vector<life::Influence> influences;
   const std::string loads = name + "_loads";
   for (const std::string& load : reader.names(loads)) {
@@ -92,7 +92,7 @@ void readHotSpot(ParameterReader& reader, const std::string& name, const std::ve
   std::optional<life::SnCurve> curve = readCurve(reader, name);
   std::optional<life::FkmMeanStress> mean;
   if (curve) mean = readMeanStress(reader, name);
-  if (grid) spots.push_back({name, std::move(influences), *grid, curve, mean});
+  if (grid) counted.push_back({"stress/" + name, *grid, name, std::move(influences), curve, mean});
 }
 
 /// The names of a list; none where it is none.
@@ -107,7 +107,8 @@ std::vector<std::string> namesIn(const ParameterMap& parameters, const char* key
 void checkChannels(const life::LifeSettings& settings, const std::vector<std::string>& of_machine,
                    ParameterReader& reader) {
   for (const life::CountedChannel& channel : settings.channels) {
-    if (std::count(of_machine.begin(), of_machine.end(), channel.name) != 0) continue;
+    const bool is_hot_spot = !channel.influences.empty();
+    if (is_hot_spot || std::count(of_machine.begin(), of_machine.end(), channel.name) != 0) continue;
     reader.addProblem(channel.key + "_channel: " + quotedText(channel.name) +
                       ", must be a load of this machine: " + joined(of_machine));
   }
@@ -135,7 +136,7 @@ life::LifeSettings readLifeSettings(ParameterReader& reader) {
     const std::optional<LoadGrid> grid = readGrid(reader, name, "", classes);
     if (grid) s.channels.push_back({channel, *grid, name});
   }
-  for (const std::string& name : reader.names("hot_spots")) readHotSpot(reader, name, channels, classes, s.hot_spots);
+  for (const std::string& name : reader.names("hot_spots")) readHotSpot(reader, name, channels, classes, s.channels);
   constexpr double kNsPerSecond = 1e9;
   const double period = reader.number("life_period_s", "s", NumberRule::within(0.1, 86400.0));
   if (std::isfinite(period)) s.period = std::llround(kNsPerSecond * period);

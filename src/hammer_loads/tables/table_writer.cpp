@@ -217,7 +217,7 @@ TableWriter::TableWriter(const std::string& file, const std::vector<TableColumn>
     : database_(file, life::Database::Use::kWrite, 0) {
   const std::string schema = beginTablesSql(turn, blow);
   database_.run(schema.c_str());
-  insert(life::columnTexts(schema), database_);
+  life::describeColumns(schema, database_);
 }
 
 TableWriter::Statement& TableWriter::insertInto(const std::string& table, std::size_t values) {

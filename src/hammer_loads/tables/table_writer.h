@@ -20,7 +20,7 @@ struct TableColumn {
   std::string unit, description;  ///< unit and description of the field's comment, "[unit] description"
 };
 
-/// Everything up to the first row, with a comment for each column (life::columnTexts): one transaction is begun. The
+/// Everything up to the first row, with a comment for each column (life::describeColumns): one transaction is begun. The
 /// same rows give the same bytes.
 std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow);
 
