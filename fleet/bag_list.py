@@ -61,7 +61,8 @@ def from_row(row, folder):
     parameters = given.split(";") if isinstance(given, str) else given
     if not (isinstance(parameters, list) and all(isinstance(name, str) for name in parameters)):
         raise ValueError(f"parameters: {parameters!r}, must be a list of paths")
-    return made(str(row["machine"]), os.path.join(folder, row["bag"]), [os.path.join(folder, name.strip()) for name in parameters])
+    return made(str(row["machine"]), os.path.join(folder, row["bag"]),
+                [os.path.join(folder, name.strip()) for name in parameters])
 
 
 def from_folder(folder):

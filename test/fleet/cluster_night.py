@@ -127,8 +127,7 @@ class Cluster(unittest.TestCase):
         for query in sorted(path.stem for path in FLEET.glob("queries/*.sql")):
             answers = []
             for target in (self.postgres.url, str(out / "merged.sqlite")):
-                done = subprocess.run([sys.executable, str(FLEET / "query"), query, target], stdout=subprocess.PIPE,
-                                      stderr=subprocess.PIPE, universal_newlines=True)
+                done = subprocess.run([sys.executable, str(FLEET / "query"), query, target], capture_output=True, text=True)
                 self.assertEqual((done.returncode, done.stderr), (0, ""), query)
                 answers.append([line.split() for line in done.stdout.lower().splitlines()])
             self.assertEqual(*answers, query)

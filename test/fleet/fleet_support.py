@@ -77,8 +77,7 @@ class Merged:
 
     def merge(self, *outcomes, target="merged.sqlite"):
         done = subprocess.run([sys.executable, str(FLEET / "merge.py"), str(self.directory / target)],
-                              input="".join(f"{path}\n" for path in outcomes), stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True)
+                              input="".join(f"{path}\n" for path in outcomes), capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         return done.stdout.split(": ")[-1].strip()
 

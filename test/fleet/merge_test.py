@@ -100,8 +100,7 @@ def test_other_files_are_refused(merged):
     sample.make(database, seconds=5.0)
     for path in (text, database):
         before = path.read_bytes()
-        done = subprocess.run([sys.executable, str(FLEET / "merge.py"), str(path)], input="", universal_newlines=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        done = subprocess.run([sys.executable, str(FLEET / "merge.py"), str(path)], input="", capture_output=True, text=True)
         assert (done.returncode, done.stderr.count("\n")) == (1, 1), done.stderr
         assert path.read_bytes() == before
 

@@ -11,8 +11,7 @@ import sample_database as sample
 
 
 def query(*arguments):
-    return subprocess.run([sys.executable, str(FLEET / "query"), *map(str, arguments)], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, universal_newlines=True)
+    return subprocess.run([sys.executable, str(FLEET / "query"), *map(str, arguments)], capture_output=True, text=True)
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@ from support import execute
 
 def snakemake_version():
     """Version of Snakemake; 0 without it."""
-    done = subprocess.run([sys.executable, "-c", "import snakemake; print(snakemake.__version__)"], stdout=subprocess.PIPE,
-                          stderr=subprocess.DEVNULL, universal_newlines=True)
+    done = subprocess.run([sys.executable, "-c", "import snakemake; print(snakemake.__version__)"], capture_output=True,
+                          text=True)
     return int(done.stdout.split(".")[0]) if done.returncode == 0 else 0
 
 

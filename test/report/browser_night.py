@@ -39,8 +39,7 @@ def chromium(folder, *arguments, width=1280, height=2400):
     done = subprocess.run(
         ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr",
          "--force-prefers-reduced-motion", f"--user-data-dir={folder}/chromium", f"--window-size={max(500, width)},{height}",
-         "--virtual-time-budget=5000", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        universal_newlines=True, timeout=120)
+         "--virtual-time-budget=5000", *map(str, arguments)], capture_output=True, text=True, timeout=120)
     return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
 
 

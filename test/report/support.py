@@ -52,8 +52,7 @@ def report_here(*arguments, command="report"):
 
 def report(*arguments, **options):
     """The finished command, as a process of its own."""
-    return subprocess.run([sys.executable, str(REPORT), *map(str, arguments)], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, universal_newlines=True, **options)
+    return subprocess.run([sys.executable, str(REPORT), *map(str, arguments)], capture_output=True, text=True, **options)
 
 
 def page_of(*files, options=(), note=""):

@@ -2,6 +2,8 @@
 templates escape all text."""
 from collections import namedtuple
 
+CURVES = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"]  # colours of page.css
+
 # The first column names the row. kind: classes of the table, `numbers` or `words`.
 Table = namedtuple("Table", "caption header rows kind", defaults=("numbers",))
 Note = namedtuple("Note", "words kind", defaults=("note",))  # paragraph of a kind of its own

@@ -1,10 +1,10 @@
 """The boom's oil and vibration as its sensors show them: air, worn pins and cracks come as a change over months."""
 import math
 
-from report.blocks import Note, Table
+from report.blocks import CURVES, Note, Table
 from report.database import FLEET
 from report.formats import NOTHING, measured, number
-from report.pictures import COLOURS, CURVES, Picture
+from report.pictures import COLOURS, Picture
 from report.quantities import CYLINDERS
 
 CHANGED = 3.0  # deviations: once in three hundred comparisons by chance

@@ -6,14 +6,13 @@ import math
 import pandas
 
 from report import inputs
-from report.blocks import Bars, Table
+from report.blocks import CURVES, Bars, Table
 from report.command import Parser
 from report.database import LEDGER, Problem
 from report.formats import in_unit, in_words, measured, number
 from report.subjects import subjects_of
 
 REST = "the rest"
-COLOURS = 7  # of sources in the bars, the rest beside
 LEAST_SHOWN = 5e-4
 
 
@@ -51,7 +50,7 @@ def bars(figures):
     order = Counter()
     for figure in figures:
         order.update(dict(figure.shares))
-    colours = {source: f"c{at}" for at, (source, _) in enumerate(order.most_common(COLOURS))}
+    colours = {source: colour for colour, (source, _) in zip(CURVES, order.most_common(len(CURVES) - 1))}
     shown = []
     for figure in figures:
         parts = [(colours[source], source, share) for source, share in figure.shares if source in colours]

@@ -3,14 +3,13 @@ from collections import namedtuple
 
 from markupsafe import Markup
 
-from report.blocks import Note, Table
+from report.blocks import CURVES, Note, Table
 from report.check import refusals_of
 from report.conditions import MISUSE, UNKNOWN, counter
 from report.formats import (NOTHING, clean, duration, in_unit, in_words, is_nothing, measured, moment, number,
                             scaled, shown, titled)
 from report.over_time import curves_picture
 from report.overview import blows_per_hour, total_energy, with_spread
-from report.pictures import CURVES
 from report.quantities import QUANTITIES
 from report.subjects import Subject
 
@@ -152,7 +151,8 @@ def runs_compared(subject, series):
     if not 2 <= len(subject.runs) <= MOST_RUNS or any(values.of_runs for values in series.values()):
         return None
     runs = [Subject(subject.database, name, [run]) for name, run in zip(subject.recordings(), subject.runs)]
-    columns = [by_name(run_figures(run, {key: values.of_run(at) for key, values in series.items()})) for at, run in enumerate(runs)]
+    columns = [by_name(run_figures(run, {key: values.of_run(at) for key, values in series.items()}))
+               for at, run in enumerate(runs)]
     return table_of_rows("Runs below each other", "Run", [run.label for run in runs], columns, list(map(doubts_of, runs)),
                          ("Blow energy [", "Peak force along the tool ["))
 

@@ -16,7 +16,7 @@ LEVELS = {1: "WARN", 2: "ERROR"}
 
 def counter(subject, name):
     """(count, per hour) over the runs that know it; (None, None) where none does."""
-    known = [run for run in subject.runs if run.get(name) is not None]
+    known = [run for run in subject.runs if run[name] is not None]
     if not known:
         return None, None
     count, hours = sum(run[name] for run in known), sum(run["duration"] or 0.0 for run in known) / 3600.0
@@ -31,7 +31,7 @@ def misuse(subject):
             rows.append([title, UNKNOWN, NOTHING, missing])
             continue
         if name == "blows_without_hold_down":
-            judged = sum(run["judged_blows"] or 0 for run in subject.runs if run.get(name) is not None)
+            judged = sum(run["judged_blows"] or 0 for run in subject.runs if run[name] is not None)
             meaning += f"; of {number(judged)} blows whose hold-down force was measured"
         rows.append([title, number(count), number(per_hour, 3), meaning])
     return [Table("Misuse", ["What", "Count", "Per hour", "Meaning"], rows, "words figures-first"),

@@ -1,10 +1,10 @@
 """Pictures of loads: the typical and the worst revolution; hull, boom joints, cylinders and sections by revolution."""
 import numpy
 
-from report.blocks import Details, Note, Table, folded
+from report.blocks import CURVES, Details, Note, Table, folded
 from report.formats import in_unit, in_words, number, utc
 from report.over_time import curves_picture
-from report.pictures import CURVES, Picture
+from report.pictures import Picture
 from report.series import BAND, Series, time_of_work
 
 KINDS = [("typical", "Typical revolution"), ("worst", "Worst revolution")]

@@ -50,7 +50,7 @@ def check_file(name, force):
 
 
 def check_directory(name, needed, force):
-    """needed: paths of other outputs; a directory that holds them cannot be replaced, nor one that holds an input: it is no table."""
+    """needed: paths of other outputs; a directory that holds them cannot be replaced. An input in it is none of the tables."""
     place = os.path.realpath(name)
     for held, path in (("the working directory", os.getcwd()), *((path, path) for path in needed)):
         if os.path.commonpath([place, os.path.realpath(path)]) == place:

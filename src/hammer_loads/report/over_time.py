@@ -3,9 +3,9 @@ from matplotlib.ticker import MaxNLocator
 import numpy
 import pandas
 
-from report.blocks import Details, Note, Table, as_tables
+from report.blocks import CURVES, Details, Note, Table, as_tables
 from report.formats import number, titled
-from report.pictures import COLOURS, CURVES, Picture
+from report.pictures import COLOURS, Picture
 from report.quantities import QUANTITIES
 
 MOST_POINTS = 400

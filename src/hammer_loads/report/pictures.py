@@ -18,11 +18,9 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter  # noqa: E402
 
 WIDTH, HEIGHT = 460, 270
 LEFT, RIGHT, TOP, BOTTOM = 58, 10, 12, 42
-# Names of page.css; a curve of many takes the next of CURVES.
+# Names of page.css.
 COLOURS = {"ink": "#1b2430", "soft": "#5b6675", "rule": "#d3d9e0", "first": "#1f5fa8", "second": "#b4530f", "third": "#2d7a3a",
            "fourth": "#8a4b9c", "fifth": "#a31621", "sixth": "#7a7010", "seventh": "#1f8287", "eighth": "#6a5fd0"}
-CURVES = [name for name in COLOURS if name not in ("ink", "soft", "rule")]
-
 MOST_BANDS = 3  # one over the other
 
 # keys: (class of the line or box, words).

@@ -69,11 +69,12 @@ def series_of(subject, quantity):
     of_runs = not subject.has_rows(quantity.table)
     if of_runs:
         rows = subject.frame("(first_stamp_ns + last_stamp_ns) / 2 AS stamp_ns, least, mean AS middle, greatest, "
-                             "NULL AS deviation FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?", quantity.key)
+                             "NULL AS deviation FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?",
+                             quantity.key)
     else:
-        rows = subject.frame(f"stamp_ns, {value_of(quantity)} AS middle, {quantity.deviation or 'NULL'} AS deviation "
-                             f"FROM {quantity.table} WHERE {{runs}} ORDER BY turn")
-        rows = rows.assign(least=rows.middle, greatest=rows.middle)
+        value = value_of(quantity)
+        rows = subject.frame(f"stamp_ns, {value} AS least, {value} AS middle, {value} AS greatest, "
+                             f"{quantity.deviation or 'NULL'} AS deviation FROM {quantity.table} WHERE {{runs}} ORDER BY turn")
     rows = rows.dropna(subset=["stamp_ns", "middle"])
     points = pandas.DataFrame({"run": rows.run, "x": time_of_work(subject, rows), **(rows[BAND] * quantity.factor)})
     known = rows.deviation.dropna() * quantity.factor
