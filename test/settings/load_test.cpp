@@ -106,7 +106,7 @@ TEST(Load, RefusesUnreadableFilesAndNamesEach) {
   const std::string missing = testing::TempDir() + "no_such_file.yaml";
   EXPECT_EQ(loadShippedWith({missing, testing::TempDir()}).problems,
             (Lines{missing + ": cannot be read: No such file or directory",
-                   testing::TempDir() + ": is a directory, must be a YAML file"}));
+                   testing::TempDir() + ": is a directory, must be a file of parameters"}));
   const std::string longest(4095, 'x');  // a legal path, and the message must name it
   EXPECT_EQ(loadShippedWith({longest}).problems.at(0).rfind(longest + ": cannot be read: ", 0), 0U);
   const Lines no_config = loadFiles(testing::TempDir() + "nowhere", {}).problems;

@@ -1,12 +1,9 @@
 #include "hammer_loads/commands/command_line.h"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 
+#include "hammer_loads/settings/version.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
@@ -17,7 +14,7 @@ CommandLine::CommandLine(const std::string& description, const std::string& name
 }
 
 std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
-  set_version_flag("--version", "hammer_loads " HAMMER_LOADS_VERSION, "print the version and end");
+  set_version_flag("--version", std::string("hammer_loads ") + packageVersion(), "print the version and end");
   try {
     CLI::App::parse(argc, argv);
     return std::nullopt;
@@ -76,20 +73,6 @@ int finishOutput() {
   if (std::cout.flush()) return 0;
   std::cerr << "stdout: cannot be written\n";
   return kExitFailure;
-}
-
-Checked<std::string> fileText(const std::string& file) {
-  Checked<std::string> result;
-  std::ostringstream text;
-  errno = 0;
-  std::ifstream stream(file);
-  text << stream.rdbuf();  // fails for nothing at all to read as well
-  const int error = errno;
-  if (stream && text)
-    result.value = text.str();
-  else
-    result.problems.push_back(file + ": cannot be read: " + (error != 0 ? std::strerror(error) : "is empty"));
-  return result;
 }
 
 std::optional<Settings> loadOrReport(const std::vector<std::string>& files) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hammer_loads/settings/load.h"
+#include "hammer_loads/util/file_text.h"
 
 namespace hammer_loads {
 
@@ -37,9 +38,6 @@ int finishOutput();
 
 /// Adds `--urdf FILE`, the robot description that the boom is made from.
 CLI::Option* addUrdfOption(CommandLine& line, std::string& file);
-
-/// Content of a file that is not empty, or the reason against it in one line.
-Checked<std::string> fileText(const std::string& file);
 
 /// Settings from files over the shipped ones; every problem and note on stderr, one line each.
 std::optional<Settings> loadOrReport(const std::vector<std::string>& files);

@@ -32,10 +32,8 @@ bool isBlank(const Cells& cells) { return cells.size() == 1 && cells[0].empty();
 /// Text on one line, shortened when long.
 std::string shown(const std::string& cell) {
   constexpr std::size_t kLongest = 60;
-  std::string text = cell.size() > kLongest ? cell.substr(0, kLongest) + "..." : cell;
-  const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  std::replace_if(text.begin(), text.end(), isControl, ' ');
-  return text.empty() ? "(empty)" : text;
+  if (cell.empty()) return "(empty)";
+  return onOneLine(cell.size() > kLongest ? cell.substr(0, kLongest) + "..." : cell);
 }
 
 std::optional<double> numberFromText(const std::string& text) {

@@ -2,7 +2,6 @@
 
 namespace hammer_loads {
 
-const char* packageVersion() { return HAMMER_LOADS_VERSION; }
 const char* packageRevision() { return HAMMER_LOADS_REVISION; }
 
 }  // namespace hammer_loads

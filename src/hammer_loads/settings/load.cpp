@@ -7,6 +7,7 @@
 #include "hammer_loads/hammer/choose_level.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/readers.h"
+#include "hammer_loads/settings/version.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/format.h"
 
@@ -199,6 +200,8 @@ Settings withInputTopics(Settings settings, const InputTopics& topics) {
   settings.input_topics = topics;
   return settings;
 }
+
+const char* packageVersion() { return HAMMER_LOADS_VERSION; }
 
 std::string configDirectory() {
   std::error_code error;

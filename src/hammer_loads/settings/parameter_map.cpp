@@ -1,45 +1,16 @@
 #include "hammer_loads/settings/parameter_map.h"
 
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/file_text.h"
 
 namespace hammer_loads {
 namespace {
 
 std::string at(const std::string& origin, const YAML::Mark& mark) {
   return mark.is_null() ? origin : origin + ":" + std::to_string(mark.line + 1);
-}
-
-/// Nothing, with the reason in `problem`, when the file cannot be read to its end.
-std::optional<std::string> contents(const std::string& file, std::string& problem) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    problem = file + ": is a directory, must be a YAML file";
-    return std::nullopt;
-  }
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  if (stream && stream.peek() != std::ifstream::traits_type::eof()) {
-    text.resize(kMostParameterBytes + 1);
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-  }
-  if (!stream.is_open() || stream.bad()) {
-    problem = file + ": cannot be read: " + std::strerror(errno);
-    return std::nullopt;
-  }
-  if (text.size() > kMostParameterBytes) {
-    problem = file + ": more than " + std::to_string(kMostParameterBytes) + " bytes, must be a file of parameters";
-    return std::nullopt;
-  }
-  return text;
 }
 
 /// By their marks: of some texts that are no YAML, yaml-cpp 0.7 reads documents without end.
@@ -84,15 +55,12 @@ std::optional<ParameterMap> parameterMap(const YAML::Node& node, const std::stri
 }
 
 std::optional<ParameterMap> readParameterFile(const std::string& file, std::vector<std::string>& problems) {
-  std::string problem;
-  const std::optional<std::string> text = contents(file, problem);
-  if (!text) {
-    problems.push_back(problem);
-    return std::nullopt;
-  }
+  const Checked<std::string> text = fileText(file, kMostParameterBytes, "a file of parameters");
+  problems.insert(problems.end(), text.problems.begin(), text.problems.end());
+  if (!text.value) return std::nullopt;
   try {
-    const int documents = countDocuments(*text);
-    if (documents == 1) return parameterMap(YAML::Load(*text), file, problems);
+    const int documents = countDocuments(*text.value);
+    if (documents == 1) return parameterMap(YAML::Load(*text.value), file, problems);
     problems.push_back(file + ": " + std::to_string(documents) + " YAML documents, must be one");
   } catch (const YAML::Exception& error) {
     problems.push_back(at(file, error.mark) + ": not valid YAML: " + onOneLine(error.msg));

@@ -6,7 +6,6 @@
 
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
-#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads {
 namespace {
@@ -110,14 +109,6 @@ std::string describe(const YAML::Node& value) {
   std::string text = value.Scalar();
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return isPlain(value) ? onOneLine(text) : quotedText(text);
-}
-
-std::string onOneLine(const std::string& text) {
-  std::string line = text;
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return line;
 }
 
 }  // namespace hammer_loads

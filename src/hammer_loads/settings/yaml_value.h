@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/util/number_text.h"
+
 namespace hammer_loads {
 
 /// Decimal number, integer literals included; .nan and .inf count as numbers. Nothing else does.
@@ -31,7 +33,5 @@ std::string numberText(double value);
 std::string quotedText(const std::string& text);
 /// Text of a value in a report: on one line, shortened when long.
 std::string describe(const YAML::Node& value);
-/// Without line breaks and other control characters.
-std::string onOneLine(const std::string& text);
 
 }  // namespace hammer_loads

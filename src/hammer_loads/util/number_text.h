@@ -1,4 +1,4 @@
-/// Numbers and cells from text, and texts that read back as the same number.
+/// Numbers and cells from text, texts that read back as the same number, texts on one line.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,13 @@
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
+
+/// Without line breaks and other control characters.
+inline std::string onOneLine(std::string text) {
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, ' ');
+  return text;
+}
 
 /// A decimal number that is the whole text; strtod would also take hexadecimal digits and names. Overflow is infinite.
 inline std::optional<double> decimalNumber(const std::string& text) {
