@@ -104,7 +104,7 @@ TEST_F(LogTest, NeedsTheMemoryOfItsQueueOnlyFromTheFirstStartOn) {
 
 /// rosbag keeps a copy of what passed through chunks that were not ended by their size.
 TEST_F(LogTest, MemoryStaysFlatWhenChunksAreEndedByTime) {
-  const std::shared_ptr<LogFile> file = *LogFile::create(settings_, directory_).value;
+  const std::shared_ptr<LogFile> file = LogFile::create(settings_, directory_);
   file->open();
   LogTopic topic(0, BagWriter::connectionOf("/a", std_msgs::String(), false));
   std::vector<std::uint8_t> bytes(100'000);

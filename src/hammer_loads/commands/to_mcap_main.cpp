@@ -16,6 +16,7 @@
 
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/commands/output_file.h"
+#include "hammer_loads/log/bag_record.h"
 
 namespace hammer_loads {
 namespace {
@@ -37,28 +38,14 @@ enum Kind : std::uint8_t {
   kDataEnd
 };
 
-/// Little end first on every machine.
-template <typename T>
-std::string number(T value) {
-  std::string bytes;
-  for (std::size_t i = 0; i < sizeof value; ++i)
-    bytes += static_cast<char>((static_cast<std::uint64_t>(value) >> (8 * i)) & 0xffU);
-  return bytes;
-}
-
-std::string text(const std::string& value) {
-  if (value.size() > std::numeric_limits<std::uint32_t>::max()) throw std::length_error("a text is too long for MCAP");
-  return number(static_cast<std::uint32_t>(value.size())) + value;
-}
-
 std::string record(Kind kind, const std::string& content) {
-  return number<std::uint8_t>(kind) + number<std::uint64_t>(content.size()) + content;
+  return bytesOf<std::uint8_t>(kind) + bytesOf<std::uint64_t>(content.size()) + content;
 }
 
 std::string numbersOf(const std::map<std::uint16_t, std::uint64_t>& values) {
   std::string bytes;
-  for (const auto& [key, value] : values) bytes += number(key) + number(value);
-  return text(bytes);
+  for (const auto& [key, value] : values) bytes += bytesOf(key) + bytesOf(value);
+  return pieceOf(bytes);
 }
 
 std::uint32_t crcOf(const std::string& bytes) {
@@ -83,20 +70,21 @@ class McapWriter {
   McapWriter(const std::string& file, const std::string& library) {
     stream_.exceptions(std::ios::failbit | std::ios::badbit);
     stream_.open(file, std::ios::binary);
-    put(kMagic + record(kHeader, text("ros1") + text(library)));
+    put(kMagic + record(kHeader, pieceOf("ros1") + pieceOf(library)));
   }
   /// Number of a message definition, for addChannel().
   std::uint16_t addSchema(const std::string& type, const std::string& definition) {
     const std::uint16_t id = nextNumber(schemas_.size());
-    schemas_.push_back(record(kSchema, number(id) + text(type) + text("ros1msg") + text(definition)));
+    schemas_.push_back(record(kSchema, bytesOf(id) + pieceOf(type) + pieceOf("ros1msg") + pieceOf(definition)));
     chunk_ += schemas_.back();
     return id;
   }
   std::uint16_t addChannel(std::uint16_t schema, const std::string& topic, const Metadata& metadata) {
     const std::uint16_t id = nextNumber(channels_.size());
     std::string pairs;
-    for (const auto& [key, value] : metadata) pairs += text(key) + text(value);
-    channels_.push_back(record(kChannel, number(id) + number(schema) + text(topic) + text("ros1") + text(pairs)));
+    for (const auto& [key, value] : metadata) pairs += pieceOf(key) + pieceOf(value);
+    channels_.push_back(
+        record(kChannel, bytesOf(id) + bytesOf(schema) + pieceOf(topic) + pieceOf("ros1") + pieceOf(pairs)));
     chunk_ += channels_.back();
     return id;
   }
@@ -104,22 +92,20 @@ class McapWriter {
   void write(std::uint16_t channel, std::uint64_t time, const std::string& bytes) {
     places_[channel].emplace_back(time, chunk_.size());
     const auto sequence = static_cast<std::uint32_t>(counts_[channel]++);
-    chunk_ += record(kMessage, number(channel) + number(sequence) + number(time) + number(time) + bytes);
-    chunk_span_.add(time);
-    span_.add(time);
+    chunk_ += record(kMessage, bytesOf(channel) + bytesOf(sequence) + bytesOf(time) + bytesOf(time) + bytes);
     if (chunk_.size() >= kChunkSize) writeChunk();
   }
   /// Writes the rest and the summary.
   void close() {
     writeChunk();
-    put(record(kDataEnd, number(static_cast<std::uint32_t>(data_crc_.checksum()))));
+    put(record(kDataEnd, bytesOf(static_cast<std::uint32_t>(data_crc_.checksum()))));
     const std::uint64_t begin = position_;
     std::string summary, offsets;
     const auto add = [&](Kind kind, const std::vector<std::string>& records) {
       const std::uint64_t at = begin + summary.size();
       for (const std::string& one : records) summary += one;
       const std::uint64_t size = begin + summary.size() - at;
-      if (size > 0) offsets += record(kSummaryOffset, number<std::uint8_t>(kind) + number(at) + number(size));
+      if (size > 0) offsets += record(kSummaryOffset, bytesOf<std::uint8_t>(kind) + bytesOf(at) + bytesOf(size));
     };
     add(kSchema, schemas_);
     add(kChannel, channels_);
@@ -127,19 +113,13 @@ class McapWriter {
     add(kChunkIndex, chunk_indexes_);
     const std::uint64_t offsets_at = begin + summary.size();
     constexpr std::uint64_t kFooterSize = 8 + 8 + 4;
-    summary += offsets + number<std::uint8_t>(kFooter) + number(kFooterSize) + number(begin) + number(offsets_at);
-    put(summary + number(crcOf(summary)) + kMagic);
+    summary += offsets + bytesOf<std::uint8_t>(kFooter) + bytesOf(kFooterSize) + bytesOf(begin) + bytesOf(offsets_at);
+    put(summary + bytesOf(crcOf(summary)) + kMagic);
     stream_.close();
   }
 
  private:
-  struct Span {
-    std::uint64_t first{~std::uint64_t{0}}, last{};  ///< [ns]
-    void add(std::uint64_t time) {
-      first = std::min(first, time);
-      last = std::max(last, time);
-    }
-  };
+  static constexpr std::uint64_t kLatest = std::numeric_limits<std::uint64_t>::max();
   using Places = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  ///< time [ns] and place in the chunk
 
   void put(const std::string& bytes) {
@@ -150,31 +130,35 @@ class McapWriter {
   void writeChunk() {
     if (places_.empty()) return;
     const std::uint64_t begin = position_;
-    const std::string times = number(chunk_span_.first) + number(chunk_span_.last);
-    const auto size = number<std::uint64_t>(chunk_.size());
-    put(record(kChunk, times + size + number(crcOf(chunk_)) + text("") + size + chunk_));
-    const std::uint64_t end = position_;
-    std::map<std::uint16_t, std::uint64_t> indexes;
+    std::uint64_t first = kLatest, last = 0;
     for (auto& [channel, places] : places_) {
       std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-      std::string entries;
-      for (const auto& [time, place] : places) entries += number(time) + number(place);
-      indexes[channel] = position_;
-      put(record(kMessageIndex, number(channel) + text(entries)));
+      first = std::min(first, places.front().first), last = std::max(last, places.back().first);
     }
-    chunk_indexes_.push_back(record(kChunkIndex, times + number(begin) + number(end - begin) + numbersOf(indexes) +
-                                                     number(position_ - end) + text("") + size + size));
+    first_ = std::min(first, first_), last_ = std::max(last, last_);
+    const std::string times = bytesOf(first) + bytesOf(last);
+    const auto size = bytesOf<std::uint64_t>(chunk_.size());
+    put(record(kChunk, times + size + bytesOf(crcOf(chunk_)) + pieceOf("") + size + chunk_));
+    const std::uint64_t end = position_;
+    std::map<std::uint16_t, std::uint64_t> indexes;
+    for (const auto& [channel, places] : places_) {
+      std::string entries;
+      for (const auto& [time, place] : places) entries += bytesOf(time) + bytesOf(place);
+      indexes[channel] = position_;
+      put(record(kMessageIndex, bytesOf(channel) + pieceOf(entries)));
+    }
+    chunk_indexes_.push_back(record(kChunkIndex, times + bytesOf(begin) + bytesOf(end - begin) + numbersOf(indexes) +
+                                                     bytesOf(position_ - end) + pieceOf("") + size + size));
     chunk_.clear();
     places_.clear();
-    chunk_span_ = {};
   }
   std::string statistics() const {
     std::uint64_t messages = 0;
     for (const auto& [channel, count] : counts_) messages += count;
-    const auto count = [](const auto& records) { return number(static_cast<std::uint32_t>(records.size())); };
-    return record(kStatistics, number(messages) + number(static_cast<std::uint16_t>(schemas_.size())) +
-                                   count(channels_) + number(std::uint32_t{0}) + number(std::uint32_t{0}) +
-                                   count(chunk_indexes_) + number(messages > 0 ? span_.first : 0) + number(span_.last) +
+    const auto count = [](const auto& records) { return bytesOf(static_cast<std::uint32_t>(records.size())); };
+    return record(kStatistics, bytesOf(messages) + bytesOf(static_cast<std::uint16_t>(schemas_.size())) +
+                                   count(channels_) + bytesOf(std::uint32_t{0}) + bytesOf(std::uint32_t{0}) +
+                                   count(chunk_indexes_) + bytesOf(messages > 0 ? first_ : 0) + bytesOf(last_) +
                                    numbersOf(counts_));
   }
 
@@ -184,7 +168,7 @@ class McapWriter {
   std::vector<std::string> schemas_, channels_, chunk_indexes_;  ///< records
   std::map<std::uint16_t, std::uint64_t> counts_;                ///< messages by channel
   std::string chunk_;
-  Span chunk_span_, span_;
+  std::uint64_t first_{kLatest}, last_{};   ///< times of the messages in chunks [ns]
   std::map<std::uint16_t, Places> places_;  ///< places of the chunk's messages, by channel
 };
 
@@ -214,22 +198,19 @@ std::uint64_t convert(const std::string& input, const std::string& output) {
   rosbag::View view(bag);
   McapWriter writer(output, kLibrary);
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas;  // by type and md5
-  std::map<std::uint32_t, std::uint16_t> channels;                       // by connection
+  std::map<const ros::M_string*, std::uint16_t> channels;  // by header: a message leads to that of its connection alone
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
     const auto [schema, is_new] = schemas.try_emplace({connection->datatype, connection->md5sum});
     if (is_new) schema->second = writer.addSchema(connection->datatype, connection->msg_def);
-    channels[connection->id] = writer.addChannel(schema->second, connection->topic, metadataOf(*connection));
+    channels[connection->header.get()] = writer.addChannel(schema->second, connection->topic, metadataOf(*connection));
   }
-  std::map<const ros::M_string*, std::uint16_t> by_header;  // a message leads to its connection's header alone
-  for (const rosbag::ConnectionInfo* connection : view.getConnections())
-    by_header[connection->header.get()] = channels[connection->id];
   std::uint64_t count = 0;
   std::string bytes;
   for (const rosbag::MessageInstance& message : view) {
     bytes.resize(message.size());
     ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()), message.size());
     message.write(stream);
-    writer.write(by_header.at(message.getConnectionHeader().get()), message.getTime().toNSec(), bytes);
+    writer.write(channels.at(message.getConnectionHeader().get()), message.getTime().toNSec(), bytes);
     ++count;
   }
   writer.close();

@@ -1,16 +1,11 @@
 #include "hammer_loads/log/bag_log.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <new>
 #include <utility>
 
 #include "hammer_loads/log/log_gaps.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/number_text.h"
 
 namespace hammer_loads {
 namespace {
@@ -22,8 +17,8 @@ constexpr std::uint64_t kMostQueue = 4'000'000'000;  // [byte]
 double mb(std::uint64_t bytes) { return static_cast<double>(bytes) / kMb; }
 
 bool isFileNamePart(const std::string& text) {
-  const auto is_bad = [](unsigned char c) { return c == '/' || c < 0x20 || c == 0x7f; };
-  return !text.empty() && text.size() <= 200 && text.front() != '.' && std::none_of(text.begin(), text.end(), is_bad);
+  return !text.empty() && text.size() <= 200 && text.front() != '.' && text.find('/') == std::string::npos &&
+         text == onOneLine(text);
 }
 
 }  // namespace
@@ -53,15 +48,7 @@ std::vector<std::string> BagLog::settingProblems() const {
   }
   const Checked<std::string> directory = findLogDirectory(settings_.directory);
   problems.insert(problems.end(), directory.problems.begin(), directory.problems.end());
-  if (directory.value && faccessat(AT_FDCWD, directory.value->c_str(), W_OK | X_OK, AT_EACCESS) != 0)
-    problems.push_back("log_directory: '" + *directory.value + "', must be writable: " + std::strerror(errno));
   return problems;
-}
-
-/// Reasons why a log with valid settings cannot begin now: disk or memory.
-std::vector<std::string> BagLog::refuse(LogState state, std::string problem) {
-  writer_.refuse(++last_session_, state, problem);
-  return {std::move(problem)};
 }
 
 std::vector<std::string> BagLog::start() {
@@ -72,30 +59,38 @@ std::vector<std::string> BagLog::start() {
   if (!problems.empty()) return problems;
   const Checked<std::string> directory = findLogDirectory(settings_.directory);
   if (!directory.value) return directory.problems;
+  const std::uint64_t session = ++last_session_;
+  try {
+    beginIn(*directory.value, session);
+  } catch (const LogFault& fault) {
+    writer_.announce(session, fault.state, fault.what());
+    return {fault.what()};
+  }
+  session_ = session;
+  gap_.clear();
+  return {};
+}
 
-  const std::uint64_t free = disk_.free_space(*directory.value);
+/// Throws LogFault where a log with valid settings cannot begin now, for disk or memory.
+void BagLog::beginIn(const std::string& directory, std::uint64_t session) {
+  const std::uint64_t free = disk_.free_space(directory);
   if (free < settings_.min_free_space) {
-    return refuse(LogState::kDiskFull,
-                  format("log_min_free_mb: %.9g MB, must be <= the free space of log_directory %.300s = %.9g MB",
-                         mb(settings_.min_free_space), directory.value->c_str(), mb(free)));
+    throw LogFault(LogState::kDiskFull,
+                   format("log_min_free_mb: %.9g MB, must be <= the free space of log_directory %.300s = %.9g MB",
+                          mb(settings_.min_free_space), directory.c_str(), mb(free)));
   }
   try {
     queue_.take();
   } catch (const std::bad_alloc&) {
-    return refuse(LogState::kFailed,
-                  format("log_queue_mb: %.9g MB, must be <= the free memory", mb(settings_.queue_size)));
+    throw LogFault(LogState::kFailed,
+                   format("log_queue_mb: %.9g MB, must be <= the free memory", mb(settings_.queue_size)));
   }
-  const Checked<std::shared_ptr<LogFile>> file = LogFile::create(settings_, *directory.value);
-  if (!file.value) return refuse(LogState::kFailed, file.problems.front());
-  if (!(*file.value)->hasRoom(free)) {
-    return refuse(LogState::kDiskFull, format("log_directory: '%.300s', must have at least %.9g MB free",
-                                              directory.value->c_str(), mb(LogFile::kAllocationStep)));
+  const std::shared_ptr<LogFile> file = LogFile::create(settings_, directory);
+  if (!file->hasRoom(free)) {
+    throw LogFault(LogState::kDiskFull, format("log_directory: '%.300s', must have at least %.9g MB free",
+                                               directory.c_str(), mb(LogFile::kAllocationStep)));
   }
-  if (!writer_.start(last_session_ + 1, *file.value))
-    return refuse(LogState::kFailed, "log: too many orders wait for the disk");
-  session_ = ++last_session_;
-  gapNoted();
-  return {};
+  if (!writer_.start(session, file)) throw LogFault(LogState::kFailed, "log: too many orders wait for the disk");
 }
 
 bool BagLog::hasRoomAgain() const {
@@ -128,7 +123,7 @@ void BagLog::forgetLatched(const std::string& topic, const std::string& caller) 
 
 void BagLog::lose(LogTopic& topic, const ros::Time& time) {
   topic.refused.fetch_add(1, std::memory_order_relaxed);
-  has_gap_ |= isRecording();
+  if (isRecording()) ++gap_[topic.connection.topic];
   gap_time_ = time;
 }
 
@@ -136,26 +131,19 @@ void BagLog::lose(LogTopic& topic, const ros::Time& time) {
 /// wait.
 bool BagLog::reportGap(const ros::Time& time, bool always) {
   using Gap = diagnostic_msgs::DiagnosticStatus;
-  if (!has_gap_) return true;
+  if (gap_.empty()) return true;
   Gap gap;
   gap.level = Gap::WARN;
   gap.name = settings_.node + ": log";
   gap.message = "messages were lost: a bag processed again may differ from what was published (log_queue_mb)";
-  for (LogTopic& topic : topics_) {
-    const std::uint64_t refused = topic.refused.load(std::memory_order_relaxed);
-    if (refused == topic.noted) continue;
+  for (const auto& [topic, lost] : gap_) {
     gap.values.emplace_back();
-    gap.values.back().key = topic.connection.topic;
-    gap.values.back().value = std::to_string(refused - topic.noted);
+    gap.values.back().key = topic;
+    gap.values.back().value = std::to_string(lost);
   }
   if (!writer_.write({&topicOf(gap_name_, gap_name_, gap), time, bytesOf(gap)}, always)) return false;
-  gapNoted();
+  gap_.clear();
   return true;
-}
-
-void BagLog::gapNoted() {
-  has_gap_ = false;
-  for (LogTopic& topic : topics_) topic.noted = topic.refused.load(std::memory_order_relaxed);
 }
 
 std::vector<std::string> BagLog::unfinishedBags() const {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <string>
 #include <unordered_map>
@@ -70,12 +71,11 @@ class BagLog {
   LogHealth health() const;
 
  private:
-  std::vector<std::string> refuse(LogState state, std::string problem);
+  void beginIn(const std::string& directory, std::uint64_t session);
   static std::string latchedKey(const std::string& topic, const std::string& caller) { return topic + '\n' + caller; }
   LogTopic& addTopic(const std::string& key, BagWriter::Connection connection);
   void lose(LogTopic& topic, const ros::Time& time);
   bool reportGap(const ros::Time& time, bool always);
-  void gapNoted();
 
   template <typename Message>
   LogTopic& topicOf(const std::string& key, const std::string& topic, const Message& message, bool latched = false,
@@ -101,7 +101,7 @@ class BagLog {
   mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads
   std::deque<LogTopic> topics_;
   std::unordered_map<std::string, LogTopic*> by_key_;  // by name, or by latchedKey()
-  bool has_gap_{};                                     // messages were lost that no bag reports yet
+  std::map<std::string, std::uint64_t> gap_;           // messages lost that no bag reports yet, by topic
   ros::Time gap_time_;                                 // record time of the last of them
   LogQueue queue_;
   LogWriter writer_;  // last: its thread uses the others
@@ -111,7 +111,7 @@ template <typename Message>
 void BagLog::write(const std::string& topic, const ros::Time& time, const Message& message) {
   constexpr double kMuchRoom = 0.5;  // else the next message would be lost as well
   if (!isRecording()) return;
-  if (has_gap_ && queue_.fill() <= kMuchRoom) reportGap(time, false);
+  if (!gap_.empty() && queue_.fill() <= kMuchRoom) reportGap(time, false);
   LogTopic& entry = topicOf(topic, topic, message);
   const std::uint32_t size = ros::serialization::serializationLength(message);
   const bool is_of_its_type = entry.connection.md5sum == ros::message_traits::md5sum(message);

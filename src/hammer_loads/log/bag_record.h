@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace hammer_loads {
@@ -19,6 +20,18 @@ T numberIn(std::string_view bytes) {
   T value;
   std::memcpy(&value, bytes.data(), sizeof value);
   return value;
+}
+
+template <typename T>
+std::string bytesOf(T number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+
+inline std::string bytesOf(const ros::Time& time) { return bytesOf(time.sec) + bytesOf(time.nsec); }
+
+/// A length and as many bytes.
+inline std::string pieceOf(const std::string& bytes) {
+  return bytesOf(static_cast<std::uint32_t>(bytes.size())) + bytes;
 }
 
 /// Takes a length and as many bytes from the beginning of `bytes`.

@@ -20,13 +20,6 @@ constexpr std::uint64_t kIndexEntry = 12;   // time and offset of one message
 
 [[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
 
-template <typename T>
-std::string bytesOf(T number) {
-  return {reinterpret_cast<const char*>(&number), sizeof number};
-}
-
-std::string bytesOf(const ros::Time& time) { return bytesOf(time.sec) + bytesOf(time.nsec); }
-
 void addField(std::string& header, const std::string& name, const std::string& value) {
   header += bytesOf(static_cast<std::uint32_t>(name.size() + 1 + value.size())) + name + "=" + value;
 }
@@ -39,9 +32,6 @@ std::string headerOf(BagRecord::Kind kind) {
 
 /// Largest size of so many bytes after compression.
 std::size_t packedBound(std::size_t size) { return size + size / 64 + 4096; }
-
-/// A length and as many bytes.
-std::string pieceOf(const std::string& bytes) { return bytesOf(static_cast<std::uint32_t>(bytes.size())) + bytes; }
 
 }  // namespace
 

@@ -57,6 +57,8 @@ Checked<std::string> findLogDirectory(const std::string& given) {
     result.problems.push_back("log_directory: '" + path + "', must exist: " + std::strerror(errno));
   } else if (!S_ISDIR(found.st_mode)) {
     result.problems.push_back("log_directory: '" + path + "', must be a directory");
+  } else if (faccessat(AT_FDCWD, path.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
+    result.problems.push_back("log_directory: '" + path + "', must be writable: " + std::strerror(errno));
   } else {
     result.value = path;
   }

@@ -33,9 +33,7 @@ std::string localTime() {
 
 }  // namespace
 
-Checked<std::shared_ptr<LogFile>> LogFile::create(const LogSettings& settings, const std::string& directory,
-                                                  unsigned number) {
-  Checked<std::shared_ptr<LogFile>> result;
+std::shared_ptr<LogFile> LogFile::create(const LogSettings& settings, const std::string& directory, unsigned number) {
   const std::string stem = directory + '/' + filePrefix(settings) + '_' + localTime() + '_';
   const std::shared_ptr<LogFile> file(new LogFile(settings, directory));
   int error = EEXIST;
@@ -47,15 +45,13 @@ Checked<std::shared_ptr<LogFile>> LogFile::create(const LogSettings& settings, c
     file->descriptor_ = ::open(file->active_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (file->descriptor_ >= 0) {
       flock(file->descriptor_, LOCK_EX | LOCK_NB);  // a sign to others; without it nothing else changes
-      result.value = file;
-      return result;
+      return file;
     }
     error = errno;
   }
-  result.problems.push_back(
-      "log_directory: '" + directory + "', must " +
-      (error == EEXIST ? "have a free name " + stem + "N.bag" : std::string("be writable: ") + std::strerror(error)));
-  return result;
+  throw LogFault(LogState::kFailed, "log_directory: '" + directory + "', must " +
+                                        (error == EEXIST ? "have a free name " + stem + "N.bag"
+                                                         : std::string("be writable: ") + std::strerror(error)));
 }
 
 LogFile::~LogFile() {

@@ -15,7 +15,6 @@
 #include "hammer_loads/log/bag_writer.h"
 #include "hammer_loads/log/log_settings.h"
 #include "hammer_loads/log/log_status.h"
-#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
 
@@ -36,11 +35,10 @@ struct LogTopic {
   std::atomic<std::uint64_t> refused{};    ///< messages lost because the queue was full or the type was another
   std::atomic<std::uint64_t> too_large{};  ///< part of them that never fits into the queue
   std::atomic<std::uint64_t> unsaved{};    ///< messages lost in the queue because the log stopped for a fault
-  std::uint64_t noted{};                   ///< part of `refused` that a bag already reports; producing thread only
 };
 
-/// For use by one thread. open(), write() and the functions that close throw LogFault; the bag is then either open and
-/// can be closed properly, or given up.
+/// For use by one thread. Every function throws LogFault where the disk fails; the bag is then either open and can be
+/// closed properly, or given up.
 class LogFile {
  public:
   using Clock = std::chrono::steady_clock;
@@ -52,14 +50,14 @@ class LogFile {
   /// Reserves the name PREFIX_YYYY-MM-DD-HH-MM-SS_N.bag (local time) by a new empty file PREFIX_..._N.bag.active. No
   /// existing file is overwritten. The file is locked (flock) during the life of the result, so that others see that it
   /// is being written. The settings must outlive the result. number: N of the first try.
-  static Checked<std::shared_ptr<LogFile>> create(const LogSettings& settings, const std::string& directory,
-                                                  unsigned number = 0);
+  static std::shared_ptr<LogFile> create(const LogSettings& settings, const std::string& directory,
+                                         unsigned number = 0);
   LogFile(const LogFile&) = delete;
   LogFile& operator=(const LogFile&) = delete;
   /// Removes the file if nothing was written to it. A bag that was not closed stays as it is.
   ~LogFile();
   /// Reserves the name of the bag behind this one.
-  Checked<std::shared_ptr<LogFile>> next() const { return create(settings_, directory_, number_ + 1); }
+  std::shared_ptr<LogFile> next() const { return create(settings_, directory_, number_ + 1); }
 
   /// The disk has room for the first step. free: counts where the file system cannot take space ahead [byte].
   bool hasRoom(std::uint64_t free) const noexcept;

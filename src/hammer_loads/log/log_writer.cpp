@@ -17,62 +17,51 @@ LogWriter::LogWriter(LogSettings settings, LogDisk disk, LogQueue& queue)
     : settings_(std::move(settings)), disk_(std::move(disk)), queue_(queue), thread_(&LogWriter::run, this) {}
 
 LogWriter::~LogWriter() {
-  const auto quit = [this] {
+  post(true, [this] {
     quit_ = true;
     end();
-  };
-  post(quit, true);
+  });
   thread_.join();
 }
 
 bool LogWriter::start(std::uint64_t session, std::shared_ptr<LogFile> file) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);  // known at once, not only when the thread gets there
-    status_session_ = session;
-    status_.state = LogState::kRecording;
-    status_.reason.clear();
-    status_.file = file->path();
-    status_.file_size = 0;
-  }
-  const auto start = [this, session, file = std::move(file)] {
+  announce(session, LogState::kRecording, "", file->path());  // known at once, not only when the thread gets there
+  return post(false, [this, session, file = std::move(file)] {
     session_ = session;
     begin(file);
-  };
-  return post(start, false);
+  });
 }
 
 void LogWriter::stop() {
-  post([this] { end(); }, true);
+  post(true, [this] { end(); });
 }
 
 bool LogWriter::split() {
-  return post([this] { beginNext(); }, false);
+  return post(false, [this] { beginNext(); });
 }
 
 bool LogWriter::write(LogMessage message, bool always) {
-  const auto write_now = [this, message = std::move(message)] {
+  return post(always, [this, message = std::move(message)] {
     if (!file_) return;
     if (repeat_) repeatLatched(&message.time);
     write(message, message.time);
-  };
-  return post(write_now, always);
+  });
 }
 
 bool LogWriter::latch(LogMessage message) {
-  const auto latch_now = [this, message = std::move(message)] {
+  return post(false, [this, message = std::move(message)] {
     latched_[message.topic->index] = message;
     if (!file_) return;
     message.topic->written.fetch_add(1, std::memory_order_relaxed);
     if (!repeat_) write(message, message.time);  // else it comes with the others
-  };
-  return post(latch_now, false);
+  });
 }
 
 void LogWriter::forget(const LogTopic& topic) {
-  post([this, index = topic.index] { latched_.erase(index); }, true);
+  post(true, [this, index = topic.index] { latched_.erase(index); });
 }
 
-bool LogWriter::post(std::function<void()> action, bool always) {
+bool LogWriter::post(bool always, std::function<void()> action) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (orders_.size() >= kMostOrders && !always) return false;
@@ -82,11 +71,14 @@ bool LogWriter::post(std::function<void()> action, bool always) {
   return true;
 }
 
-void LogWriter::refuse(std::uint64_t session, LogState state, const std::string& reason) {
+void LogWriter::announce(std::uint64_t session, LogState state, const std::string& reason, const std::string& file) {
   const std::lock_guard<std::mutex> lock(mutex_);
   status_session_ = session;
   status_.state = state;
   status_.reason = reason;
+  if (file.empty()) return;
+  status_.file = file;
+  status_.file_size = 0;
 }
 
 LogStatus LogWriter::status() const {
@@ -232,9 +224,7 @@ void LogWriter::end() {
 void LogWriter::beginNext() {
   if (!file_) return;
   closeFile();
-  const Checked<std::shared_ptr<LogFile>> next = file_->next();
-  if (!next.value) throw LogFault(LogState::kFailed, next.problems.front());
-  begin(*next.value);
+  begin(file_->next());
 }
 
 /// Stops after a fault: the file is closed properly if possible.

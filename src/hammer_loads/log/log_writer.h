@@ -57,8 +57,8 @@ class LogWriter {
   bool latch(LogMessage message);
   void forget(const LogTopic& topic);
 
-  /// A recording that cannot begin. session: a number of its own.
-  void refuse(std::uint64_t session, LogState state, const std::string& reason);
+  /// State of a recording that begins or, for the reason, cannot. session: a number of its own. file: empty for none.
+  void announce(std::uint64_t session, LogState state, const std::string& reason, const std::string& file = {});
   LogStatus status() const;
   /// The recording that stopped by itself last; 0: none.
   std::uint64_t faultySession() const noexcept { return faulty_session_.load(std::memory_order_acquire); }
@@ -70,7 +70,7 @@ class LogWriter {
     std::function<void()> action;
   };
 
-  bool post(std::function<void()> action, bool always);
+  bool post(bool always, std::function<void()> action);
   void run();
   std::optional<Order> nextOrder();
   template <typename Action>
