@@ -20,9 +20,7 @@ else()
     set(python_package ${CMAKE_BINARY_DIR}/${CATKIN_GLOBAL_PYTHON_DESTINATION}/hammer_loads_py)
   endif()
   message(STATUS "Python: hammer_loads_py is built for ${Python3_EXECUTABLE}")
-  pybind11_add_module(hammer_loads_py MODULE NO_EXTRAS
-                      src/hammer_loads/python/models.cpp
-                      src/hammer_loads/python/module.cpp)
+  pybind11_add_module(hammer_loads_py MODULE NO_EXTRAS src/hammer_loads/python/module.cpp)
   target_link_libraries(hammer_loads_py PRIVATE hammer_loads_settings)
   set_target_properties(hammer_loads_py PROPERTIES OUTPUT_NAME _native LIBRARY_OUTPUT_DIRECTORY ${python_package}
                         INSTALL_RPATH "\$ORIGIN/../../.." CXX_VISIBILITY_PRESET hidden)

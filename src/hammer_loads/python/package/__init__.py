@@ -175,24 +175,11 @@ def count_cycles(series, *, full_scale=None, classes=4096):
     return dict(zip(("range", "mean", "count"), _native.count_cycles(values.ravel(), full_scale, classes)))
 
 
-def _file_problem(path):
-    """Reason why a file is no SQLite file, in the words of the command report; empty if it is one."""
-    try:
-        if not stat.S_ISREG(os.stat(path).st_mode):
-            return "is no regular file"
-        with open(path, "rb") as file:
-            return "" if file.read(16) == b"SQLite format 3\0" else "is no SQLite file"
-    except OSError as error:
-        return f"cannot be read: {error.strerror}"
-
-
 def _column(declared, values):
     """Column as an array, by the type that its table declares."""
     if "INT" in declared and None not in values:
         return np.array(values, dtype=np.int64)
-    if "INT" in declared or "REAL" in declared:
-        return np.array([math.nan if value is None else value for value in values], dtype=float)
-    return np.array(values, dtype=object)
+    return np.array(values, dtype=float if "INT" in declared or "REAL" in declared else object)  # None: nan
 
 
 def read_database(path):
@@ -202,9 +189,14 @@ def read_database(path):
     Whole numbers are int64, or float64 where one is missing; texts are objects. A missing value is nan or None.
     """
     path = os.fspath(path)
-    problem = _file_problem(path)
-    if problem:
-        raise ValueError(f"{path}: {problem}")
+    try:
+        if not stat.S_ISREG(os.stat(path).st_mode):
+            raise ValueError(f"{path}: is no regular file")
+        with open(path, "rb") as file:
+            if file.read(16) != b"SQLite format 3\0":
+                raise ValueError(f"{path}: is no SQLite file")
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
     database = sqlite3.connect(f"file:{urllib.parse.quote(path)}?mode=ro", uri=True, timeout=_PATIENCE,
                                isolation_level=None)
     database.text_factory = lambda text: text.decode(errors="replace")
@@ -218,11 +210,9 @@ def read_database(path):
         names = database.execute("SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite_%' "
                                  "ORDER BY name").fetchall()
         for name, in names:
-            quoted = '"' + name.replace('"', '""') + '"'
-            columns = [(row[1], row[2]) for row in database.execute(f"PRAGMA table_info({quoted})")]
-            rows = database.execute(f"SELECT * FROM {quoted}").fetchall()
-            tables[name] = {column: _column(declared, [row[i] for row in rows])
-                            for i, (column, declared) in enumerate(columns)}
+            rows = database.execute(f"SELECT * FROM {name}").fetchall()
+            tables[name] = {column: _column(declared, [row[place] for row in rows])
+                            for place, column, declared, *_ in database.execute(f"PRAGMA table_info({name})")}
     except sqlite3.Error as error:
         raise ValueError(f"{path}: {error}") from None
     finally:
