@@ -3,6 +3,7 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <boost/algorithm/hex.hpp>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -22,10 +23,7 @@ std::string sha256By(const Fill& fill) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> bytes{};
   unsigned size = 0;
   EVP_DigestFinal_ex(context.get(), bytes.data(), &size);
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (unsigned i = 0; i < size; ++i) text += {kDigits[bytes[i] >> 4U], kDigits[bytes[i] & 15U]};
-  return text;
+  return boost::algorithm::hex_lower(std::string(bytes.begin(), bytes.begin() + size));
 }
 
 }  // namespace

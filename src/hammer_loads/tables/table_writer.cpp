@@ -191,13 +191,14 @@ std::string turnTable(const std::string& name, const std::vector<TableColumn>& c
   return sql + "  PRIMARY KEY(run_id, turn)) WITHOUT ROWID;\n";
 }
 
-}  // namespace
-
+/// Everything up to the first row, with a comment for each column (life::describeColumns).
 std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow) {
   return std::string(kBegin) + "BEGIN;\nPRAGMA application_id = " + std::to_string(kTablesApplication) +
          ";\nPRAGMA user_version = " + std::to_string(kTablesVersion) + ";\n" + kTables + turnTable("turns", turn) +
          turnTable("blows", blow) + life::kColumnsTable;
 }
+
+}  // namespace
 
 /// By the file's header (sqlite.org/fileformat.html): nothing is opened that might be changed by that.
 std::string whyTablesMustStay(const std::string& file) {
@@ -216,7 +217,7 @@ TableWriter::TableWriter(const std::string& file, const std::vector<TableColumn>
                          const std::vector<TableColumn>& blow)
     : database_(file, life::Database::Use::kWrite, 0) {
   const std::string schema = beginTablesSql(turn, blow);
-  database_.run(schema.c_str());
+  database_.run(schema);
   life::describeColumns(schema, database_);
 }
 
@@ -225,7 +226,7 @@ TableWriter::Statement& TableWriter::insertInto(const std::string& table, std::s
   if (known != inserts_.end()) return known->second;
   std::string sql = "INSERT INTO " + table + " VALUES(?";
   for (std::size_t i = 1; i < values; ++i) sql += ", ?";
-  return inserts_.try_emplace(table, database_, (sql + ")").c_str()).first->second;
+  return inserts_.try_emplace(table, database_, sql + ')').first->second;
 }
 
 void TableWriter::addTurn(const std::string& table, std::int64_t run, std::int64_t stamp,

@@ -20,14 +20,11 @@ struct TableColumn {
   std::string unit, description;  ///< unit and description of the field's comment, "[unit] description"
 };
 
-/// Everything up to the first row, with a comment for each column (life::describeColumns): one transaction is begun. The
-/// same rows give the same bytes.
-std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow);
-
 /// Reason why an existing file must stay; empty: it is a file of these tables.
 std::string whyTablesMustStay(const std::string& file);
 
-/// No function throws: problem() returns the first error, after which all calls have no effect.
+/// Writes one transaction; the same rows give the same bytes. No function throws: problem() returns the first error,
+/// after which all calls have no effect.
 class TableWriter {
  public:
   /// The file must be empty. turn, blow: columns of the tables `turns` and `blows`, of which the first is `turn`.

@@ -7,16 +7,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::size_t kMostSamples = 8192;  // samples of a revolution and of the measurement of its blow
 constexpr std::size_t kMostOfTurn = 4096;
 constexpr std::size_t kMostCandidates = 32;
 
 }  // namespace
-
-void TurnTraces::add(const TraceSample& sample) {
-  if (latest_.size() == kMostSamples) latest_.pop_front();
-  latest_.push_back(sample);
-}
 
 void TurnTraces::turnEnded(std::uint64_t turn, std::int64_t stamp, double period_s, double amplitude) {
   const bool is_worst = !worst_ || amplitude > worst_->amplitude;
@@ -34,7 +28,7 @@ TurnTrace TurnTraces::traceOf(std::uint64_t turn, std::int64_t stamp, double per
                                  [&](const TraceSample& sample) { return sample.stamp > trace.start; });
   const auto to = std::find_if(from, latest_.end(), [&](const TraceSample& sample) { return sample.stamp > stamp; });
   const auto count = static_cast<std::size_t>(to - from);
-  const bool whole = from != latest_.begin() || latest_.size() < kMostSamples;
+  const bool whole = from != latest_.begin() || !latest_.full();
   if (whole && count <= kMostOfTurn) trace.samples.assign(from, to);
   return trace;
 }

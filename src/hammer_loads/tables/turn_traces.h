@@ -1,8 +1,8 @@
 /// Samples of the turn with the largest peak and of a typical one.
 #pragma once
 
+#include <boost/circular_buffer.hpp>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -26,7 +26,7 @@ struct TurnTrace {
 /// most 32 that lie evenly in the run.
 class TurnTraces {
  public:
-  void add(const TraceSample& sample);
+  void add(const TraceSample& sample) { latest_.push_back(sample); }
   /// A turn seen whole, after its last sample; further samples may have come.
   void turnEnded(std::uint64_t turn, std::int64_t stamp, double period_s, double amplitude);
 
@@ -39,7 +39,7 @@ class TurnTraces {
   TurnTrace traceOf(std::uint64_t turn, std::int64_t stamp, double period_s, double amplitude) const;
   void keepCandidate(TurnTrace trace);
 
-  std::deque<TraceSample> latest_;
+  boost::circular_buffer<TraceSample> latest_{8192};  ///< those of a revolution and of the measurement of its blow
   std::optional<TurnTrace> worst_;
   std::vector<TurnTrace> candidates_;
   std::uint64_t turns_{}, every_{1};  ///< each every_-th turn is a candidate
