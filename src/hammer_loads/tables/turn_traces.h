@@ -39,7 +39,7 @@ class TurnTraces {
   TurnTrace traceOf(std::uint64_t turn, std::int64_t stamp, double period_s, double amplitude) const;
   void keepCandidate(TurnTrace trace);
 
-  boost::circular_buffer<TraceSample> latest_{8192};  ///< those of a revolution and of the measurement of its blow
+  boost::circular_buffer<TraceSample> latest_{8192};  ///< samples of a revolution and of the measurement of its blow
   std::optional<TurnTrace> worst_;
   std::vector<TurnTrace> candidates_;
   std::uint64_t turns_{}, every_{1};  ///< each every_-th turn is a candidate
