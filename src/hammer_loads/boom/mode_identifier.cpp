@@ -24,7 +24,7 @@ constexpr double kUnknownContact = 1e4;  // deviation of the rock's force at the
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 // Prior: kLeastDamping, kMostDamping
 
-constexpr int kMostStates = 64;
+constexpr int kMostStates = 64;  // room for those of a ModeIdentifier
 
 /// New values of two neighbouring states: weighted sums over two states or more, which include both.
 struct TwoOf {
@@ -230,6 +230,7 @@ void ModeIdentifier::advanceModes(const HeldForces::Piece& piece) noexcept {
 /// 9 Hz and a step of 10 ms, the states themselves are exact.
 void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
                                        const States& next, const LogOil& way_next) noexcept {
+  static_assert(kMaxStates <= kMostStates);
   const LogOil torque_now = oilTorques(now), torque_next = oilTorques(next);
   const LogOil rubbed_now = sealTorques(way_), rubbed_next = sealTorques(way_next);
   const double per_time = 1.0 / step;
