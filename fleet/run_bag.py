@@ -52,21 +52,16 @@ def processed(bag, database):
 
 def main(bag, database, outcome_path):
     """bag: JSON of machine, bags (of one recording, in order), parameters, options (of process_bag), problem (why it cannot be
-    tried), states. Writes the database, empty if the bag gives none, and the outcome."""
+    tried), states. Writes the database, empty if the bag gives none, and the outcome. Snakemake makes their folder and removes the
+    files of an earlier job."""
     bag = json.loads(bag)
-    for path in (database, outcome_path):
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        if os.path.exists(path):
-            os.unlink(path)
     status, reason = processed(bag, database)
     if status != "done":
         open(database, "w").close()
     outcome = {"machine": bag["machine"], "bag": bag["bags"][0], "input_sha256": sha256(bag["bags"]),
                "parameters_sha256": sha256(bag["parameters"]), "status": status, "reason": reason}
-    part = outcome_path + ".part"
-    with open(part, "w", encoding="utf-8") as file:
+    with open(outcome_path, "w", encoding="utf-8") as file:
         json.dump(outcome, file, indent=1, sort_keys=True)
-    os.replace(part, outcome_path)
 
 
 if __name__ == "__main__":

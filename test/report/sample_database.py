@@ -11,6 +11,7 @@ import sqlite3
 
 APPLICATION_ID, VERSION = 0x484C5242, 1
 SECOND = 1000000000
+RATE_HZ = 5.0
 PULSE = ["period", "amplitude", "angular_frequency", "start", "impulse", "turn_impulse_x",
          "turn_impulse_z", "half_sine_rms_error"]
 STD = ["mean_std", "range_own_std", "range_systematic_std"]
@@ -130,10 +131,9 @@ def sha(text):
 class Machine:
     """Properties that differ between two machines of a fleet."""
 
-    def __init__(self, name="mo100", peak_N=40600.0, rate_Hz=5.0, noise=0.04, consistency=0.9, jitter_s=2e-5,
-                 stiff=1.0, curve=True, parameters=None, misuse=(0, 0, None, None), oil=None):
-        self.name, self.peak_N, self.rate_Hz, self.noise = name, peak_N, rate_Hz, noise
-        self.consistency, self.jitter_s, self.stiff, self.curve = consistency, jitter_s, stiff, curve
+    def __init__(self, name="mo100", peak_N=40600.0, jitter_s=2e-5, curve=True, parameters=None, misuse=(0, 0, None, None),
+                 oil=None):
+        self.name, self.peak_N, self.jitter_s, self.curve = name, peak_N, jitter_s, curve
         self.oil = oil or {}  # by cylinder: stiffness over the boom file's, change from run to run, doubtful
         self.misuse = misuse  # blank firing, blows judged, of these unpressed, seconds at one place
         self.parameters = {"rocker_mass_kg": ("35.2", "35.2"), "hammer": (name, "mo100"),
@@ -142,8 +142,8 @@ class Machine:
 
 def turn_of(machine, turn, rng):
     """Pulse and blow of one turn: the peak wanders with the rock over minutes."""
-    rock = 1.0 + 0.15 * math.sin(turn / 700.0) + rng.gauss(0.0, machine.noise)
-    period = 1.0 / machine.rate_Hz * (1.0 + rng.gauss(0.0, 0.004))
+    rock = 1.0 + 0.15 * math.sin(turn / 700.0) + rng.gauss(0.0, 0.04)
+    period = 1.0 / RATE_HZ * (1.0 + rng.gauss(0.0, 0.004))
     amplitude = machine.peak_N * max(0.2, rock)
     mu = 31.4
     impulse = 2.0 * amplitude / mu
@@ -158,10 +158,10 @@ def turn_of(machine, turn, rng):
     return pulse, blow
 
 
-def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warnings, refusals, restarts, rows):
+def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warnings, refusals, restarts):
     rng = random.Random(seed)
     channels = channel_list(boom)
-    turns = int(seconds * machine.rate_Hz)
+    turns = int(seconds * RATE_HZ)
     series = {i: [] for i, c in enumerate(channels) if c[3]}
     stamp, pulses, blows, loads = first_ns, [], [], []
     for turn in range(1, turns + 1):
@@ -174,8 +174,7 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
             low = mean - 0.25 * share * pulse[1] * (1 + rng.gauss(0.0, 0.05))
             if i in series:
                 series[i] += [low, high]
-            if rows:
-                loads.append((run_id, turn, i, low, high, mean + 0.3 * share * pulse[1]))
+            loads.append((run_id, turn, i, low, high, mean + 0.3 * share * pulse[1]))
     db.executemany(f"INSERT INTO turns VALUES({','.join('?' * (3 + len(PULSE)))},NULL)", pulses)
     db.executemany(f"INSERT INTO blows VALUES({','.join('?' * (3 + len(BLOW)))},NULL,NULL)", blows)
     db.executemany("INSERT INTO turn_loads VALUES(?,?,?,?,?,?)", loads)
@@ -203,7 +202,7 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
                (run_id, sha(source + sha(text) + "0.1.0" + str(run_id)), source, sha(text),
                 sha("machine " + machine.name), "0.1.0", "abc1234", text, first_ns, stamp, stamp / SECOND -
                 first_ns / SECOND, "linkage", int(1000 * seconds) + 9, int(1000 * seconds), restarts, len(pulses),
-                len(blows), 0, machine.consistency, machine.jitter_s, None, 1.5e-3, 0.29, 0.02, 3600.0, *machine.misuse, 0.35))
+                len(blows), 0, 0.9, machine.jitter_s, None, 1.5e-3, 0.29, 0.02, 3600.0, *machine.misuse, 0.35))
     db.executemany("INSERT INTO parameters VALUES(?,?,?,?)",
                    [(run_id, k, v, s) for k, (v, s) in sorted(machine.parameters.items())])
     db.executemany("INSERT INTO refusals VALUES(?,?,?)", [(run_id, r, n) for r, n in refusals.items()])
@@ -234,7 +233,7 @@ def write_trace(db, run_id, kind, turn, pulse, rng):
 
 
 def make(path, machine=None, seconds=60.0, first_ns=1700000000 * SECOND, seed=1, boom=True, classes=1024, runs=1,
-         warnings=(), refusals=None, restarts=0, rows=True):
+         warnings=(), refusals=None, restarts=0):
     """Writes a database; returns the stamp of its last blow [ns]."""
     machine = machine or Machine()
     if os.path.exists(path):
@@ -247,7 +246,7 @@ def make(path, machine=None, seconds=60.0, first_ns=1700000000 * SECOND, seed=1,
     stamp = first_ns
     for run_id in range(1, runs + 1):
         stamp = write_run(db, run_id, machine, seconds, stamp, seed + run_id, boom, classes, warnings,
-                          refusals or {}, restarts, rows) + 30 * SECOND
+                          refusals or {}, restarts) + 30 * SECOND
     db.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     db.execute(f"PRAGMA user_version = {VERSION}")
     if db.in_transaction:
