@@ -19,7 +19,6 @@
 
 #include "hammer_loads/ros/run_node.h"
 #include "hammer_loads/settings/load.h"
-#include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {

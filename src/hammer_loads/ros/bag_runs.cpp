@@ -7,7 +7,6 @@
 #include "hammer_loads/ros/bag_processing.h"
 #include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/readers.h"
-#include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/tables/digest.h"
 #include "hammer_loads/util/format.h"
@@ -71,8 +70,8 @@ Settings withTopics(Settings settings, const InputTopics& given, const InputTopi
 
 InputTopics recordedTopics(const RunInfo& info) {
   std::vector<std::string> ignored;
-  std::optional<ParameterMap> parameters = recordedParameters(info.parameters_yaml, ignored);
-  return parameters ? takeInputTopics(*parameters, ignored) : InputTopics{};
+  ParameterReader reader(recordedParameters(info.parameters_yaml, ignored).value_or(ParameterMap{}));
+  return readInputTopics(reader);
 }
 
 Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, std::vector<BagWarning>& warnings) {
@@ -195,10 +194,10 @@ Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, 
   const RunInfos infos = readRunInfos(inputs, warnings);
   if (job.parameters || infos.runs.empty()) return runOfJob(job, infos, warnings);
   if (infos.topics.size() == 1) return recordedRuns(inputs, job, infos);
-  Checked<std::vector<BagRun>> result;
-  result.problems.push_back(inputs.names() + ": run_info of several hammers (" + joined(infos.topics) +
-                            "), --params FILE.yaml must give the parameters that apply");
-  return result;
+  return {std::nullopt,
+          {inputs.names() + ": run_info of several hammers (" + joined(infos.topics) +
+           "), --params FILE.yaml must give the parameters that apply"},
+          {}};
 }
 
 }  // namespace hammer_loads

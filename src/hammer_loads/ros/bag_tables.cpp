@@ -13,7 +13,6 @@
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
 #include "hammer_loads/settings/readers.h"
-#include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/tables/digest.h"
 #include "hammer_loads/util/format.h"
 

@@ -13,21 +13,10 @@ YAML::Node numberNode(double value) {
   return YAML::Node(numberText(value));
 }
 
-YAML::Node listNode(const XmlRpc::XmlRpcValue& list) {
-  YAML::Node node(YAML::NodeType::Sequence);
-  for (int i = 0; i < list.size(); ++i) node.push_back(yamlFromXmlRpc(list[i]));
-  return node;
-}
-
-YAML::Node mapNode(XmlRpc::XmlRpcValue& map) {
-  YAML::Node node(YAML::NodeType::Map);
-  for (auto& [key, value] : map) node.force_insert(key, yamlFromXmlRpc(value));
-  return node;
-}
-
 }  // namespace
 
 YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value) {
+  YAML::Node node(YAML::NodeType::Null);
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
       return YAML::Node(static_cast<bool>(value) ? "true" : "false");
@@ -38,15 +27,16 @@ YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value) {
     case XmlRpc::XmlRpcValue::TypeString:
       return textNode(static_cast<std::string>(value));
     case XmlRpc::XmlRpcValue::TypeArray:
-      return listNode(value);
+      node = YAML::Node(YAML::NodeType::Sequence);
+      for (int i = 0; i < value.size(); ++i) node.push_back(yamlFromXmlRpc(value[i]));
+      return node;
     case XmlRpc::XmlRpcValue::TypeStruct:
-      return mapNode(value);
-    case XmlRpc::XmlRpcValue::TypeInvalid:
-    case XmlRpc::XmlRpcValue::TypeDateTime:
-    case XmlRpc::XmlRpcValue::TypeBase64:
-      break;
+      node = YAML::Node(YAML::NodeType::Map);
+      for (auto& [key, item] : value) node.force_insert(key, yamlFromXmlRpc(item));
+      return node;
+    default:  // nothing here has a date or binary data
+      return node;
   }
-  return YAML::Node(YAML::NodeType::Null);  // nothing here has a date or binary data
 }
 
 ParameterMap privateParameters(const ros::NodeHandle& private_node, std::vector<std::string>& problems) {
@@ -55,20 +45,13 @@ ParameterMap privateParameters(const ros::NodeHandle& private_node, std::vector<
   return parameterMap(yamlFromXmlRpc(value), private_node.getNamespace(), problems).value_or(ParameterMap{});
 }
 
-std::string robotDescription(const ros::NodeHandle& private_node) {
-  std::string key, text;
-  if (private_node.searchParam("robot_description", key)) private_node.getParam(key, text);
-  return text;
-}
-
 Checked<Settings> loadPrivateParameters(const ros::NodeHandle& private_node) {
   std::vector<std::string> problems;
   ParameterMap given = privateParameters(private_node, problems);
   for (const char* foreign : {"robot_description", "diagnostic_period"}) given.erase(foreign);  // not from our files
-  Checked<Settings> result = load(configDirectory(), given, robotDescription(private_node));
-  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
-  if (!result.problems.empty()) result.value.reset();
-  return result;
+  std::string key, robot_description;
+  if (private_node.searchParam("robot_description", key)) private_node.getParam(key, robot_description);
+  return behind(problems, load(configDirectory(), given, robot_description));
 }
 
 }  // namespace hammer_loads

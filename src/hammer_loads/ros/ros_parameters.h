@@ -17,10 +17,8 @@ YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value);
 /// Every parameter in the node's private name space; none if there are none.
 ParameterMap privateParameters(const ros::NodeHandle& private_node, std::vector<std::string>& problems);
 
-/// Text of the parameter `robot_description`, searched from the private name space upwards; empty if there is none.
-std::string robotDescription(const ros::NodeHandle& private_node);
-
-/// Private parameters over the shipped ones and the robot description: hammer_loads::load for a node.
+/// Private parameters over the shipped ones and the robot description, the text of `robot_description` searched from
+/// the private name space upwards: hammer_loads::load for a node.
 Checked<Settings> loadPrivateParameters(const ros::NodeHandle& private_node);
 
 }  // namespace hammer_loads

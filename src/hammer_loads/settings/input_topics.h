@@ -4,9 +4,8 @@
 
 #include <array>
 #include <string>
-#include <vector>
 
-#include "hammer_loads/settings/parameter_map.h"
+#include "hammer_loads/settings/parameter_reader.h"
 
 namespace hammer_loads {
 
@@ -51,10 +50,9 @@ InputTopics inputTopics(const NameOf& nameOf) {
   return topics;
 }
 
-/// Takes the keys of kInputs, none of them required, out of the parameters.
-InputTopics takeInputTopics(ParameterMap& parameters, std::vector<std::string>& problems);
-
-/// Keys of the topics as YAML, one a line; none for a topic that is not known.
-std::string yamlOf(const InputTopics& topics);
+/// Reads the keys of kInputs, none of which is required.
+inline InputTopics readInputTopics(ParameterReader& reader) {
+  return inputTopics([&](const InputName& input) { return reader.given(input.key) ? reader.text(input.key) : ""; });
+}
 
 }  // namespace hammer_loads

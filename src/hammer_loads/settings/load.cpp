@@ -98,16 +98,18 @@ std::string withoutDriveInertia(std::string yaml) {
   return yaml;
 }
 
-/// Channels can be judged only where the boom is known.
-life::LifeSettings readLife(ParameterReader& reader, const std::optional<Boom>& boom) {
-  life::LifeSettings settings = readLifeSettings(reader);
-  if (reader.problems().empty()) checkChannels(settings, channelNames(boom ? &*boom : nullptr), reader);
-  return settings;
+/// Keys of the topics that are known, one a line.
+std::string yamlOf(const InputTopics& topics) {
+  std::string yaml;
+  for (const InputName& input : kInputs) {
+    const std::string& topic = topics.*input.topic;
+    if (!topic.empty()) yaml += std::string(input.key) + ": " + quotedText(topic) + "\n";
+  }
+  return yaml;
 }
 
 Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description, bool hammer_given) {
   Checked<Settings> result;
-  const InputTopics topics = takeInputTopics(parameters, result.problems);
   const bool boom_file = hasBoomKey(parameters);
   ParameterReader reader(std::move(parameters));
   const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes);
@@ -123,10 +125,13 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   const std::string conflict = vibrationConflict(pipeline, boom_file, vibrates);
   if (!conflict.empty()) reader.addProblem(conflict);
   takePitchChain(reader, pipeline, boom, description, result.notes);
-  life::LifeSettings life = readLife(reader, boom);
+  life::LifeSettings life = readLifeSettings(reader);
+  // The channels can be judged only where the boom is known.
+  if (reader.problems().empty()) checkChannels(life, channelNames(boom ? &*boom : nullptr), reader);
   std::vector<Limit> limits = readLimits(reader, life);
+  const InputTopics topics = readInputTopics(reader);  // last, so that they are the end of the YAML
   reader.reportUnknownKeys();
-  result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());
+  result.problems = reader.problems();
   if (!mechanism || !result.problems.empty()) return result;
   if (pipeline.choose_level) {
     const bool means = pipeline.output == OutputKind::kMean && pipeline.output_rate > 0.0;
@@ -144,7 +149,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
                           std::move(boom),
                           hammer_given,
                           robot_description,
-                          reader.yaml() + yamlOf(topics),
+                          reader.yaml(),
                           withoutDriveInertia(hammer_yaml) + boom_yaml + robot_description,
                           {},
                           topics};
@@ -156,33 +161,23 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
 Checked<Settings> load(const std::string& config_directory, ParameterMap given, const std::string& robot_description) {
   std::vector<std::string> problems;
   addLimitsFile(given, problems);
+  const bool hammer_given = hasHammerKey(given);
   std::vector<std::string> shipped{config_directory + "/pipeline.yaml", config_directory + "/log.yaml",
                                    config_directory + "/life.yaml"};
-  if (!hasHammerKey(given)) shipped.push_back(config_directory + "/hammer_mo100.yaml");
-
-  ParameterMap parameters;
-  const bool all_read = addFiles(shipped, parameters, problems);
-  leaveOutUnwantedChannels(given, parameters);
-  merge(given, parameters);
-  Checked<Settings> result;
-  if (all_read) result = settingsFrom(std::move(parameters), robot_description, hasHammerKey(given));
-  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
-  if (!result.problems.empty()) result.value.reset();
+  if (!hammer_given) shipped.push_back(config_directory + "/hammer_mo100.yaml");
+  Checked<Settings> result = loadFrom(shipped, [&](ParameterMap parameters) {
+    leaveOutUnwantedChannels(given, parameters);
+    merge(given, parameters);
+    return settingsFrom(std::move(parameters), robot_description, hammer_given);
+  });
   if (result.value) result.value->notes = result.notes;
-  return result;
+  return behind(problems, std::move(result));
 }
 
 Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
                             const std::string& robot_description) {
-  std::vector<std::string> problems;
-  ParameterMap given;
-  const bool all_read = addFiles(files, given, problems);
-  Checked<Settings> result;
-  // Without this, keys of the file that could not be read would be reported as missing.
-  if (all_read) result = load(config_directory, given, robot_description);
-  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
-  if (!result.problems.empty()) result.value.reset();
-  return result;
+  return loadFrom(files,
+                  [&](ParameterMap given) { return load(config_directory, std::move(given), robot_description); });
 }
 
 Checked<Settings> withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "hammer_loads/settings/parameter_reader.h"
@@ -8,13 +9,20 @@
 namespace hammer_loads {
 namespace {
 
-struct CylinderKey {
+/// A number of a part of the boom; its key in the file begins with the part's name.
+template <typename Part>
+struct PartKey {
   const char* key;
   const char* unit;
-  double CylinderParameters::*field;
+  double Part::*field;
 };
 
-constexpr CylinderKey kCylinderKeys[] = {
+template <typename Part, std::size_t N>
+void readNumbers(ParameterReader& reader, const std::string& prefix, const PartKey<Part> (&keys)[N], Part& part) {
+  for (const PartKey<Part>& k : keys) part.*k.field = reader.number(prefix + k.key, k.unit, NumberRule::any());
+}
+
+constexpr PartKey<CylinderParameters> kCylinderKeys[] = {
     {"base_x_m", "m", &CylinderParameters::base_x},
     {"base_z_m", "m", &CylinderParameters::base_z},
     {"rod_x_m", "m", &CylinderParameters::rod_x},
@@ -28,19 +36,14 @@ constexpr CylinderKey kCylinderKeys[] = {
     {"relief_pressure_Pa", "Pa", &CylinderParameters::relief_pressure},
 };
 
-struct LinkageKey {
-  const char* key;
-  double BucketLinkageParameters::*field;
+constexpr PartKey<BucketLinkageParameters> kLinkageKeys[] = {
+    {"rocker_link_base_x_m", "m", &BucketLinkageParameters::guide_x},
+    {"rocker_link_base_z_m", "m", &BucketLinkageParameters::guide_z},
+    {"rocker_link_length_m", "m", &BucketLinkageParameters::guide_length},
+    {"coupler_length_m", "m", &BucketLinkageParameters::coupler_length},
 };
 
-constexpr LinkageKey kLinkageKeys[] = {
-    {"rocker_link_base_x_m", &BucketLinkageParameters::guide_x},
-    {"rocker_link_base_z_m", &BucketLinkageParameters::guide_z},
-    {"rocker_link_length_m", &BucketLinkageParameters::guide_length},
-    {"coupler_length_m", &BucketLinkageParameters::coupler_length},
-};
-
-constexpr CylinderKey kOptionalKeys[] = {
+constexpr PartKey<CylinderParameters> kOptionalKeys[] = {
     {"friction", "", &CylinderParameters::friction},
     {"friction_std", "", &CylinderParameters::friction_std},
     {"friction_force_N", "N", &CylinderParameters::friction_force},
@@ -52,13 +55,29 @@ constexpr CylinderKey kOptionalKeys[] = {
     {"pressure_offset_std_Pa", "Pa", &CylinderParameters::pressure_offset_std},
 };
 
+constexpr PartKey<WeighedLink> kWeighedKeys[] = {
+    {"mass_kg", "kg", &WeighedLink::mass},
+    {"com_x_m", "m", &WeighedLink::com_x},
+    {"com_z_m", "m", &WeighedLink::com_z},
+    {"inertia_kg_m2", "kg m2", &WeighedLink::inertia},
+    {"moment_x_std_kg_m", "kg m", &WeighedLink::moment_x_std},
+    {"moment_z_std_kg_m", "kg m", &WeighedLink::moment_z_std},
+};
+
+constexpr PartKey<Supports> kSupportKeys[] = {
+    {"support_front_x_m", "m", &Supports::front_x},
+    {"support_front_half_width_m", "m", &Supports::front_half_width},
+    {"support_rear_x_m", "m", &Supports::rear_x},
+    {"support_rear_half_width_m", "m", &Supports::rear_half_width},
+};
+
 std::optional<BucketLinkageParameters> readLinkage(ParameterReader& reader, const std::string& name) {
   const std::string key = name + "_linkage";
   if (!reader.given(key)) return {};
   constexpr std::array<Named<bool>, 1> kKinds{{{"bucket", true}}};
   reader.choice(key, kKinds);
   BucketLinkageParameters linkage;
-  for (const LinkageKey& k : kLinkageKeys) linkage.*k.field = reader.number(name + "_" + k.key, "m", NumberRule::any());
+  readNumbers(reader, name + "_", kLinkageKeys, linkage);
   if (reader.given(key + "_branch")) linkage.branch = reader.number(key + "_branch", "", NumberRule::any());
   return linkage;
 }
@@ -67,29 +86,13 @@ CylinderParameters readCylinder(ParameterReader& reader, const std::string& name
   CylinderParameters cylinder;
   cylinder.name = name;
   cylinder.joint = reader.text(name + "_joint");
-  for (const CylinderKey& key : kCylinderKeys) {
-    cylinder.*key.field = reader.number(name + "_" + key.key, key.unit, NumberRule::any());
-  }
+  readNumbers(reader, name + "_", kCylinderKeys, cylinder);
   cylinder.linkage = readLinkage(reader, name);
-  for (const CylinderKey& key : kOptionalKeys) {
+  for (const PartKey<CylinderParameters>& key : kOptionalKeys) {
     const std::string whole = name + "_" + key.key;
     if (reader.given(whole)) cylinder.*key.field = reader.number(whole, key.unit, NumberRule::any());
   }
   return cylinder;
-}
-
-WeighedLink readWeighed(ParameterReader& reader, const std::string& name) {
-  const auto number = [&](const char* key, const char* unit) {
-    return reader.number(name + "_" + key, unit, NumberRule::any());
-  };
-  WeighedLink link;
-  link.name = name;
-  link.mass = number("mass_kg", "kg");
-  link.com_x = number("com_x_m", "m"), link.com_z = number("com_z_m", "m");
-  link.inertia = number("inertia_kg_m2", "kg m2");
-  link.moment_x_std = number("moment_x_std_kg_m", "kg m");
-  link.moment_z_std = number("moment_z_std_kg_m", "kg m");
-  return link;
 }
 
 SectionParameters readSection(ParameterReader& reader, const std::string& name) {
@@ -116,34 +119,17 @@ SectionParameters readSection(ParameterReader& reader, const std::string& name) 
 
 constexpr std::array<const char*, 4> kOilKeys{"bulk_modulus_Pa", "damping_ratio", "mode_refresh_angle_rad",
                                               "rigid_tolerance"};
-constexpr std::array<const char*, 4> kSupportKeys{"support_front_x_m", "support_front_half_width_m", "support_rear_x_m",
-                                                  "support_rear_half_width_m"};
-constexpr std::array<double Supports::*, 4> kSupportFields{&Supports::front_x, &Supports::front_half_width,
-                                                           &Supports::rear_x, &Supports::rear_half_width};
 constexpr std::array<const char*, 7> kOtherKeys{"root_link",     "tip_link",      "cylinders",     "sections",
                                                 "weighed_links", "link_mass_std", "link_com_std_m"};
 
-template <std::size_t N>
-bool anyGiven(ParameterReader& reader, const std::array<const char*, N>& keys) {
-  bool any = false;
-  for (const char* key : keys) any = reader.given(key) || any;  // each is known then
-  return any;
-}
-
 /// Reads the keys of the oil, which may be omitted together for a boom without cylinders.
 void readOil(ParameterReader& reader, bool cylinders, BoomParameters& p) {
-  if (!anyGiven(reader, kOilKeys) && !cylinders) return;
+  const auto given = [&](const char* key) { return reader.given(key); };
+  if (std::count_if(kOilKeys.begin(), kOilKeys.end(), given) == 0 && !cylinders) return;  // all of them are known now
   p.bulk_modulus = reader.number("bulk_modulus_Pa", "Pa", NumberRule::any());
   p.vibration.damping_ratio = reader.number("damping_ratio", "", NumberRule::any());
   p.vibration.refresh_angle = reader.number("mode_refresh_angle_rad", "rad", NumberRule::any());
   p.rigid_tolerance = reader.number("rigid_tolerance", "", NumberRule::any());
-}
-
-Supports readSupports(ParameterReader& reader) {
-  Supports s;
-  for (std::size_t i = 0; i < kSupportKeys.size(); ++i)
-    s.*kSupportFields[i] = reader.number(kSupportKeys[i], "m", NumberRule::any());
-  return s;
 }
 
 }  // namespace
@@ -154,22 +140,31 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
   p.chain.tip = reader.text("tip_link");
   for (const std::string& name : reader.names("cylinders")) p.cylinders.push_back(readCylinder(reader, name));
   readOil(reader, !p.cylinders.empty(), p);
-  if (reader.given("weighed_links"))
-    for (const std::string& name : reader.names("weighed_links")) p.chain.weighed.push_back(readWeighed(reader, name));
+  if (reader.given("weighed_links")) {
+    for (const std::string& name : reader.names("weighed_links")) {
+      WeighedLink& link = p.chain.weighed.emplace_back();
+      link.name = name;
+      readNumbers(reader, name + "_", kWeighedKeys, link);
+    }
+  }
   if (reader.given("link_mass_std")) p.link_mass_std = reader.number("link_mass_std", "", NumberRule::within(0.0, 1.0));
   if (reader.given("link_com_std_m"))
     p.link_com_std = reader.number("link_com_std_m", "m", NumberRule::within(0.0, 10.0));
   if (reader.given("sections")) {
     for (const std::string& name : reader.names("sections")) p.sections.push_back(readSection(reader, name));
   }
-  if (!p.cylinders.empty() || anyGiven(reader, kSupportKeys)) p.supports = readSupports(reader);
+  const auto given = [&](const PartKey<Supports>& k) { return reader.given(k.key); };
+  if (std::count_if(std::begin(kSupportKeys), std::end(kSupportKeys), given) > 0 || !p.cylinders.empty())
+    readNumbers(reader, "", kSupportKeys, p.supports.emplace());
   return p;
 }
 
 bool hasBoomKey(const ParameterMap& parameters) {
   const auto given = [&](const char* key) { return parameters.count(key) != 0; };
   const auto any = [&](const auto& keys) { return std::any_of(keys.begin(), keys.end(), given); };
-  return any(kOtherKeys) || any(kOilKeys) || any(kSupportKeys);
+  return any(kOtherKeys) || any(kOilKeys) ||
+         std::any_of(std::begin(kSupportKeys), std::end(kSupportKeys),
+                     [&](const PartKey<Supports>& k) { return given(k.key); });
 }
 
 std::string boomYaml(const std::string& parameters) {

@@ -1,7 +1,4 @@
-#include "hammer_loads/settings/recorded_settings.h"
-
-#include "hammer_loads/settings/input_topics.h"
-#include "hammer_loads/settings/parameter_map.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
@@ -23,16 +20,6 @@ bool dropUnknown(const std::vector<std::string>& problems, ParameterMap& paramet
   return dropped;
 }
 
-/// The keys of life.yaml where not one of them was recorded: a version that counted nothing.
-ParameterMap lifeOfNoCount(const std::string& config_directory, const ParameterMap& recorded) {
-  std::vector<std::string> ignored;
-  ParameterMap life;
-  addFiles({config_directory + "/life.yaml"}, life, ignored);
-  for (const auto& [key, parameter] : life)
-    if (recorded.count(key) != 0) return {};
-  return life;
-}
-
 std::string textOf(const YAML::Node& value) {
   if (const auto number = asNumber(value)) return numberText(*number);
   if (const auto boolean = asBoolean(value)) return *boolean ? "true" : "false";
@@ -40,14 +27,6 @@ std::string textOf(const YAML::Node& value) {
   std::string text;
   for (const YAML::Node& item : value) text += (text.empty() ? "" : ", ") + textOf(item);
   return "[" + text + "]";
-}
-
-ParameterMap shippedIn(const std::string& directory, const std::vector<const char*>& files) {
-  std::vector<std::string> paths, problems;
-  for (const char* file : files) paths.push_back(directory + "/" + file);
-  ParameterMap parameters;
-  addFiles(paths, parameters, problems);
-  return parameters;
 }
 
 }  // namespace
@@ -76,10 +55,8 @@ Checked<Settings> loadRecorded(const std::string& config_directory, const std::s
   if (!result.value) return result;
   std::vector<std::string> ignored;
   const std::optional<ParameterMap> in_force = recordedParameters(result.value->yaml, ignored);
-  const ParameterMap life = lifeOfNoCount(config_directory, *given);
-  if (!life.empty()) notes.push_back("load cycles: not recorded what to count, the shipped life.yaml is used");
   for (const auto& [key, parameter] : in_force.value_or(ParameterMap{})) {
-    if (given->count(key) == 0 && life.count(key) == 0)
+    if (given->count(key) == 0)
       notes.push_back(key + ": not recorded, the shipped value is used: " + describe(parameter.value));
   }
   result.notes = std::move(notes);
@@ -89,9 +66,12 @@ Checked<Settings> loadRecorded(const std::string& config_directory, const std::s
 std::vector<ParameterText> parameterTexts(const std::string& config_directory, const std::string& yaml) {
   std::vector<std::string> problems;
   ParameterMap parameters = parameterMap(YAML::Load(yaml), {}, problems).value_or(ParameterMap{});
-  takeInputTopics(parameters, problems);  // names of a recording, no parameters
-  const ParameterMap shipped =
-      shippedIn(config_directory, {"pipeline.yaml", "log.yaml", "life.yaml", "hammer_mo100.yaml", "boom_eo2621.yaml"});
+  for (const InputName& input : kInputs) parameters.erase(input.key);  // names of a recording, no parameters
+  std::vector<std::string> files;
+  for (const char* name : {"pipeline", "log", "life", "hammer_mo100", "boom_eo2621"})
+    files.push_back(config_directory + "/" + name + ".yaml");
+  ParameterMap shipped;
+  addFiles(files, shipped, problems);
   std::vector<ParameterText> texts;
   for (const auto& [key, parameter] : parameters) {
     const auto found = shipped.find(key);

@@ -1,10 +1,8 @@
 #include "hammer_loads/settings/yaml_value.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <limits>
+#include <boost/lexical_cast/try_lexical_convert.hpp>
+#include <cmath>
 
-#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -18,32 +16,19 @@ bool isPlain(const YAML::Node& value) {
          tag == "tag:yaml.org,2002:bool";
 }
 
-std::optional<double> specialNumber(const std::string& text) {
-  std::string name = text;
-  const bool negative = !name.empty() && name[0] == '-';
-  if (!name.empty() && (name[0] == '-' || name[0] == '+')) name.erase(0, 1);
-  if (name == ".inf" || name == ".Inf" || name == ".INF") return negative ? -kInfinity : kInfinity;
-  if (name == ".nan" || name == ".NaN" || name == ".NAN") return std::numeric_limits<double>::quiet_NaN();
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::optional<double> asNumber(const YAML::Node& value) {
   if (!isPlain(value)) return std::nullopt;
-  const std::string& text = value.Scalar();
-  if (const auto special = specialNumber(text)) return special;
-  return decimalNumber(text);
+  if (const auto number = decimalNumber(value.Scalar())) return number;
+  double special = 0.0;  // .inf, -.inf, .nan: yaml-cpp also takes other spellings of finite numbers
+  if (!YAML::convert<double>::decode(value, special) || std::isfinite(special)) return std::nullopt;
+  return special;
 }
 
 std::optional<std::int64_t> asInteger(const YAML::Node& value) {
-  if (!isPlain(value)) return std::nullopt;
-  const std::string& text = value.Scalar();
-  if (text.empty() || text.find_first_not_of("0123456789+-") != std::string::npos) return std::nullopt;
-  char* end = nullptr;
-  errno = 0;
-  const std::int64_t number = std::strtoll(text.c_str(), &end, 10);
-  if (errno != 0 || end != text.c_str() + text.size()) return std::nullopt;
+  std::int64_t number = 0;
+  if (!isPlain(value) || !boost::conversion::try_lexical_convert(value.Scalar(), number)) return std::nullopt;
   return number;
 }
 
