@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "hammer_loads/calibration/shot_way.h"
 #include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::calibration {
@@ -14,14 +13,100 @@ namespace {
 constexpr double kMaxStep = 0.08;  // [rad]
 constexpr int kMostSteps = 64;     // from one node of the torque to the next
 
-using Path = ShotWay::Path;
-using There = ShotWay::There;
+/// The equations of motion on one side of a blow, with their derivatives: angle and sqrt(inertia) speed. Time runs away
+/// from the blow.
+class ShotWay {
+ public:
+  using Path = Eigen::Vector2d;
+  struct There {
+    ShaftLoad load;
+    double inv_root, speed, torque;
+  };
+  struct Run {
+    double time;
+    Path path;
+    ShotSlopes slopes;
+    There there;
+  };
 
-struct Run {
-  double time;
-  Path path;
-  ShotSlopes slopes;
-  There there;
+  ShotWay(const ShaftModel& model, const HalfShot& half) : model_(model), half_(half) {}
+
+  There at(double time, const Path& path) const {
+    There t{model_({path[0], side()}), 0.0, 0.0, 0.0};
+    t.inv_root = 1.0 / std::sqrt(half_.drive_inertia + t.load.inertia);
+    t.speed = path[1] * t.inv_root;
+    t.torque = torqueAt(time, path[0], t.speed) + t.load.weight_torque;
+    return t;
+  }
+  Path rate(const There& t, const Path& path) const { return sign() * t.inv_root * Path(path[1], t.torque); }
+  ShotSlopes rate(const There& t, double time, const Path& path, const ShotSlopes& slopes) const {
+    const double gain = sign() * t.inv_root, square = t.inv_root * t.inv_root;
+    const double by_angle = t.load.half_inertia_slope * square, by_inertia = 0.5 * half_.drive_inertia * square;
+    const DriveLaw& law = half_.law;
+    Eigen::Matrix2d own;
+    own << -sign() * t.speed * by_angle, gain,
+        gain * (t.load.weight_torque_slope - law.stiffness + law.drag * t.speed * by_angle - t.torque * by_angle),
+        -gain * law.drag * t.inv_root;
+    ShotSlopes rate = own * slopes;
+    addTorqueSlopes(gain, time, path[0], t.speed, rate.row(1));
+    rate(0, kOwnLogInertia) -= sign() * t.speed * by_inertia;
+    rate(1, kOwnLogInertia) += gain * by_inertia * (law.drag * t.speed - t.torque);
+    return rate;
+  }
+
+  ShotPoint pointAt(const There& t, const Path& path) const {
+    const double acceleration = (t.torque - t.load.half_inertia_slope * t.speed * t.speed) * t.inv_root * t.inv_root;
+    return {path[0], t.speed, acceleration};
+  }
+  /// d(offset, speed) from d(offset, sqrt(inertia) speed).
+  ShotSlopes ofPoint(const There& t, ShotSlopes slopes) const {
+    const double square = t.inv_root * t.inv_root;
+    slopes.row(1) = t.inv_root * slopes.row(1) - t.speed * t.load.half_inertia_slope * square * slopes.row(0);
+    slopes(1, kOwnLogInertia) -= 0.5 * t.speed * half_.drive_inertia * square;
+    return slopes;
+  }
+  Run atBlow() const {
+    const double root = std::sqrt(half_.drive_inertia + model_({0.0, side()}).inertia);
+    Run run{0.0, {0.0, root * half_.speed}, ShotSlopes::Zero(), {}};
+    run.slopes(1, kOwnSpeed) = root;
+    run.slopes(1, kOwnLogInertia) = 0.5 * half_.drive_inertia * half_.speed / root;
+    run.there = at(0.0, run.path);
+    return run;
+  }
+
+ private:
+  /// Between which nodes of the torque an instant lies.
+  struct NodePlace {
+    int node;
+    double part;
+  };
+  NodePlace nodePlace(double time) const {
+    const double place = std::fmin(time / half_.node_step, static_cast<double>(kNodesBeside));  // NaN: the last one
+    const int node = std::min(static_cast<int>(place), kNodesBeside - 1);
+    return {node, place - node};
+  }
+  double sign() const { return half_.before ? -1.0 : 1.0; }
+  Side side() const { return half_.before ? Side::kBeforeBlow : Side::kAfterBlow; }
+  /// Lead of the mean speed over the state at `offset`.
+  double ahead(double time, double offset) const { return half_.law.mean_speed * sign() * time - offset; }
+  double torqueAt(double time, double offset, double speed) const {
+    const NodePlace place = nodePlace(time);
+    const DriveLaw& law = half_.law;
+    return half_.torque[place.node] + place.part * (half_.torque[place.node + 1] - half_.torque[place.node]) +
+           law.stiffness * ahead(time, offset) - law.drag * (speed - law.mean_speed);
+  }
+  /// A row's rate by the torque is `gain`.
+  template <class Row>
+  void addTorqueSlopes(double gain, double time, double offset, double speed, Row rate) const {
+    const NodePlace place = nodePlace(time);
+    rate[kOwnTorques + place.node] += gain * (1.0 - place.part);
+    rate[kOwnTorques + place.node + 1] += gain * place.part;
+    rate[kOwnStiffness] += gain * ahead(time, offset);
+    rate[kOwnDrag] -= gain * (speed - half_.law.mean_speed);
+  }
+
+  const ShaftModel& model_;
+  const HalfShot& half_;
 };
 
 struct Node {
@@ -31,14 +116,15 @@ struct Node {
 };
 
 template <bool with_slopes>
-void step(const ShotWay& way, double dt, Run& run) {
+void step(const ShotWay& way, double dt, ShotWay::Run& run) {
   const double middle = run.time + 0.5 * dt, end = run.time + dt;
+  using Path = ShotWay::Path;
   const Path k1 = way.rate(run.there, run.path), p2 = run.path + 0.5 * dt * k1;
-  const There t2 = way.at(middle, p2);
+  const ShotWay::There t2 = way.at(middle, p2);
   const Path k2 = way.rate(t2, p2), p3 = run.path + 0.5 * dt * k2;
-  const There t3 = way.at(middle, p3);
+  const ShotWay::There t3 = way.at(middle, p3);
   const Path k3 = way.rate(t3, p3), p4 = run.path + dt * k3;
-  const There t4 = way.at(end, p4);
+  const ShotWay::There t4 = way.at(end, p4);
   const Path k4 = way.rate(t4, p4);
   if constexpr (with_slopes) {
     using S = ShotSlopes;
@@ -93,26 +179,31 @@ class Between {
 };
 
 template <bool with_slopes>
-Node nodeOf(const ShotWay& way, const Run& run) {
+Node nodeOf(const ShotWay& way, const ShotWay::Run& run) {
   Node node{run.time, way.pointAt(run.there, run.path), {}};
   if constexpr (with_slopes) node.slopes = way.ofPoint(run.there, run.slopes);
   return node;
 }
 
-/// visit(i, motion within the step that holds the time) for each of the times. Steps end at the nodes of the torque.
-template <bool with_slopes, class Visit>
-void follow(const ShotWay& way, const HalfShot& half, const std::vector<double>& times, Run run, const Visit& visit) {
-  run.there = way.at(0.0, run.path);
+/// Steps end at the nodes of the torque. slopes: used with_slopes only.
+template <bool with_slopes>
+void follow(const ShotWay& way, const HalfShot& half, const std::vector<double>& times, std::vector<ShotPoint>& points,
+            std::vector<ShotSlopes>* slopes) {
+  ShotWay::Run run = way.atBlow();
   Node from = nodeOf<with_slopes>(way, run);
   double node_end = half.node_step;
   for (std::size_t i = 0; i < times.size();) {
-    const double left = node_end - run.time, needed = left / way.stepOf(run.there, kMaxStep);
+    const double left = node_end - run.time, longest = kMaxStep / std::max(std::abs(run.there.speed), 1.0),
+                 needed = left / longest;
     const int steps = needed < kMostSteps ? std::max(1, static_cast<int>(std::ceil(needed))) : kMostSteps;
     step<with_slopes>(way, left / steps, run);
     if (steps == 1) node_end += half.node_step;
     const Node to = nodeOf<with_slopes>(way, run);
     const Between between(half.before ? -1.0 : 1.0, from, to);
-    for (; i < times.size() && times[i] <= to.time; ++i) visit(i, between);
+    for (; i < times.size() && times[i] <= to.time; ++i) {
+      points[i] = between.point(times[i]);
+      if constexpr (with_slopes) (*slopes)[i] = between.slopes(times[i]);
+    }
     from = to;
   }
 }
@@ -123,17 +214,12 @@ void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<doub
            std::vector<ShotPoint>& points, std::vector<ShotSlopes>* slopes) {
   const ShotWay way(model, half);
   points.resize(times.size());
-  Run run{0.0, way.pathAtBlow(), ShotSlopes::Zero(), {}};
-  if (!slopes) {
-    follow<false>(way, half, times, run, [&](std::size_t i, const Between& at) { points[i] = at.point(times[i]); });
-    return;
+  if (slopes) {
+    slopes->resize(times.size());
+    follow<true>(way, half, times, points, slopes);
+  } else {
+    follow<false>(way, half, times, points, nullptr);
   }
-  slopes->resize(times.size());
-  run.slopes = way.slopesAtBlow();
-  follow<true>(way, half, times, run, [&](std::size_t i, const Between& at) {
-    points[i] = at.point(times[i]);
-    (*slopes)[i] = at.slopes(times[i]);
-  });
 }
 
 }  // namespace hammer_loads::calibration

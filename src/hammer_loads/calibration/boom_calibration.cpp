@@ -5,22 +5,55 @@
 
 #include "hammer_loads/calibration/recording_check.h"
 #include "hammer_loads/calibration/sensor_check.h"
-#include "hammer_loads/calibration/static_torques.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kStrongCorrelation = 0.9;  // correlation
-constexpr std::size_t kLeastRows = 60;      // per cylinder: 12 s of motion, both ways
-constexpr std::size_t kMostPoses = 40;      // at which static torques are judged
-constexpr double kSurprise = 3.0;           // standard deviations
+constexpr std::size_t kLeastRows = 60;  // per cylinder: 12 s of motion, both ways
+constexpr std::size_t kMostPoses = 40;  // at which static torques are judged
+constexpr double kSurprise = 3.0;       // standard deviations
 
 double rms(const std::vector<double>& values) {
   double square = 0.0;
   for (const double v : values) square += v * v;
   return values.empty() ? kNaN : std::sqrt(square / static_cast<double>(values.size()));
+}
+
+/// rms of the values of a cylinder's rows, in one recording or in all.
+double rmsOf(const std::vector<BoomRow>& rows, const Eigen::VectorXd& values, std::size_t cylinder,
+             std::optional<std::size_t> recording = {}) {
+  std::vector<double> own;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].cylinder == cylinder && (!recording || rows[i].recording == *recording))
+      own.push_back(values[static_cast<Eigen::Index>(i)]);
+  return rms(own);
+}
+
+std::size_t countOf(const std::vector<BoomRow>& rows, std::size_t cylinder) {
+  const auto own = [&](const BoomRow& row) { return row.cylinder == cylinder; };
+  return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), own));
+}
+
+/// First moment about a cylinder's joint of all that its link carries, in the axes of the link that stands for it; what
+/// is beyond the next joint counts as in that. x and z.
+Eigen::Vector2d firstMoment(const Boom& boom, int joint, int link) {
+  const Chain& chain = boom.chain();
+  ChainPose pose;
+  forwardKinematics(chain, JointVector::Zero(chain.joints()), pose);
+  const int first = chain.linkBeyond(joint);
+  int last = first + 1;
+  while (last < chain.links() && chain.link(last).joint < 0) ++last;
+  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();
+  for (int i = first; i < chain.links(); ++i) {
+    const RigidBody& body = chain.link(i).body;
+    const Eigen::Vector3d at_B =
+        i < last ? Eigen::Vector3d(pose.link(i) * body.com) : Eigen::Vector3d(pose.link(last).translation());
+    moment_B += body.mass * (at_B - pose.p_BJ_B[static_cast<std::size_t>(joint)]);
+  }
+  const Eigen::Vector3d moment = pose.link(link).linear().transpose() * moment_B;
+  return {moment.x(), moment.z()};
 }
 
 class Finder {
@@ -46,11 +79,8 @@ class Finder {
     const BoomFit held = fitBoom(model, early, piece(progress, 0.1, 0.4));
     const BoomFit fit = fitBoom(model, rows, piece(progress, 0.4, 0.8));
     if (!fit.converged) result_.remarks.emplace_back("the fit did not settle: values are those of its last round");
-    const std::vector<Contradiction> found = contradictions(model, points_, rows, fit, result_.names);
-    if (!found.empty()) {
-      refuse(found.front().text);
-      return std::move(result_);
-    }
+    result_.problem = contradictionOf(model, points_, rows, fit, result_.names);
+    if (!result_.problem.empty()) return std::move(result_);
     fillCylinders(model, fit, rows, held, late);
     fillJoints(model, fit);
     fillEstimates(model, fit);
@@ -75,19 +105,17 @@ class Finder {
       if (weights_[r].mass == 0.0)
         free.points.insert(free.points.end(), points_[r].points.begin(), points_[r].points.end());
     }
-    const auto add = [this](const std::string& line) {
-      result_.problem += (result_.problem.empty() ? "" : "\n") + line;
-    };
-    for (const std::string& line : misreadings(model, free)) add(line);
-    for (const std::string& line : noisySensors(model.given().chain(), points_, result_.names)) add(line);
-    for (const std::string& line : brokenSensors(model.given().chain(), readings_, result_.names)) add(line);
-    return result_.problem.empty();
+    const Chain& chain = model.given().chain();
+    std::vector<std::string> lines = misreadings(model, free);
+    for (const auto& more :
+         {noisySensors(chain, points_, result_.names), brokenSensors(chain, readings_, result_.names)})
+      lines.insert(lines.end(), more.begin(), more.end());
+    return lines.empty() || refuse(joined(lines, "\n"));
   }
 
   bool enough(const BoomModel& model, const std::vector<BoomRow>& rows) {
     for (std::size_t k = 0; k < model.given().cylinders().size(); ++k) {
-      const auto own = static_cast<std::size_t>(
-          std::count_if(rows.begin(), rows.end(), [&](const BoomRow& row) { return row.cylinder == k; }));
+      const std::size_t own = countOf(rows, k);
       if (own >= kLeastRows) continue;
       const std::string& joint = model.given().cylinders()[k].parameters().joint;
       return refuse(format("%s: surely moves at %zu instants, must at %zu: drive it for half a minute, both ways",
@@ -111,40 +139,31 @@ class Finder {
                      const std::vector<BoomRow>& late) {
     const Eigen::VectorXd after = residualsOf(model, rows, fit.x), before = residualsOf(model, rows, model.zero()),
                           unseen = residualsOf(model, late, held.x);
+    Eigen::VectorXd force(after.size());
     Boom boom = model.given();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto e = static_cast<Eigen::Index>(i);
+      const std::size_t k = rows[i].cylinder;
+      const BoomPoint& point = *rows[i].point;
+      model.move(boom, model.zero(), point);
+      force[e] = rows[i].measured;
+      result_.residuals.push_back({k, point.motion.position[boom.cylinders()[k].joint()],
+                                   BoomModel::rodSpeed(boom, k, point) > 0.0, before[e], after[e]});
+    }
     for (std::size_t k = 0; k < fit.noise.size(); ++k) {
       CylinderFit c;
       c.name = model.given().cylinders()[k].parameters().name;
-      std::vector<double> force, left, was, out;
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i].cylinder != k) continue;
-        const auto e = static_cast<Eigen::Index>(i);
-        force.push_back(rows[i].measured), left.push_back(after[e]), was.push_back(before[e]);
-        const BoomPoint& point = *rows[i].point;
-        model.move(boom, model.zero(), point);
-        result_.residuals.push_back({k, point.motion.position[boom.cylinders()[k].joint()],
-                                     BoomModel::rodSpeed(boom, k, point) > 0.0, before[e], after[e]});
-      }
-      for (std::size_t i = 0; i < late.size(); ++i)
-        if (late[i].cylinder == k) out.push_back(unseen[static_cast<Eigen::Index>(i)]);
+      c.rows = countOf(rows, k), c.force = rmsOf(rows, force, k), c.left = rmsOf(rows, after, k);
+      c.before = rmsOf(rows, before, k), c.held_out = rmsOf(late, unseen, k);
       for (std::size_t r = 0; r < points_.size() && points_.size() > 1; ++r)
         c.left_in.push_back(rmsOf(rows, after, k, r));
-      c.rows = force.size(), c.force = rms(force), c.left = rms(left), c.before = rms(was), c.held_out = rms(out);
-      const auto friction = [&](const Eigen::VectorXd& x) {
-        return model.valueOf(x, BoomUnknown::kFrictionForce, k) + c.force * model.valueOf(x, BoomUnknown::kFriction, k);
+      const auto friction = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+        return Eigen::VectorXd::Constant(1, model.valueOf(x, BoomUnknown::kFrictionForce, k) +
+                                                c.force * model.valueOf(x, BoomUnknown::kFriction, k));
       };
-      c.friction = friction(fit.x), c.friction_std = deviationOf(fit, gradientOf(friction, fit.x));
+      c.friction = friction(fit.x)[0], c.friction_std = stdsOf(fit, friction)[0];
       result_.cylinders.push_back(c);
     }
-  }
-
-  static double rmsOf(const std::vector<BoomRow>& rows, const Eigen::VectorXd& left, std::size_t cylinder,
-                      std::size_t recording) {
-    std::vector<double> own;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (rows[i].cylinder == cylinder && rows[i].recording == recording)
-        own.push_back(left[static_cast<Eigen::Index>(i)]);
-    return rms(own);
   }
 
   void fillJoints(const BoomModel& model, const BoomFit& fit) {
@@ -152,104 +171,75 @@ class Finder {
     std::vector<JointVector> poses;
     for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kMostPoses)
       poses.push_back(points[i].motion.position);
-    const std::vector<std::vector<StaticTorque>> found = staticTorques(model, fit, poses);
-    const Eigen::MatrixXd before = weightTorques(model, model.zero(), poses);
-    for (std::size_t k = 0; k < fit.noise.size(); ++k) {
-      std::vector<double> torque, deviation, off;
-      for (std::size_t p = 0; p < poses.size(); ++p) {
-        torque.push_back(found[p][k].value), deviation.push_back(found[p][k].deviation);
-        off.push_back(found[p][k].value - before(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(k)));
-      }
-      result_.joints.push_back(
-          {model.given().cylinders()[k].parameters().joint, rms(torque), rms(deviation), rms(off)});
+    const auto torques = [&](const Eigen::VectorXd& x) { return weightTorques(model, x, poses); };
+    const Eigen::VectorXd found = torques(fit.x), stds = stdsOf(fit, torques), off = found - torques(model.zero());
+    const std::size_t cylinders = fit.noise.size();
+    for (std::size_t k = 0; k < cylinders; ++k) {
+      const auto rms_of_joint = [&](const Eigen::VectorXd& all) {
+        std::vector<double> own;
+        for (std::size_t i = k; i < poses.size() * cylinders; i += cylinders)
+          own.push_back(all[static_cast<Eigen::Index>(i)]);
+        return rms(own);
+      };
+      result_.joints.push_back({model.given().cylinders()[k].parameters().joint, rms_of_joint(found),
+                                rms_of_joint(stds), rms_of_joint(off)});
     }
   }
 
   static Estimate estimateOf(const BoomModel& model, const BoomFit& fit, std::size_t unknown) {
     const auto e = static_cast<Eigen::Index>(unknown);
-    Estimate estimate;
-    estimate.key = model.nameOf(unknown), estimate.value = model.valueOf(fit.x, unknown);
-    estimate.limit = model.unknowns()[unknown].deviation;
-    estimate.deviation = estimate.limit * std::sqrt(fit.covariance(e, e));
-    return estimate;
+    const Unknown& u = model.unknowns()[unknown];
+    return {model.nameOf(unknown),
+            kindOf(u.kind).unit,
+            model.valueOf(fit.x, unknown),
+            u.deviation * std::sqrt(fit.covariance(e, e)),
+            u.deviation,
+            kindOf(u.kind).note};
   }
 
   void fillEstimates(const BoomModel& model, const BoomFit& fit) {
     result_.found = model.parametersAt(fit.x);
     const Boom found = *Boom::make(basis_.urdf, result_.found).value;
     for (std::size_t i = 0; i < model.unknowns().size(); ++i) {
-      Estimate estimate = estimateOf(model, fit, i);
-      describe(model, found, model.unknowns()[i], estimate);
-      result_.estimates.push_back(estimate);
+      const Unknown& u = model.unknowns()[i];
+      const UnknownKind& kind = kindOf(u.kind);
+      Estimate e = estimateOf(model, fit, i);
+      if (kind.of_link) {
+        const int link = model.linkOf(u.of);
+        e.value = found.chain().body(link).*kind.of_link;
+        const double unit = kind.is_logarithm ? e.value : 1.0;
+        e.deviation *= unit, e.limit *= unit;
+        e.meaning = format("given %.6g", model.given().chain().body(link).*kind.of_link);
+      } else if (kind.of_cylinder) {
+        result_.found.cylinders[u.of].*kind.std = e.deviation;
+        e.meaning = format("given %.6g", u.given);
+      } else if (u.kind == BoomUnknown::kRecording) {
+        e.meaning += result_.names[u.recording];
+      }
+      result_.estimates.push_back(e);
     }
     for (std::size_t k = 0; k < fit.noise.size(); ++k) fillMoments(model, fit, k);
   }
 
-  void describe(const BoomModel& model, const Boom& found, const Unknown& u, Estimate& e) {
-    if (u.kind == BoomUnknown::kTipWeight) {
-      e.unit = "kg", e.meaning = "hung on the tip";
-      return;
-    }
-    if (u.kind == BoomUnknown::kRecording) {
-      e.unit = "Pa", e.meaning = "not of the boom file; " + result_.names[u.recording];
-      return;
-    }
-    CylinderParameters& cylinder = result_.found.cylinders[u.of];
-    const WeighedLink given = model.given().chain().body(model.linkOf(u.of)),
-                      link = found.chain().body(model.linkOf(u.of));
-    const auto absolute = [&](double value, double before, double unit, const char* name) {
-      e.value = value, e.deviation *= unit, e.limit *= unit, e.unit = name;
-      e.meaning = format("given %.6g", before);
-    };
-    switch (u.kind) {
-      case BoomUnknown::kMass:
-        return absolute(link.mass, given.mass, link.mass, "kg");
-      case BoomUnknown::kComX:
-        return absolute(link.com_x, given.com_x, 1.0, "m");
-      case BoomUnknown::kComZ:
-        return absolute(link.com_z, given.com_z, 1.0, "m");
-      case BoomUnknown::kInertia:
-        return absolute(link.inertia, given.inertia, link.inertia, "kg m2");
-      case BoomUnknown::kFrictionForce:
-        cylinder.friction_force_std = e.deviation;
-        return absolute(e.value, u.given, 1.0, "N");
-      case BoomUnknown::kFriction:
-        cylinder.friction_std = e.deviation;
-        return absolute(e.value, u.given, 1.0, "");
-      case BoomUnknown::kOffset:
-        cylinder.pressure_offset_std = e.deviation;
-        return absolute(e.value, u.given, 1.0, "Pa");
-      case BoomUnknown::kZero:
-        cylinder.joint_zero_std = e.deviation;
-        return absolute(e.value, u.given, 1.0, "rad");
-      case BoomUnknown::kViscous:
-        e.unit = "N s/m", e.meaning = "not of the boom file";
-        return;
-      default:
-        e.meaning = "not of the boom file; part by which its force is shown too large";
-        return;
-    }
-  }
-
   void fillMoments(const BoomModel& model, const BoomFit& fit, std::size_t cylinder) {
     const std::string& name = model.given().chain().link(model.linkOf(cylinder)).name;
-    const Eigen::Vector2d deviation = firstMomentDeviation(model, fit, cylinder);
+    const int joint = model.given().cylinders()[cylinder].joint();
+    const Eigen::VectorXd deviation = stdsOf(fit, [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+      const std::optional<Boom> boom = model.boomAt(x);
+      return boom ? firstMoment(*boom, joint, model.linkOf(cylinder)) : Eigen::Vector2d(kNaN, kNaN);
+    });
     if (WeighedLink* link = findLink(result_.found.chain.weighed, name))
       link->moment_x_std = deviation[0], link->moment_z_std = deviation[1];
   }
 
   void fillCorrelations(const BoomModel& model, const BoomFit& fit) {
-    const Eigen::VectorXd scale = fit.covariance.diagonal().cwiseSqrt();
-    for (Eigen::Index i = 0; i < scale.size(); ++i) {
-      const std::string name = model.nameOf(static_cast<std::size_t>(i));
-      if (std::abs(fit.x[i]) > kSurprise)
-        result_.remarks.push_back(format("%s is %.1f deviations off what was given", name.c_str(), std::abs(fit.x[i])));
-      for (Eigen::Index j = 0; j < i; ++j) {
-        const double r = fit.covariance(i, j) / (scale[i] * scale[j]);
-        if (std::abs(r) > kStrongCorrelation)
-          result_.correlations.push_back({model.nameOf(static_cast<std::size_t>(j)), name, r});
-      }
+    std::vector<std::string> names;
+    for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
+      names.push_back(model.nameOf(static_cast<std::size_t>(i)));
+      if (const double off = std::abs(fit.x[i]); off > kSurprise)
+        result_.remarks.push_back(format("%s is %.1f deviations off what was given", names.back().c_str(), off));
     }
+    addCorrelations(fit.covariance, names, result_);
   }
 
   /// Estimates the weight on a boom that was weighed without it.
@@ -266,9 +256,8 @@ class Finder {
     const BoomFit fit = fitBoom(model, rowsOf(model, points_), piece(progress, 0.8, 1.0));
     for (std::size_t i = 0; i < model.unknowns().size(); ++i) {
       if (model.unknowns()[i].kind != BoomUnknown::kTipWeight) continue;
-      Estimate& check = result_.weight_check.emplace(estimateOf(model, fit, i));
-      check.unit = "kg";
-      check.meaning = format("given %.6g", hung->mass);
+      result_.weight_check = estimateOf(model, fit, i);
+      result_.weight_check->meaning = format("given %.6g", hung->mass);
       return;
     }
   }

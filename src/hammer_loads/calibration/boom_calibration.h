@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hammer_loads/calibration/boom_fit.h"
-#include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/calibration/findings.h"
 
 namespace hammer_loads::calibration {
 
@@ -52,21 +52,17 @@ struct BoomResidual {
   double before{}, after{};  ///< [N]
 };
 
-struct BoomCalibration {
+/// Estimates are keys of the boom file; their limits are not used, see joints.
+struct BoomCalibration : Findings {
   /// Limit of the relative deviation of a joint's static torque. Above it the joint is undetermined and nothing is
   /// written, since the values belong together.
   static constexpr double kLimit = 0.03;
 
   std::vector<std::string> names;  ///< names of the recordings
-
-  std::string problem;  ///< reason why there is no result
   double seconds{};
   std::size_t points{}, left_out{};
-  std::vector<Estimate> estimates;  ///< keys of the boom file; limit: not used, see joints
-  std::vector<Correlation> correlations;
   std::vector<JointWeight> joints;
   std::vector<CylinderFit> cylinders;
-  std::vector<std::string> remarks;
   std::vector<BoomResidual> residuals;
   std::optional<Estimate> weight_check;  ///< the weight on the tip by a boom that was weighed without it [kg]
   BoomParameters found;                  ///< boom file with everything found and its deviations

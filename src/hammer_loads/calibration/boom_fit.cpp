@@ -97,31 +97,17 @@ class Fitter {
     }
   }
 
-  /// Linear system about the values of the fit. A row for which the model has no force is zero.
-  struct System {
-    Eigen::VectorXd left, weight;
-    Eigen::MatrixXd slopes;
-    Eigen::MatrixXd normal() const {
-      return slopes.transpose() * weight.asDiagonal() * slopes +
-             Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols());
-    }
-  };
-
-  System system() const {
-    System s;
-    s.left = residualsOf(model_, rows_, fit_.x), s.weight = weightsOf(fit_, rows_, s.left);
-    s.slopes = slopesOf(model_, rows_, fit_.x);
-    for (Eigen::Index i = 0; i < s.left.size(); ++i)
-      if (!(s.weight[i] > 0.0)) s.left[i] = 0.0, s.slopes.row(i).setZero();
-    return s;
+  /// With the prior of the unknowns.
+  static Eigen::MatrixXd normalOf(const BoomSystem& s) {
+    return s.information() + Eigen::MatrixXd::Identity(s.slopes.cols(), s.slopes.cols());
   }
 
   /// Covariance of the fit and of what differs from recording to recording. The load on the tip, the temperature of
   /// the oil and zeros are those of a day. A cylinder's forces therefore have a relative error of their own in each
   /// recording, which few recordings show only roughly.
   void findCovariance() {
-    const System s = system();
-    fit_.covariance = inverseOf(s.normal());
+    const BoomSystem s = systemOf(model_, rows_, fit_);
+    fit_.covariance = inverseOf(normalOf(s));
     if (rows_.empty() || rows_.front().recording == rows_.back().recording) return;
     const Eigen::MatrixXd covariance = fit_.covariance;
     for (std::size_t k = 0; k < fit_.noise.size(); ++k) {
@@ -145,11 +131,11 @@ class Fitter {
 
   /// Friction that would be below zero is held at zero.
   void step() {
-    const System s = system();
+    const BoomSystem s = systemOf(model_, rows_, fit_);
     const Eigen::Index n = fit_.x.size();
     std::set<Eigen::Index> held;
     for (bool again = true; again;) {
-      Eigen::MatrixXd N = s.normal();
+      Eigen::MatrixXd N = normalOf(s);
       Eigen::VectorXd right = s.slopes.transpose() * s.weight.cwiseProduct(s.left) - fit_.x;
       for (const Eigen::Index i : held) {
         const double way = atZero(i) - fit_.x[i];
@@ -209,15 +195,35 @@ BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const 
   return Fitter(model, rows).run(progress);
 }
 
-Eigen::VectorXd weightsOf(const BoomFit& fit, const std::vector<BoomRow>& rows, const Eigen::VectorXd& left) {
-  Eigen::VectorXd weight(left.size());
-  for (Eigen::Index i = 0; i < left.size(); ++i) {
+BoomSystem systemOf(const BoomModel& model, const std::vector<BoomRow>& rows, const BoomFit& fit) {
+  BoomSystem s{residualsOf(model, rows, fit.x), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.size())),
+               slopesOf(model, rows, fit.x)};
+  for (Eigen::Index i = 0; i < s.left.size(); ++i) {
+    if (!std::isfinite(s.left[i])) {
+      s.left[i] = 0.0, s.slopes.row(i).setZero();
+      continue;
+    }
     const std::size_t k = rows[static_cast<std::size_t>(i)].cylinder;
-    const double size = std::abs(left[i]) / fit.noise[k];
-    weight[i] = (size > kFullWeight ? kFullWeight / size : 1.0) / (fit.noise[k] * fit.noise[k] * fit.together[k]);
-    if (!std::isfinite(left[i])) weight[i] = 0.0;
+    const double size = std::abs(s.left[i]) / fit.noise[k];
+    s.weight[i] = (size > kFullWeight ? kFullWeight / size : 1.0) / (fit.noise[k] * fit.noise[k] * fit.together[k]);
   }
-  return weight;
+  return s;
+}
+
+Eigen::VectorXd stdsOf(const BoomFit& fit, const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& function) {
+  constexpr double kTenth = 0.1;  // Numerical: kTenth
+  std::vector<Eigen::VectorXd> slopes;
+  for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
+    Eigen::VectorXd up = fit.x, down = fit.x;
+    up[i] += kTenth, down[i] -= kTenth;
+    slopes.emplace_back((function(up) - function(down)) / (2.0 * kTenth));
+  }
+  Eigen::VectorXd stds(slopes.front().size()), gradient(fit.x.size());
+  for (Eigen::Index k = 0; k < stds.size(); ++k) {
+    for (Eigen::Index i = 0; i < fit.x.size(); ++i) gradient[i] = slopes[static_cast<std::size_t>(i)][k];
+    stds[k] = std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
+  }
+  return stds;
 }
 
 }  // namespace hammer_loads::calibration

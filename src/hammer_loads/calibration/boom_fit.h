@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "hammer_loads/calibration/boom_rows.h"
@@ -22,20 +23,16 @@ struct BoomFit {
 /// number is then reduced accordingly. Friction is not negative.
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
 
-/// Weights of rows with these residuals in a fit [1/N2]: the noise, the correlation of neighbours, Huber's weights.
-Eigen::VectorXd weightsOf(const BoomFit& fit, const std::vector<BoomRow>& rows, const Eigen::VectorXd& left);
+/// Linear system of a fit about its values.
+struct BoomSystem {
+  Eigen::VectorXd left;    ///< residuals [N]; zero where the model has no force
+  Eigen::VectorXd weight;  ///< the noise, the correlation of neighbours, Huber's weights [1/N2]
+  Eigen::MatrixXd slopes;  ///< derivatives of the model's forces by the unknowns [N]
+  Eigen::MatrixXd information() const { return slopes.transpose() * weight.asDiagonal() * slopes; }
+};
+BoomSystem systemOf(const BoomModel& model, const std::vector<BoomRow>& rows, const BoomFit& fit);
 
-/// Gradient of any function of x; by differences over a tenth of each unknown's deviation.
-template <typename Function>
-Eigen::VectorXd gradientOf(const Function& function, const Eigen::VectorXd& x) {
-  constexpr double kStep = 0.1;  // Numerical: kStep
-  Eigen::VectorXd gradient(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    Eigen::VectorXd up = x, down = x;
-    up[i] += kStep, down[i] -= kStep;
-    gradient[i] = (function(up) - function(down)) / (2.0 * kStep);
-  }
-  return gradient;
-}
+/// Standard deviations of a function of the unknowns, by differences over a tenth of each unknown's deviation.
+Eigen::VectorXd stdsOf(const BoomFit& fit, const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& function);
 
 }  // namespace hammer_loads::calibration

@@ -2,19 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::calibration {
 namespace {
-
-Boom boomOrThrow(const BoomBasis& basis) {
-  Checked<Boom> boom = Boom::make(basis.urdf, basis.parameters);
-  if (!boom.value) throw std::invalid_argument(boom.problems.front());
-  return *std::move(boom.value);
-}
 
 int heaviestBeyond(const Chain& chain, int joint) {
   int heaviest = chain.linkBeyond(joint);
@@ -42,10 +35,31 @@ void replace(std::vector<WeighedLink>& links, const WeighedLink& link) {
     links.push_back(link);
 }
 
+using Link = WeighedLink;
+using Holder = CylinderParameters;
+
+/// In the order of BoomUnknown.
+constexpr UnknownKind kKinds[]{
+    {"_mass_kg", "kg", "", &Link::mass, true},
+    {"_com_x_m", "m", "", &Link::com_x},
+    {"_com_z_m", "m", "", &Link::com_z},
+    {"_inertia_kg_m2", "kg m2", "", &Link::inertia, true},
+    {"_friction_force_N", "N", "", nullptr, false, &Holder::friction_force, &Holder::friction_force_std},
+    {"_friction", "", "", nullptr, false, &Holder::friction, &Holder::friction_std},
+    {"'s friction by speed", "N s/m", "not of the boom file"},
+    {"_pressure_offset_Pa", "Pa", "", nullptr, false, &Holder::pressure_offset, &Holder::pressure_offset_std},
+    {"'s bore and gain of its sensors", "", "not of the boom file; part by which its force is shown too large"},
+    {"_joint_zero_rad", "rad", "", nullptr, false, &Holder::joint_zero, &Holder::joint_zero_std},
+    {"weight on the tip", "kg", "hung on the tip"},
+    {"'s offset in recording ", "Pa", "not of the boom file; "},
+};
+
 }  // namespace
 
+const UnknownKind& kindOf(BoomUnknown unknown) { return kKinds[static_cast<std::size_t>(unknown)]; }
+
 BoomModel::BoomModel(const BoomBasis& basis, const std::vector<TipWeight>& weights)
-    : basis_(basis), weights_(weights), given_(boomOrThrow(basis)) {
+    : basis_(basis), weights_(weights), given_(Boom::make(basis.urdf, basis.parameters).value.value()) {
   for (std::size_t k = 0; k < given_.cylinders().size(); ++k) {
     const Cylinder& cylinder = given_.cylinders()[k];
     const CylinderParameters& p = cylinder.parameters();
@@ -72,72 +86,32 @@ BoomModel::BoomModel(const BoomBasis& basis, const std::vector<TipWeight>& weigh
       unknowns_.push_back({BoomUnknown::kTipWeight, r, weights[r].mass, weights[r].deviation});
 }
 
-double BoomModel::valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of, double otherwise) const {
-  for (std::size_t i = 0; i < unknowns_.size(); ++i)
-    if (unknowns_[i].kind == kind && unknowns_[i].of == of) return valueOf(x, i);
+double BoomModel::valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of, double otherwise,
+                          std::size_t recording) const {
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& u = unknowns_[i];
+    if (u.kind == kind && u.of == of && u.recording == recording) return valueOf(x, i);
+  }
   return otherwise;
 }
 
 std::string BoomModel::nameOf(std::size_t unknown) const {
   const Unknown& u = unknowns_[unknown];
-  if (u.kind == BoomUnknown::kTipWeight) return "weight on the tip";
-  const std::string& cylinder = given_.cylinders()[u.of].parameters().name;
-  const std::string& link = given_.chain().link(links_[u.of]).name;
-  switch (u.kind) {
-    case BoomUnknown::kMass:
-      return link + "_mass_kg";
-    case BoomUnknown::kComX:
-      return link + "_com_x_m";
-    case BoomUnknown::kComZ:
-      return link + "_com_z_m";
-    case BoomUnknown::kInertia:
-      return link + "_inertia_kg_m2";
-    case BoomUnknown::kFrictionForce:
-      return cylinder + "_friction_force_N";
-    case BoomUnknown::kFriction:
-      return cylinder + "_friction";
-    case BoomUnknown::kViscous:
-      return cylinder + "'s friction by speed";
-    case BoomUnknown::kOffset:
-      return cylinder + "_pressure_offset_Pa";
-    case BoomUnknown::kGain:
-      return cylinder + "'s bore and gain of its sensors";
-    case BoomUnknown::kZero:
-      return cylinder + "_joint_zero_rad";
-    case BoomUnknown::kRecording:
-      return cylinder + "'s offset in recording " + std::to_string(u.recording + 1);
-    case BoomUnknown::kTipWeight:
-      break;
-  }
-  return {};
-}
-
-double BoomModel::massOf(const std::string& link) const {
-  return given_.chain().link(*given_.chain().linkIndex(link)).body.mass;
+  const UnknownKind& kind = kindOf(u.kind);
+  if (u.kind == BoomUnknown::kTipWeight) return kind.name;
+  const std::string name =
+      (kind.of_link ? given_.chain().link(links_[u.of]).name : given_.cylinders()[u.of].parameters().name) + kind.name;
+  return u.kind == BoomUnknown::kRecording ? name + std::to_string(u.recording + 1) : name;
 }
 
 std::vector<WeighedLink> BoomModel::linksAt(const Eigen::VectorXd& x) const {
   std::vector<WeighedLink> links;
   for (const int index : links_) links.push_back(given_.chain().body(index));
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const double value = valueOf(x, i);
-    const std::size_t of = unknowns_[i].of;
-    switch (unknowns_[i].kind) {
-      case BoomUnknown::kMass:
-        links[of].mass *= std::exp(value);
-        break;
-      case BoomUnknown::kComX:
-        links[of].com_x += value;
-        break;
-      case BoomUnknown::kComZ:
-        links[of].com_z += value;
-        break;
-      case BoomUnknown::kInertia:
-        links[of].inertia *= std::exp(value);
-        break;
-      default:
-        break;
-    }
+    const UnknownKind& kind = kindOf(unknowns_[i].kind);
+    if (!kind.of_link) continue;
+    double& value = links[unknowns_[i].of].*kind.of_link;
+    value = kind.is_logarithm ? value * std::exp(valueOf(x, i)) : value + valueOf(x, i);
   }
   return links;
 }
@@ -154,28 +128,13 @@ BoomParameters BoomModel::parametersAt(const Eigen::VectorXd& x) const {
   const std::vector<WeighedLink> links = linksAt(x);
   for (SectionParameters& section : parameters.sections) {
     const WeighedLink* link = section.beyond ? findLink(links, section.link) : nullptr;
-    if (link != nullptr) scale(*section.beyond, link->mass / massOf(link->name));
+    if (link == nullptr) continue;
+    const Chain& chain = given_.chain();
+    scale(*section.beyond, link->mass / chain.link(*chain.linkIndex(link->name)).body.mass);
   }
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (unknowns_[i].kind == BoomUnknown::kTipWeight) continue;
-    CylinderParameters& cylinder = parameters.cylinders[unknowns_[i].of];
-    const double value = valueOf(x, i);
-    switch (unknowns_[i].kind) {
-      case BoomUnknown::kFrictionForce:
-        cylinder.friction_force = value;
-        break;
-      case BoomUnknown::kFriction:
-        cylinder.friction = value;
-        break;
-      case BoomUnknown::kOffset:
-        cylinder.pressure_offset = value;
-        break;
-      case BoomUnknown::kZero:
-        cylinder.joint_zero = value;
-        break;
-      default:
-        break;
-    }
+    const auto member = kindOf(unknowns_[i].kind).of_cylinder;
+    if (member) parameters.cylinders[unknowns_[i].of].*member = valueOf(x, i);
   }
   return parameters;
 }
@@ -221,14 +180,6 @@ double BoomModel::rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoi
   return boom.cylinderPosition(cylinder).arm * point.motion.velocity[boom.cylinders()[cylinder].joint()];
 }
 
-double BoomModel::recordingOffset(const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording) const {
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const Unknown& u = unknowns_[i];
-    if (u.kind == BoomUnknown::kRecording && u.of == cylinder && u.recording == recording) return valueOf(x, i);
-  }
-  return 0.0;
-}
-
 /// The rod pushes with the oil's force less what rubs against its motion.
 double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording,
                              const BoomPoint& point) const {
@@ -241,12 +192,30 @@ double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::si
                          unknown(BoomUnknown::kFriction, p.friction) * std::abs(force);
   const double oil = force + (speed < 0.0 ? -rubbing : rubbing) + unknown(BoomUnknown::kViscous, 0.0) * speed;
   return oil * (1.0 + unknown(BoomUnknown::kGain, 0.0)) +
-         (unknown(BoomUnknown::kOffset, p.pressure_offset) + recordingOffset(x, cylinder, recording)) * c.boreArea();
+         (unknown(BoomUnknown::kOffset, p.pressure_offset) +
+          valueOf(x, BoomUnknown::kRecording, cylinder, 0.0, recording)) *
+             c.boreArea();
 }
 
 double BoomModel::measuredForce(std::size_t cylinder, const BoomPoint& point) const {
   const auto& p = point.pressure[cylinder];
   return forceOf(given_.cylinders()[cylinder], {p[0], p[1]});
+}
+
+Eigen::VectorXd weightTorques(const BoomModel& model, const Eigen::VectorXd& x, const std::vector<JointVector>& poses) {
+  const std::vector<Cylinder>& cylinders = model.given().cylinders();
+  Eigen::VectorXd torques(static_cast<Eigen::Index>(poses.size() * cylinders.size()));
+  const std::optional<Boom> boom = model.boomAt(x);
+  if (!boom) return torques.setConstant(kNaN);
+  Eigen::Index next = 0;
+  for (JointVector position : poses) {
+    for (std::size_t k = 0; k < cylinders.size(); ++k) position[cylinders[k].joint()] -= model.jointZero(x, k);
+    ChainPose pose;
+    forwardKinematics(boom->chain(), position, pose);
+    const JointVector torque = jointTorqueOfWeight(boom->chain(), pose, model.basis().g_B);
+    for (const Cylinder& cylinder : cylinders) torques[next++] = torque[cylinder.joint()];
+  }
+  return torques;
 }
 
 }  // namespace hammer_loads::calibration

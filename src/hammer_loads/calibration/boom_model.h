@@ -54,6 +54,18 @@ enum class BoomUnknown {
   kRecording,      ///< offset of a cylinder's bore pressure in one recording, beside kOffset [Pa]
 };
 
+/// Common properties of the unknowns of one kind.
+struct UnknownKind {
+  const char* name;  ///< key in the boom file, or words, behind the name of its link or cylinder
+  const char* unit;
+  const char* note;                           ///< words of the report, where it is no key of the boom file
+  double WeighedLink::*of_link{};             ///< null: not of a link
+  bool is_logarithm{};                        ///< the link's given value is multiplied by its exponential
+  double CylinderParameters::*of_cylinder{};  ///< null: no key of a cylinder
+  double CylinderParameters::*std{};          ///< standard deviation of that
+};
+const UnknownKind& kindOf(BoomUnknown unknown);
+
 struct Unknown {
   BoomUnknown kind;
   std::size_t of;           ///< index of cylinder (links: of the cylinder whose joint they hang on) or recording
@@ -74,8 +86,9 @@ class BoomModel {
     const Unknown& u = unknowns_[unknown];
     return u.given + u.deviation * x[static_cast<Eigen::Index>(unknown)];
   }
-  /// By kind and index; `otherwise` where it is none of the unknowns.
-  double valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of, double otherwise = kNaN) const;
+  /// By kind and index; `otherwise` where it is none of the unknowns. recording: of a kRecording.
+  double valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of, double otherwise = kNaN,
+                 std::size_t recording = 0) const;
   /// The link of the chain that stands for all that moves with a cylinder's joint: the heaviest.
   int linkOf(std::size_t cylinder) const { return links_[cylinder]; }
   std::string nameOf(std::size_t unknown) const;
@@ -105,8 +118,6 @@ class BoomModel {
   const Boom& given() const { return given_; }
 
  private:
-  double recordingOffset(const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording) const;  ///< [Pa]
-  double massOf(const std::string& link) const;                      ///< mass of a link as given [kg]
   std::vector<WeighedLink> linksAt(const Eigen::VectorXd& x) const;  ///< bodies of the links in links_
   /// All links that are weighed in the boom file or are unknowns.
   std::vector<WeighedLink> weighedAt(const Eigen::VectorXd& x) const;
@@ -117,5 +128,9 @@ class BoomModel {
   std::vector<int> links_;
   std::vector<Unknown> unknowns_;
 };
+
+/// Weight's torques on the joints of all cylinders at the first pose, then at the next ones, joints as read [N m]; NaN
+/// where x makes no boom.
+Eigen::VectorXd weightTorques(const BoomModel& model, const Eigen::VectorXd& x, const std::vector<JointVector>& poses);
 
 }  // namespace hammer_loads::calibration

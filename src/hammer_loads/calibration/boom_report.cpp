@@ -15,51 +15,25 @@ namespace {
 double percent(double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; }
 
 /// Keys with values, in the order of a file.
-class KeyLines {
- public:
-  explicit KeyLines(const std::string& yaml) {
-    std::istringstream lines(yaml);
-    for (std::string line; std::getline(lines, line);) {
-      const std::size_t colon = line.find(':');
-      if (colon != std::string::npos) lines_.emplace_back(line.substr(0, colon), line.substr(colon + 1));
-    }
-  }
-  void put(const std::string& key, const std::string& value) {
-    const auto same = std::find_if(lines_.begin(), lines_.end(), [&](const auto& line) { return line.first == key; });
-    if (same == lines_.end())
-      lines_.emplace_back(key, " " + value);
-    else
-      same->second = " " + value;
-  }
-  void put(const std::string& key, double value) { put(key, numberText(value)); }
-  std::string text() const {
-    std::string text;
-    for (const auto& [key, value] : lines_) text += key + ":" + value + "\n";
-    return text;
-  }
+using KeyLines = std::vector<std::pair<std::string, std::string>>;
 
- private:
-  std::vector<std::pair<std::string, std::string>> lines_;
-};
-
-void putCylinder(const CylinderParameters& c, KeyLines& lines) {
-  lines.put(c.name + "_friction", c.friction);
-  lines.put(c.name + "_friction_std", c.friction_std);
-  lines.put(c.name + "_friction_force_N", c.friction_force);
-  lines.put(c.name + "_friction_force_std_N", c.friction_force_std);
-  lines.put(c.name + "_joint_zero_rad", c.joint_zero);
-  lines.put(c.name + "_joint_zero_std_rad", c.joint_zero_std);
-  lines.put(c.name + "_pressure_offset_Pa", c.pressure_offset);
-  lines.put(c.name + "_pressure_offset_std_Pa", c.pressure_offset_std);
+KeyLines linesOf(const std::string& yaml) {
+  KeyLines keys;
+  std::istringstream lines(yaml);
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t colon = line.find(':'); colon != std::string::npos)
+      keys.emplace_back(line.substr(0, colon), line.substr(colon + 1));
+  return keys;
 }
 
-void putLink(const WeighedLink& link, KeyLines& lines) {
-  lines.put(link.name + "_mass_kg", link.mass);
-  lines.put(link.name + "_com_x_m", link.com_x);
-  lines.put(link.name + "_com_z_m", link.com_z);
-  lines.put(link.name + "_inertia_kg_m2", link.inertia);
-  lines.put(link.name + "_moment_x_std_kg_m", link.moment_x_std);
-  lines.put(link.name + "_moment_z_std_kg_m", link.moment_z_std);
+void put(KeyLines& lines, const std::string& key, const std::string& value) {
+  const auto same = std::find_if(lines.begin(), lines.end(), [&](const auto& line) { return line.first == key; });
+  (same == lines.end() ? lines.emplace_back(key, "") : *same).second = " " + value;
+}
+
+/// Numbers of a cylinder, a link or a section, whose name is in front of the keys.
+void put(KeyLines& lines, const std::string& name, const std::vector<std::pair<const char*, double>>& numbers) {
+  for (const auto& [key, number] : numbers) put(lines, name + key, numberText(number));
 }
 
 struct Panel {
@@ -108,12 +82,11 @@ std::string cylinderLine(const CylinderFit& f) {
 
 /// Residuals of each recording; nothing where there is one recording.
 std::string recordingLine(const CylinderFit& f, const std::vector<std::string>& names) {
-  std::string text;
+  std::vector<std::string> texts;
   for (std::size_t r = 0; r < f.left_in.size(); ++r)
     if (std::isfinite(f.left_in[r]))
-      text +=
-          format("%s%s %.2f %%", text.empty() ? "  left in " : ", ", names[r].c_str(), percent(f.left_in[r], f.force));
-  return text.empty() ? text : text + "\n";
+      texts.push_back(format("%s %.2f %%", names[r].c_str(), percent(f.left_in[r], f.force)));
+  return texts.empty() ? "" : "  left in " + joined(texts) + "\n";
 }
 
 std::string jointLine(const JointWeight& j) {
@@ -136,31 +109,43 @@ std::string textOf(const BoomCalibration& c) {
   if (c.weight_check)
     text += format("a boom weighed without it gives %.1f +- %.1f kg on the tip; %s\n", c.weight_check->value,
                    c.weight_check->deviation, c.weight_check->meaning.c_str());
-  for (const Correlation& r : c.correlations)
-    text += format("cannot be separated (correlation %+.2f): %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
-  for (const std::string& remark : c.remarks) text += "note: " + remark + "\n";
-  return text;
+  return text + notesOf(c);
 }
 
 std::string yamlOf(const BoomCalibration& c, const std::string& given, const std::string& source) {
   if (!c.determined()) return {};
-  KeyLines lines(given);
-  for (const CylinderParameters& cylinder : c.found.cylinders) putCylinder(cylinder, lines);
-  std::string names;
-  for (const WeighedLink& link : c.found.chain.weighed) names += (names.empty() ? "" : ", ") + link.name;
-  lines.put("weighed_links", "[" + names + "]");
-  for (const WeighedLink& link : c.found.chain.weighed) putLink(link, lines);
-  for (const SectionParameters& section : c.found.sections) {
-    if (!section.beyond) continue;
-    lines.put(section.name + "_section_mass_beyond_kg", section.beyond->mass);
-    lines.put(section.name + "_section_inertia_beyond_kg_m2", section.beyond->inertia_y);
-  }
+  KeyLines lines = linesOf(given);
+  for (const CylinderParameters& p : c.found.cylinders)
+    put(lines, p.name,
+        {{"_friction", p.friction},
+         {"_friction_std", p.friction_std},
+         {"_friction_force_N", p.friction_force},
+         {"_friction_force_std_N", p.friction_force_std},
+         {"_joint_zero_rad", p.joint_zero},
+         {"_joint_zero_std_rad", p.joint_zero_std},
+         {"_pressure_offset_Pa", p.pressure_offset},
+         {"_pressure_offset_std_Pa", p.pressure_offset_std}});
+  std::vector<std::string> names;
+  for (const WeighedLink& link : c.found.chain.weighed) names.push_back(link.name);
+  put(lines, "weighed_links", "[" + joined(names) + "]");
+  for (const WeighedLink& link : c.found.chain.weighed)
+    put(lines, link.name,
+        {{"_mass_kg", link.mass},
+         {"_com_x_m", link.com_x},
+         {"_com_z_m", link.com_z},
+         {"_inertia_kg_m2", link.inertia},
+         {"_moment_x_std_kg_m", link.moment_x_std},
+         {"_moment_z_std_kg_m", link.moment_z_std}});
+  for (const SectionParameters& section : c.found.sections)
+    if (section.beyond)
+      put(lines, section.name + "_section",
+          {{"_mass_beyond_kg", section.beyond->mass}, {"_inertia_beyond_kg_m2", section.beyond->inertia_y}});
   std::string text = std::string(kBoomYamlBegins) + " " + onOneLine(source) + ":\n";
   for (const JointWeight& joint : c.joints) text += "# " + jointLine(joint);
   for (const CylinderFit& cylinder : c.cylinders) text += "# " + cylinderLine(cylinder);
-  return text +
-         "# A whole boom file, for boom_file:=FILE or --params. Values belong together: some cannot be separated.\n" +
-         lines.text();
+  text += "# A whole boom file, for boom_file:=FILE or --params. Values belong together: some cannot be separated.\n";
+  for (const auto& [key, value] : lines) text += key + ":" + value + "\n";
+  return text;
 }
 
 std::string svgOf(const BoomCalibration& c) {

@@ -1,7 +1,6 @@
 #include "hammer_loads/calibration/boom_rows.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace hammer_loads::calibration {
@@ -21,18 +20,15 @@ bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point)
   return arm * least > kLeastRodSpeed && rate > kSurelyMoves * point.rate_std[joint];
 }
 
-/// Unknowns of the links, on which the forces of all cylinders depend.
-bool isOfLinks(BoomUnknown kind) {
-  return kind == BoomUnknown::kMass || kind == BoomUnknown::kComX || kind == BoomUnknown::kComZ ||
-         kind == BoomUnknown::kInertia;
-}
+/// The forces of all cylinders depend on it.
+bool isOfLinks(const Unknown& unknown) { return kindOf(unknown.kind).of_link != nullptr; }
 
 /// Returns false if the force of the row does not depend on the unknown, which belongs to another cylinder or
 /// recording.
 bool concerns(const Unknown& unknown, const BoomRow& row) {
   if (unknown.kind == BoomUnknown::kTipWeight) return unknown.of == row.recording;
   if (unknown.kind == BoomUnknown::kRecording && unknown.recording != row.recording) return false;
-  return isOfLinks(unknown.kind) || unknown.kind == BoomUnknown::kZero || unknown.of == row.cylinder;
+  return isOfLinks(unknown) || unknown.kind == BoomUnknown::kZero || unknown.of == row.cylinder;
 }
 
 /// Booms of the recordings with values x. Making a boom takes as long as evaluating a hundred rows. Recordings with the
@@ -60,7 +56,7 @@ Eigen::VectorXd residualsWith(BoomsAt& booms, const BoomModel& model, const std:
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const BoomRow& row = rows[i];
     std::optional<Boom>& boom = booms[row.recording];
-    if (!boom) return left.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (!boom) return left.setConstant(kNaN);
     model.move(*boom, x, *row.point);
     left[static_cast<Eigen::Index>(i)] =
         row.measured - model.shownForce(*boom, x, row.cylinder, row.recording, *row.point);
@@ -101,7 +97,7 @@ Eigen::MatrixXd slopesOf(const BoomModel& model, const std::vector<BoomRow>& row
       if (concerns(unknown, rows[r])) some.push_back(rows[r]), at.push_back(static_cast<Eigen::Index>(r));
     Eigen::VectorXd up = x, down = x;
     up[i] += kStep, down[i] -= kStep;
-    const bool changes_boom = isOfLinks(unknown.kind) || unknown.kind == BoomUnknown::kTipWeight;
+    const bool changes_boom = isOfLinks(unknown) || unknown.kind == BoomUnknown::kTipWeight;
     const auto residuals = [&](const Eigen::VectorXd& stepped) {
       return changes_boom ? residualsOf(model, some, stepped) : residualsWith(booms, model, some, stepped);
     };

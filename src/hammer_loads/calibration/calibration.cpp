@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "hammer_loads/calibration/estimates.h"
 #include "hammer_loads/calibration/rod_check.h"
@@ -23,24 +21,16 @@ constexpr int kCurveParts = 72;
 constexpr double kUnknownAngleNoise = 5e-4;  // first guess for a sensor without counts [rad]
 // Prior: kUnknownAngleNoise
 
-Free toFind(bool centred) {
-  Free free = Free::Constant(true);
-  if (centred) free.segment<4>(kSine1).setConstant(false);
-  return free;
-}
-
 /// Reading at the blow, within some 3 deg [rad]; empty if none shows.
 std::optional<double> placeOfBlow(const CrankTrack& track, const SegmentModel& model, double drive_inertia) {
   ZeroSearch search(model.shaft, drive_inertia);
   std::optional<double> place;
-  std::size_t piece = 0;
-  for (std::size_t i = 0; i < track.points.size(); ++i) {
-    const CrankPoint& point = track.points[i];
-    const bool starts = piece < track.starts.size() && track.starts[piece] == i;
-    piece += starts;
+  double before = 0.0;
+  for (const CrankPoint& point : track.points) {
     HullMotion hull;
     hull.gravity = point.gravity;
-    search.add(point.seen, starts ? 0.0 : point.time - track.points[i - 1].time, hull);
+    search.add(point.seen, point.starts ? 0.0 : point.time - before, hull);
+    before = point.time;
     if (search.found()) place = search.found()->error;
   }
   return place;
@@ -68,8 +58,8 @@ ResidualCurve curveOf(const std::vector<SegmentFit>& fits, const SegmentModel& m
   for (std::size_t i = 0; i < n.size(); ++i) {
     const bool enough = n[i] >= 4.0;
     const double mean = sum[i] / n[i], variance = squares[i] / n[i] - mean * mean;
-    curve.mean.push_back(enough ? mean : std::numeric_limits<double>::quiet_NaN());
-    curve.deviation.push_back(enough ? std::sqrt(variance / n[i]) : std::numeric_limits<double>::quiet_NaN());
+    curve.mean.push_back(enough ? mean : kNaN);
+    curve.deviation.push_back(enough ? std::sqrt(variance / n[i]) : kNaN);
   }
   return curve;
 }
@@ -85,29 +75,37 @@ double systematic(const ResidualCurve& curve) {
   return n > 0.0 ? sum / n : 1.0;
 }
 
+/// Zero and eccentricities of the parameters in force.
+Globals inForce(const CrankSensor& sensor) {
+  const CrankSensorPlace& p = sensor.place();
+  Globals g = Globals::Zero();
+  g[kZero] = p.zero * sensor.gain();
+  for (const Eigen::Index n : {0, 1}) {
+    g[kSine1 + 2 * n] = p.eccentricity[n] * std::cos(p.eccentricity_phase[n]);
+    g[kCosine1 + 2 * n] = p.eccentricity[n] * std::sin(p.eccentricity_phase[n]);
+  }
+  return g;
+}
+
 /// Reports that the fit does not settle, with the cause as far as the readings show it with the sensor as it was given.
 void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double log_inertia, JointFit fit,
                   Calibration& result) {
   result.problem =
       "its blows are not those of this mechanism, as with a coupling between encoder and crank that twists: the fit "
       "does not settle";
-  if (2.0 * static_cast<double>(result.blows) >= kUsuallyNeeded)
-    result.more_blows = std::numeric_limits<double>::infinity();
-  fit.globals = basis.in_force;
+  if (2.0 * static_cast<double>(result.blows) >= kUsuallyNeeded) result.more_blows = kInfinity;
+  fit.globals = inForce(basis.filter.sensor);
   fit.globals[kLogInertia] = log_inertia;
   const RodEvidence rod = rodEvidence(track, basis, fit);
-  if (std::isfinite(rod.later()))
-    result.problem += "; " + (rod.gives() ? whatARodDoes(rod, false) : whereReadingsDiffer(rod));
-  if (rod.gives()) result.more_blows = std::numeric_limits<double>::infinity();
+  if (std::isfinite(rod.later())) result.problem += "; " + textOf(rod, false);
+  if (rod.gives()) result.more_blows = kInfinity;
 }
 
 /// Without the gaps.
 double secondsOf(const CrankTrack& track) {
   double seconds = 0.0;
-  for (std::size_t i = 0; i < track.starts.size(); ++i) {
-    const std::size_t end = i + 1 < track.starts.size() ? track.starts[i + 1] : track.points.size();
-    seconds += track.points[end - 1].time - track.points[track.starts[i]].time;
-  }
+  for (std::size_t i = 1; i < track.points.size(); ++i)
+    if (!track.points[i].starts) seconds += track.points[i].time - track.points[i - 1].time;
   return seconds;
 }
 
@@ -117,7 +115,7 @@ void countNeeds(Calibration& result) {
   for (const Estimate& e : result.estimates) {
     if (e.determined() || !(e.limit > 0.0)) continue;
     const double by_blows = square(e.by_blows), left = square(e.limit) - (square(e.deviation) - by_blows);
-    most = std::max(most, left > 0.0 ? by_blows / left : std::numeric_limits<double>::infinity());
+    most = std::max(most, left > 0.0 ? by_blows / left : kInfinity);
   }
   result.more_blows = most * static_cast<double>(result.blows);
 }
@@ -125,7 +123,7 @@ void countNeeds(Calibration& result) {
 }  // namespace
 
 double Calibration::worstByBlows() const {
-  double worst = problem.empty() ? 0.0 : std::numeric_limits<double>::infinity();
+  double worst = problem.empty() ? 0.0 : kInfinity;
   for (const Estimate& e : estimates) worst = std::max(worst, e.by_blows / e.limit);
   return worst;
 }
@@ -133,9 +131,8 @@ double Calibration::worstByBlows() const {
 Calibration calibrate(const std::vector<RecordedSample>& samples, const CalibrationBasis& basis,
                       const Progress& progress) {
   Calibration result;
-  const CrankTrack track = trackOf(samples, basis.ratio);
+  const CrankTrack track = trackOf(samples, basis.ratio());
   result.facts = track.facts;
-  result.direction = track.direction;
   result.more_blows = kUsuallyNeeded;
   result.seconds = secondsOf(track);
   const SegmentModel model{basis.mechanism, basis.level};
@@ -155,7 +152,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   Globals start = Globals::Zero();
   start[kZero] = *blow;
   start[kLogInertia] = std::log(drive_inertia);
-  const double gain = 1.0 / basis.ratio;
+  const double gain = 1.0 / basis.ratio();
   Noise noise;
   noise.angle = track.facts.count > 0.0 ? gain * track.facts.count / std::sqrt(12.0) : kUnknownAngleNoise;
   noise.angle_known = track.facts.count > 0.0;
@@ -163,14 +160,13 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   noise.speed = 0.3;
   noise.torque_walk = basis.filter.torque_walk;
   noise.torque = basis.filter.initial_torque_std;
-  const bool centred = basis.ratio != 1.0;
-  const Free free = toFind(centred);
   // A fit of some blows with the encoder on its centre finds where to cut.
   const JointFit rough =
-      fitJointly(spread(segments, kRoughBlows), model, start, noise, toFind(true), piece(progress, 0.05, 0.15));
+      fitJointly(spread(segments, kRoughBlows), model, start, noise, true, piece(progress, 0.05, 0.15));
   segments = cutAtBlows(track, rough.globals[kZero]);
   result.blows = segments.size();
-  JointFit fit = fitJointly(segments, model, rough.globals, rough.noise, free, piece(progress, 0.15, 0.35));
+  JointFit fit =
+      fitJointly(segments, model, rough.globals, rough.noise, basis.ratio() != 1.0, piece(progress, 0.15, 0.35));
   if (!fit.converged || fit.fits.size() < kLeastBlows) {
     sayUnsettled(track, basis, start[kLogInertia], rough, result);
     return result;
@@ -180,15 +176,15 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   result.after = curveOf(fit.fits, model, fit.globals, fit.noise);
   const double curve_square = systematic(result.after);
   fit.covariance *= std::max(1.0, curve_square);
-  HammerPart hammer = findWithHammer(fit, model, free);
+  HammerPart hammer = findWithHammer(fit, model);
   hammer.widen(fit);
   if (!hammer.isCertain()) {
     sayUnsettled(track, basis, start[kLogInertia], rough, result);
     return result;
   }
-  removeBias(fit, hammer, model, free, gain * track.facts.count, piece(progress, 0.35, 0.95));
+  removeBias(fit, hammer, model, gain * track.facts.count, piece(progress, 0.35, 0.95));
   hammer.weighByMounting();
-  Globals in_force = basis.in_force;
+  Globals in_force = inForce(basis.filter.sensor);
   in_force.tail<kShaping>() = fit.globals.tail<kShaping>();
   std::vector<SegmentFit> as_in_force;
   for (const BlowSegment& segment : segments) {
@@ -196,16 +192,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
     fitLocals(as_in_force.back(), model, in_force, fit.noise);
   }
   result.before = curveOf(as_in_force, model, in_force, fit.noise);
-  const RodEvidence rod = rodEvidence(track, basis, fit);
-  const GlobalMatrix by_blows = fit.covariance;
-  fit.globals = hammer.globals, fit.covariance = hammer.covariance.topLeftCorner<kGlobals, kGlobals>();
-  addEstimates({fit, by_blows, hammer, basis, centred}, result);
-  for (const Estimate& one : estimatesOf(hammer, basis.mechanism.parameters()))
-    if (!rod.gives()) result.estimates.push_back(one);
-  refuseForRod(rod, basis.ratio, result);
-  for (std::string& remark : remarksOf(hammer, by_blows, basis.mechanism.parameters()))
-    result.remarks.push_back(std::move(remark));
-  addRemarks(curve_square, result);
+  addResults({fit, hammer, basis, rodEvidence(track, basis, fit), curve_square}, result);
   countNeeds(result);
   return result;
 }

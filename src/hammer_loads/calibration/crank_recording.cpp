@@ -49,7 +49,8 @@ double commonCount(const std::vector<RecordedSample>& samples) {
   return common > 0.0 && common < 0.25 * kTwoPi ? kTwoPi / std::nearbyint(kTwoPi / common) : 0.0;
 }
 
-std::size_t dropUseless(std::vector<RecordedSample>& samples) {
+/// Without samples that are no numbers, and duplicates.
+std::vector<RecordedSample> usefulOf(const std::vector<RecordedSample>& samples) {
   std::vector<RecordedSample> good;
   for (const RecordedSample& s : samples) {
     const bool finite = std::isfinite(s.reading) && std::abs(s.reading) < 1e9 && std::isfinite(s.time);
@@ -57,9 +58,7 @@ std::size_t dropUseless(std::vector<RecordedSample>& samples) {
         !good.empty() && s.time == good.back().time && s.reading == good.back().reading && s.speed == good.back().speed;
     if (finite && !twice) good.push_back(s);
   }
-  const std::size_t refused = samples.size() - good.size();
-  samples = std::move(good);
-  return refused;
+  return good;
 }
 
 /// Mean step of a recording whose single steps give no information.
@@ -102,54 +101,66 @@ std::vector<std::size_t> startsOf(const std::vector<RecordedSample>& samples, do
   return starts;
 }
 
-/// The stamps' own times where they are in order, else equal intervals by sequence.
-void orderTimes(std::vector<RecordedSample>& samples, CrankTrack& track) {
+/// The stamps' own times where they are in order, else equal intervals by sequence. Returns the first samples after
+/// gaps, 0 included.
+std::vector<std::size_t> orderTimes(std::vector<RecordedSample>& samples, SensorFacts& facts) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < samples.size(); ++i) steps.push_back(samples[i].time - samples[i - 1].time);
-  track.facts.retimed = isDisordered(samples);
-  track.facts.period = track.facts.retimed ? meanPeriod(samples) : medianOf(steps);
-  if (track.facts.retimed) {
-    std::vector<double> long_steps;  // a burst's own step is no gap
+  facts.retimed = isDisordered(samples);
+  facts.period = facts.retimed ? meanPeriod(samples) : medianOf(steps);
+  if (facts.retimed) {
     std::sort(steps.begin(), steps.end());
-    const double usual = steps[steps.size() - 1 - steps.size() / 100];
-    track.starts = startsOf(samples, std::max(kGap * track.facts.period, 1.5 * usual));
-    for (std::size_t i = 0; i < track.starts.size(); ++i)
-      retimeRun(samples, track.starts[i], i + 1 < track.starts.size() ? track.starts[i + 1] : samples.size());
+    const double usual = steps[steps.size() - 1 - steps.size() / 100];  // a burst's own step is no gap
+    const std::vector<std::size_t> starts = startsOf(samples, std::max(kGap * facts.period, 1.5 * usual));
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      retimeRun(samples, starts[i], i + 1 < starts.size() ? starts[i + 1] : samples.size());
     for (std::size_t i = 1; i < samples.size(); ++i)
       samples[i].time = std::max(samples[i].time, samples[i - 1].time + 1e-9);
-    return;
+    return starts;
   }
   std::vector<RecordedSample> in_order;  // single stamps that went back
   for (const RecordedSample& s : samples) {
     if (in_order.empty() || s.time > in_order.back().time) in_order.push_back(s);
   }
-  track.facts.refused += samples.size() - in_order.size();
   samples = std::move(in_order);
-  track.starts = startsOf(samples, kGap * track.facts.period);
+  return startsOf(samples, kGap * facts.period);
+}
+
+/// The crank went forward all the way, over a blow at the speed of work.
+bool isWorkingTurn(const std::vector<CrankPoint>& p, double zero) {
+  const auto is_before = [&](const CrankPoint& at) { return at.seen < zero; };
+  const auto before = static_cast<std::size_t>(std::count_if(p.begin(), p.end(), is_before));
+  if (before < kLeastPoints || p.size() - before < kLeastPoints) return false;
+  for (std::size_t i = 1; i < p.size(); ++i) {
+    const double step = p[i].seen - p[i - 1].seen;
+    if (!(step > -0.02 && step < kLargestStep)) return false;
+  }
+  if (!(p.back().seen - p.front().seen > 1.5 * kHalfSegment)) return false;
+  std::size_t low = before, high = before;  // some 0.3 rad around the blow
+  while (low > 0 && p[low].seen > zero - 0.15) --low;
+  while (high + 1 < p.size() && p[high].seen < zero + 0.15) ++high;
+  return p[high].seen - p[low].seen > kLeastSpeed * (p[high].time - p[low].time);
 }
 
 }  // namespace
 
-CrankTrack trackOf(std::vector<RecordedSample> samples, double ratio) {
+CrankTrack trackOf(const std::vector<RecordedSample>& recorded, double ratio) {
   CrankTrack track;
-  track.facts.refused = dropUseless(samples);
+  std::vector<RecordedSample> samples = usefulOf(recorded);
   if (samples.size() < 2) return track;
   track.facts.count = commonCount(samples);
-  orderTimes(samples, track);
-  const bool wraps = ratio == 1.0;
-  double turned = 0.0, forward = 0.0;
-  std::size_t next_start = 0;
+  const std::vector<std::size_t> starts = orderTimes(samples, track.facts);
+  double turned = samples[0].reading, forward = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const bool starts = next_start < track.starts.size() && track.starts[next_start] == i;
-    next_start += starts;
     const double step = i == 0 ? 0.0 : samples[i].reading - samples[i - 1].reading;
-    const double change = wraps ? CrankAngle::wrapToPi(step) : step;
-    turned = i == 0 ? samples[0].reading : turned + change;
-    if (!starts) forward += change;
-    track.points.push_back({samples[i].time, turned, samples[i].speed, samples[i].gravity});
+    const double change = ratio == 1.0 ? CrankAngle::wrapToPi(step) : step;
+    turned += change;
+    const bool is_start = std::binary_search(starts.begin(), starts.end(), i);
+    if (!is_start) forward += change;
+    track.points.push_back({samples[i].time, turned, samples[i].speed, samples[i].gravity, is_start});
   }
-  track.direction = forward < 0.0 ? -1 : 1;
-  const double gain = track.direction / ratio;
+  track.facts.direction = forward < 0.0 ? -1 : 1;
+  const double gain = track.facts.direction / ratio;
   for (CrankPoint& point : track.points) {
     point.seen = gain * (point.seen + 0.5 * track.facts.count);
     if (point.speed) *point.speed *= gain;
@@ -161,40 +172,16 @@ std::vector<BlowSegment> cutAtBlows(const CrankTrack& track, double zero) {
   std::vector<BlowSegment> segments;
   BlowSegment segment;
   double turn = 0.0;
-  std::size_t next_start = 0;
   const auto finish = [&] {
-    const auto& p = segment.points;
-    const auto before = std::count_if(p.begin(), p.end(), [&](const CrankPoint& at) { return at.seen < zero; });
-    const auto after = static_cast<std::ptrdiff_t>(p.size()) - before;
-    bool good =
-        before >= static_cast<std::ptrdiff_t>(kLeastPoints) && after >= static_cast<std::ptrdiff_t>(kLeastPoints);
-    for (std::size_t i = 1; good && i < p.size(); ++i) {
-      const double step = p[i].seen - p[i - 1].seen;
-      good = step > -0.02 && step < kLargestStep;
-    }
-    const double whole = 2.0 * kHalfSegment;
-    good = good && p.back().seen - p.front().seen > 0.75 * whole;
-    if (good) {  // over some 0.3 rad around the blow
-      const auto at = static_cast<std::size_t>(before);
-      std::size_t low = at, high = at;
-      while (low > 0 && p[low].seen > zero - 0.15) --low;
-      while (high + 1 < p.size() && p[high].seen < zero + 0.15) ++high;
-      good = (p[high].seen - p[low].seen) > kLeastSpeed * (p[high].time - p[low].time);
-    }
-    if (good) {
-      for (const CrankPoint& at : p) segment.gravity.x += at.gravity.x, segment.gravity.z += at.gravity.z;
-      segment.gravity.x /= static_cast<double>(p.size());
-      segment.gravity.z /= static_cast<double>(p.size());
-      segments.push_back(segment);
-    }
+    const auto count = static_cast<double>(segment.points.size());
+    for (const CrankPoint& at : segment.points) segment.gravity.x += at.gravity.x, segment.gravity.z += at.gravity.z;
+    segment.gravity.x /= count, segment.gravity.z /= count;
+    if (isWorkingTurn(segment.points, zero)) segments.push_back(segment);
     segment = BlowSegment{};
   };
-  for (std::size_t i = 0; i < track.points.size(); ++i) {
-    const bool starts = next_start < track.starts.size() && track.starts[next_start] == i;
-    next_start += starts;
-    CrankPoint point = track.points[i];
+  for (CrankPoint point : track.points) {
     const double own_turn = std::nearbyint((point.seen - zero) / kTwoPi);
-    if (!segment.points.empty() && (starts || own_turn != turn)) finish();
+    if (!segment.points.empty() && (point.starts || own_turn != turn)) finish();
     turn = own_turn;
     point.seen -= kTwoPi * turn;
     if (std::abs(point.seen - zero) <= kHalfSegment) segment.points.push_back(point);

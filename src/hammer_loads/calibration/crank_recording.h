@@ -19,10 +19,10 @@ struct RecordedSample {
 
 /// Properties of the readings and stamps.
 struct SensorFacts {
-  double count{};         ///< largest whole part of a turn that all readings are multiples of [rad]; 0: none
-  double period{};        ///< median of the stamps' steps [s]
-  bool retimed{};         ///< stamps repeated or changed places: taken at equal intervals instead
-  std::size_t refused{};  ///< samples that are no numbers, or duplicates
+  double count{};    ///< largest whole part of a turn that all readings are multiples of [rad]; 0: none
+  double period{};   ///< median of the stamps' steps [s]
+  bool retimed{};    ///< stamps repeated or changed places: taken at equal intervals instead
+  int direction{1};  ///< -1: the readings fall as the crank goes forward
 };
 
 /// A sample in the encoder's own turn, which grows while the hammer works.
@@ -31,17 +31,16 @@ struct CrankPoint {
   double seen{};                ///< reading at mid-count, unwrapped and divided by direction and ratio [rad]
   std::optional<double> speed;  ///< measured speed [rad/s]
   Gravity gravity;
+  bool starts{};  ///< the first one, or the first one after a gap; unwrapping restarts there
 };
 
 struct CrankTrack {
   std::vector<CrankPoint> points;
-  std::vector<std::size_t> starts;  ///< first points after gaps, 0 included; unwrapping restarts there
   SensorFacts facts;
-  int direction{1};
 };
 
 /// Time in order, readings unwrapped. ratio: encoder turns per crank turn [-].
-CrankTrack trackOf(std::vector<RecordedSample> samples, double ratio);
+CrankTrack trackOf(const std::vector<RecordedSample>& recorded, double ratio);
 
 /// From the middle of a turn over its blow to the middle of the next: where the crank went forward all the way.
 struct BlowSegment {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "hammer_loads/calibration/rod_check.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/hammer_constants.h"
@@ -57,8 +58,6 @@ std::vector<Improved> improved(const HammerPart& hammer) {
   return found;
 }
 
-constexpr double kStrong = 0.9;
-
 // Limits, by what a wrong value does to the wrench (rms of Fz over the peak): 2.8 % per degree of zero, 1.6 % per
 // degree once a turn, some 3 % per degree twice a turn, 1.5 % for 20 % of drive inertia.
 constexpr double kZeroLimit = 0.3 * kDegree;  // an encoder is usually mounted half a degree off
@@ -67,85 +66,12 @@ constexpr double kEccentricity2Limit = 0.2 * kDegree;
 constexpr double kInertiaLimit = 0.08;  // relative
 constexpr double kTimingLimit = 0.2;    // relative
 
-/// An eccentricity's amount and phase from its two parts.
-void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatrix& of_blows, int n, double limit) {
-  const Eigen::Index k = n == 1 ? kSine1 : kSine2;
-  const Eigen::Vector2d parts = fit.globals.segment<2>(k);
-  const Eigen::Matrix2d covariance = fit.covariance.block<2, 2>(k, k);
-  const double amount = parts.norm(), phase = std::atan2(parts[1], parts[0]);
-  const Eigen::Vector2d along = amount > 0.0 ? Eigen::Vector2d(parts / amount) : Eigen::Vector2d(1.0, 0.0);
-  const Eigen::Vector2d across(-along[1], along[0]);
-  const double by_amount = std::sqrt(along.dot(covariance * along)),
-               by_phase = std::sqrt(across.dot(covariance * across));
-  // Either both keys or none: an amount at a wrong phase is worse than none. Each therefore has the larger deviation.
-  const double larger = std::max(by_amount, by_phase), scale = std::max(amount, 1e-9);
-  const double by_blows = std::sqrt(of_blows.diagonal().segment<2>(k).maxCoeff());
-  const bool seen = amount > gate::kUsual * larger;  // else none is as likely, and does no harm
-  const std::string key = format("crank_eccentricity_%d", n);
-  result.estimates.push_back(
-      {key + "_rad", "rad", seen ? amount : 0.0, larger, limit,
-       format("%s per revolution; its sine and cosine are known to %.2g and %.2g rad%s", n == 1 ? "once" : "twice",
-              std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
-              seen ? "" : format(", %.2g rad is hardly more than that", amount).c_str()),
-       by_blows});
-  if (seen) {
-    result.estimates.push_back(
-        {key + "_phase_rad", "rad", phase, larger / scale, limit / scale, "its phase", by_blows / scale});
-  } else {
-    result.estimates.push_back({key + "_phase_rad", "rad", 0.0, 0.0, kPi, "of none it does not matter", 0.0});
-  }
-}
-
-void addHiding(const Found& found, Calibration& result) {
-  constexpr std::pair<const char*, Eigen::Index> kRows[] = {{"crank_zero_rad", kZero},
-                                                            {"crank_eccentricity_1_rad", kSine1},
-                                                            {"crank_eccentricity_1_phase_rad", kSine1},
-                                                            {"crank_eccentricity_2_rad", kSine2},
-                                                            {"crank_eccentricity_2_phase_rad", kSine2},
-                                                            {"drive_inertia_kg_m2", kLogInertia}};
-  for (Estimate& e : result.estimates)
-    for (const auto& [key, row] : kRows)
-      if (e.key == key && e.hidden_by.empty()) e.hidden_by = hiddenBy(found.hammer, found.by_blows, row);
-}
-
-void addCorrelations(Calibration& result, const HammerPart& hammer) {
-  const Eigen::MatrixXd& P = hammer.covariance;
-  for (Eigen::Index i = 0; i < P.rows(); ++i) {
-    for (Eigen::Index k = i + 1; k < P.rows(); ++k) {
-      const double both = std::sqrt(P(i, i) * P(k, k)), value = both > 0.0 ? P(i, k) / both : 0.0;
-      if (std::abs(value) > kStrong) result.correlations.push_back({hammer.nameOf(i), hammer.nameOf(k), value});
-    }
-  }
-}
-
-}  // namespace
-
-std::vector<Estimate> estimatesOf(const HammerPart& hammer, const HammerParameters& file) {
-  std::vector<Estimate> estimates;
-  HammerParameters found = file;
-  bool closes = false;
-  for (const Improved& one : improved(hammer)) {
-    const HammerConstant& c = kHammerConstants[one.constant];
-    const double sigma = file.deviations[one.constant], unit = std::string(c.unit) == "deg" ? kDegree : 1.0;
-    c.field(found) += c.away * sigma * one.error;
-    closes = closes || c.enters == HammerConstant::Enters::kMotion;
-    const double deviation = one.deviation * sigma / unit;
-    estimates.push_back(
-        {c.key, c.unit, c.field(found) / unit, deviation, sigma / unit,
-         "of the hammer, its others as given; this recording is in it: not for a second calibration from it", 0.0});
-    estimates.push_back({deviationKey(c), c.unit, deviation, 0.0, deviation, "standard deviation of that", 0.0});
-  }
-  const LinkLengths& l = found.lengths;
-  if (closes)
-    estimates.push_back({"rod_length_m", "m", l.pivot_distance + l.rocker - l.crank, 0.0, l.rod,
-                         "it follows: with it the linkage passes its dead centre at the blow", 0.0});
-  return estimates;
-}
-
-std::string hiddenBy(const HammerPart& hammer, const GlobalMatrix& by_blows, Eigen::Index parameter) {
+/// Constant, or level, whose uncertainty makes most of that of a shared parameter; empty: the noise does.
+std::string hiddenBy(const Found& found, Eigen::Index parameter) {
+  const HammerPart& hammer = found.hammer;
   const auto count = static_cast<Eigen::Index>(hammer.names.size());
   const Eigen::MatrixXd& P = hammer.covariance;
-  if (count == 0 || !(P(parameter, parameter) > square(kHides) * by_blows(parameter, parameter))) return {};
+  if (count == 0 || !(P(parameter, parameter) > square(kHides) * found.fit.covariance(parameter, parameter))) return {};
   Eigen::Index most = 0;
   P.row(parameter)
       .tail(count)
@@ -156,54 +82,52 @@ std::string hiddenBy(const HammerPart& hammer, const GlobalMatrix& by_blows, Eig
   return hammer.nameOf(kGlobals + most);
 }
 
-std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,
-                                   const HammerParameters& file) {
-  std::vector<std::string> remarks;
-  const auto count = static_cast<Eigen::Index>(hammer.names.size());
-  const Eigen::MatrixXd& P = hammer.covariance;
-  for (const Eigen::Index k : {kZero, kSine1, kCosine1, kLogInertia}) {
-    const std::string by = hiddenBy(hammer, by_blows, k);
-    if (by.empty()) continue;
-    remarks.push_back(
-        format("%s: known to %.2g if the hammer file were exact, to %.2g by the deviations of its constants, most by "
-               "that of %s",
-               hammer.nameOf(k).c_str(), std::sqrt(by_blows(k, k)), std::sqrt(P(k, k)), by.c_str()));
+/// An eccentricity's amount and phase from its two parts.
+void addEccentricity(const Found& found, int n, double limit, Calibration& result) {
+  const Eigen::Index k = n == 1 ? kSine1 : kSine2;
+  const Eigen::Vector2d parts = found.hammer.globals.segment<2>(k);
+  const Eigen::Matrix2d covariance = found.hammer.covariance.block<2, 2>(k, k);
+  const double amount = parts.norm(), phase = std::atan2(parts[1], parts[0]);
+  const Eigen::Vector2d along = amount > 0.0 ? Eigen::Vector2d(parts / amount) : Eigen::Vector2d(1.0, 0.0);
+  const Eigen::Vector2d across(-along[1], along[0]);
+  const double by_amount = std::sqrt(along.dot(covariance * along)),
+               by_phase = std::sqrt(across.dot(covariance * across));
+  // Either both keys or none: an amount at a wrong phase is worse than none. Each therefore has the larger deviation.
+  const double larger = std::max(by_amount, by_phase), scale = std::max(amount, 1e-9);
+  const double by_blows = std::sqrt(found.fit.covariance.diagonal().segment<2>(k).maxCoeff());
+  const bool seen = amount > gate::kUsual * larger;  // else none is as likely, and does no harm
+  const std::string key = format("crank_eccentricity_%d", n), hidden_by = hiddenBy(found, k);
+  result.estimates.push_back(
+      {key + "_rad", "rad", seen ? amount : 0.0, larger, limit,
+       format("%s per revolution; its sine and cosine are known to %.2g and %.2g rad%s", n == 1 ? "once" : "twice",
+              std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
+              seen ? "" : format(", %.2g rad is hardly more than that", amount).c_str()),
+       by_blows, hidden_by});
+  if (seen) {
+    result.estimates.push_back(
+        {key + "_phase_rad", "rad", phase, larger / scale, limit / scale, "its phase", by_blows / scale, hidden_by});
+  } else {
+    result.estimates.push_back(
+        {key + "_phase_rad", "rad", 0.0, 0.0, kPi, "of none it does not matter", 0.0, hidden_by});
   }
-  const std::vector<Improved> written = improved(hammer);
-  for (std::size_t i = 0; i < hammer.names.size(); ++i) {
-    const std::optional<std::size_t> k = indexOfConstant(hammer.names[i]);
-    const auto is = [&](const Improved& one) { return one.column == i; };
-    if (!k || hammer.left(i) > kSeen || std::any_of(written.begin(), written.end(), is)) continue;
-    const double deviation = file.deviations[*k];
-    Eigen::VectorXd with = P.bottomRightCorner(count, count).col(static_cast<Eigen::Index>(i));
-    with.array() /= P.diagonal().tail(count).cwiseSqrt().array() * hammer.left(i);
-    with[static_cast<Eigen::Index>(i)] = 0.0;
-    Eigen::Index most = 0;
-    with.cwiseAbs().maxCoeff(&most);
-    remarks.push_back(format(
-        "%s: by the readings %+.2g +- %.1g more than the file has, whose deviation is %.2g; not written, %s explains "
-        "the same readings (correlation %.2f): a smaller deviation of that in the hammer file shows this one",
-        hammer.names[i].c_str(), kHammerConstants[*k].away * deviation * hammer.errors[static_cast<Eigen::Index>(i)],
-        deviation * hammer.left(i), deviation, hammer.nameOf(kGlobals + most).c_str(), std::abs(with[most])));
-  }
-  return remarks;
 }
 
-void addEstimates(const Found& found, Calibration& result) {
+/// Sensor's place and drive.
+void addSensor(const Found& found, Calibration& result) {
   const JointFit& fit = found.fit;
-  const GlobalMatrix& of_blows = found.by_blows;
+  const Globals& globals = found.hammer.globals;
   const CalibrationBasis& basis = found.basis;
-  const double gain = result.direction / basis.ratio;
-  const auto deviation = [&](Eigen::Index k) { return std::sqrt(fit.covariance(k, k)); };
-  const auto by_blows = [&](Eigen::Index k) { return std::sqrt(of_blows(k, k)); };
-  result.estimates.push_back({"crank_zero_rad", "rad", CrankAngle::wrapToPi(fit.globals[kZero] / gain),
+  const double gain = result.facts.direction / basis.ratio();
+  const auto deviation = [&](Eigen::Index k) { return std::sqrt(found.hammer.covariance(k, k)); };
+  const auto by_blows = [&](Eigen::Index k) { return std::sqrt(fit.covariance(k, k)); };
+  result.estimates.push_back({"crank_zero_rad", "rad", CrankAngle::wrapToPi(globals[kZero] / gain),
                               deviation(kZero) / std::abs(gain), kZeroLimit / std::abs(gain), "reading at the blow",
-                              by_blows(kZero) / std::abs(gain)});
-  result.estimates.push_back(
-      {"crank_direction", "", static_cast<double>(result.direction), 0.0, 0.5, "the crank turns forward at work"});
-  if (!found.centred) {
-    addEccentricity(result, fit, of_blows, 1, kEccentricity1Limit);
-    addEccentricity(result, fit, of_blows, 2, kEccentricity2Limit);
+                              by_blows(kZero) / std::abs(gain), hiddenBy(found, kZero)});
+  result.estimates.push_back({"crank_direction", "", static_cast<double>(result.facts.direction), 0.0, 0.5,
+                              "the crank turns forward at work"});
+  if (!fit.centred) {
+    addEccentricity(found, 1, kEccentricity1Limit, result);
+    addEccentricity(found, 2, kEccentricity2Limit, result);
   }
   if (result.facts.count > 0.0) {
     result.estimates.push_back(
@@ -220,24 +144,88 @@ void addEstimates(const Found& found, Calibration& result) {
                               result.facts.retimed ? "after re-timing: the stamps repeat or change places"
                                                    : "of a stamp against the instant of the measurement",
                               timing_std});
-  const double inertia = std::exp(fit.globals[kLogInertia]);
+  const double inertia = std::exp(globals[kLogInertia]);
   const double rocker = basis.mechanism.parameters().rocker_inertia_about_pivot;
   // The readings show only the ratio to the rocker's inertia. A deviation of that in the hammer file is included
   // already.
   const bool rocker_in_it = found.hammer.has("rocker_inertia_about_pivot_kg_m2");
   const double by_rocker = rocker_in_it ? 0.0 : basis.rocker_inertia_std;
   const double relative = std::hypot(deviation(kLogInertia), by_rocker);
-  result.estimates.push_back({"drive_inertia_kg_m2", "kg m2", inertia, relative * inertia, kInertiaLimit * inertia,
-                              format("%.4g of the rocker's; by the readings alone, all masses as given, to %.2g",
-                                     inertia / rocker, by_blows(kLogInertia) * inertia / rocker),
-                              by_blows(kLogInertia) * inertia,
-                              by_rocker > deviation(kLogInertia) ? "rocker_inertia_about_pivot_kg_m2" : ""});
-  addHiding(found, result);
-  addCorrelations(result, found.hammer);
+  result.estimates.push_back(
+      {"drive_inertia_kg_m2", "kg m2", inertia, relative * inertia, kInertiaLimit * inertia,
+       format("%.4g of the rocker's; by the readings alone, all masses as given, to %.2g", inertia / rocker,
+              by_blows(kLogInertia) * inertia / rocker),
+       by_blows(kLogInertia) * inertia,
+       by_rocker > deviation(kLogInertia) ? "rocker_inertia_about_pivot_kg_m2" : hiddenBy(found, kLogInertia)});
+}
+
+void addCorrelations(const HammerPart& hammer, Calibration& result) {
+  const Eigen::MatrixXd& P = hammer.covariance;
+  for (Eigen::Index i = 0; i < P.rows(); ++i) {
+    for (Eigen::Index k = i + 1; k < P.rows(); ++k) {
+      const double both = std::sqrt(P(i, i) * P(k, k)), value = both > 0.0 ? P(i, k) / both : 0.0;
+      if (std::abs(value) > kStrongCorrelation)
+        result.correlations.push_back({hammer.nameOf(i), hammer.nameOf(k), value});
+    }
+  }
+}
+
+/// Constants that are better known than by their file, each with the key of its deviation, and the rod that closes the
+/// linkage with them.
+void addHammer(const std::vector<Improved>& improvements, const HammerParameters& file, Calibration& result) {
+  HammerParameters found = file;
+  bool closes = false;
+  for (const Improved& one : improvements) {
+    const HammerConstant& c = kHammerConstants[one.constant];
+    const double sigma = file.deviations[one.constant], unit = std::string(c.unit) == "deg" ? kDegree : 1.0;
+    c.field(found) += c.away * sigma * one.error;
+    closes = closes || c.enters == HammerConstant::Enters::kMotion;
+    const double deviation = one.deviation * sigma / unit;
+    result.estimates.push_back(
+        {c.key, c.unit, c.field(found) / unit, deviation, sigma / unit,
+         "of the hammer, its others as given; this recording is in it: not for a second calibration from it", 0.0});
+    result.estimates.push_back({deviationKey(c), c.unit, deviation, 0.0, deviation, "standard deviation of that", 0.0});
+  }
+  const LinkLengths& l = found.lengths;
+  if (closes)
+    result.estimates.push_back({"rod_length_m", "m", l.pivot_distance + l.rocker - l.crank, 0.0, l.rod,
+                                "it follows: with it the linkage passes its dead centre at the blow", 0.0});
+}
+
+/// Shared parameters that the constants hide, and constants that show only in combination with others.
+void addHiding(const Found& found, const std::vector<Improved>& written, Calibration& result) {
+  const HammerPart& hammer = found.hammer;
+  const HammerParameters& file = found.basis.mechanism.parameters();
+  const auto count = static_cast<Eigen::Index>(hammer.names.size());
+  const Eigen::MatrixXd& P = hammer.covariance;
+  for (const Eigen::Index k : {kZero, kSine1, kCosine1, kLogInertia}) {
+    const std::string by = hiddenBy(found, k);
+    if (by.empty()) continue;
+    result.remarks.push_back(
+        format("%s: known to %.2g if the hammer file were exact, to %.2g by the deviations of its constants, most by "
+               "that of %s",
+               hammer.nameOf(k).c_str(), std::sqrt(found.fit.covariance(k, k)), std::sqrt(P(k, k)), by.c_str()));
+  }
+  for (std::size_t i = 0; i < hammer.names.size(); ++i) {
+    const std::optional<std::size_t> k = indexOfConstant(hammer.names[i]);
+    const auto is = [&](const Improved& one) { return one.column == i; };
+    if (!k || hammer.left(i) > kSeen || std::any_of(written.begin(), written.end(), is)) continue;
+    const double deviation = file.deviations[*k];
+    Eigen::VectorXd with = P.bottomRightCorner(count, count).col(static_cast<Eigen::Index>(i));
+    with.array() /= P.diagonal().tail(count).cwiseSqrt().array() * hammer.left(i);
+    with[static_cast<Eigen::Index>(i)] = 0.0;
+    Eigen::Index most = 0;
+    with.cwiseAbs().maxCoeff(&most);
+    result.remarks.push_back(format(
+        "%s: by the readings %+.2g +- %.1g more than the file has, whose deviation is %.2g; not written, %s explains "
+        "the same readings (correlation %.2f): a smaller deviation of that in the hammer file shows this one",
+        hammer.names[i].c_str(), kHammerConstants[*k].away * deviation * hammer.errors[static_cast<Eigen::Index>(i)],
+        deviation * hammer.left(i), deviation, hammer.nameOf(kGlobals + most).c_str(), std::abs(with[most])));
+  }
 }
 
 void addRemarks(double curve_square, Calibration& result) {
-  auto& say = result.remarks;
+  std::vector<std::string>& say = result.remarks;
   const bool eccentric = std::any_of(result.estimates.begin(), result.estimates.end(), [](const Estimate& e) {
     return e.key == "crank_eccentricity_1_rad" && e.value > 0.0 && e.determined();
   });
@@ -266,6 +254,37 @@ void addRemarks(double curve_square, Calibration& result) {
   }
   if (result.left_out * 10 > result.blows)
     say.push_back(format("%zu blows are not like the others (no tool, a stop) and are left out", result.left_out));
+}
+
+/// Largest effect of rods of 2e8 to 1e10 N/m with joint clearance up to 0.5 mm on the zero, the eccentricity and the
+/// drive's inertia (relative).
+constexpr double kOfZero = 3.0 * kDegree, kOfEccentricity = 1.5 * kDegree, kOfInertia = 0.3;
+
+/// Marks the keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
+/// ratio: encoder turns per crank turn.
+void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
+  result.rod_gives = rod.gives();
+  if (!rod.gives()) return;
+  const auto effectOn = [&](const Estimate& e) {
+    if (e.key == "crank_zero_rad") return kOfZero * std::abs(ratio);
+    if (e.key == "drive_inertia_kg_m2") return kOfInertia * e.value;
+    if (e.key.rfind("crank_eccentricity", 0) != 0) return 0.0;
+    return e.key.find("_phase") == std::string::npos ? kOfEccentricity : kTwoPi;
+  };
+  for (Estimate& e : result.estimates) e.deviation = std::hypot(e.deviation, effectOn(e));
+  result.remarks.push_back(textOf(rod, true));
+}
+
+}  // namespace
+
+void addResults(const Found& found, Calibration& result) {
+  const std::vector<Improved> improvements = improved(found.hammer);
+  addSensor(found, result);
+  addCorrelations(found.hammer, result);
+  if (!found.rod.gives()) addHammer(improvements, found.basis.mechanism.parameters(), result);
+  refuseForRod(found.rod, found.basis.ratio(), result);
+  addHiding(found, improvements, result);
+  addRemarks(found.curve_square, result);
 }
 
 }  // namespace hammer_loads::calibration

@@ -65,13 +65,6 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
   return all;
 }
 
-/// An eccentricity's prior is about 0, that of the others about the fit: their priors are wide.
-Globals centreOf(const JointFit& fit) {
-  Globals centre = fit.globals;
-  centre.segment<4>(kSine1).setZero();
-  return centre;
-}
-
 }  // namespace
 
 bool HammerPart::has(const std::string& constant) const {
@@ -82,7 +75,7 @@ std::string HammerPart::nameOf(Eigen::Index row) const {
   return row < kGlobals ? std::string(kNames[row]) : names[static_cast<std::size_t>(row - kGlobals)];
 }
 
-HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free& free) {
+HammerPart findWithHammer(JointFit joint, const SegmentModel& model) {
   constexpr int kSteps = 2;
   HammerPart part;
   part.globals = joint.globals, part.covariance = joint.plain_covariance;
@@ -92,7 +85,8 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
   for (const MachineColumn& column : columns->columns()) part.names.push_back(column.name);
   const auto count = static_cast<Eigen::Index>(part.names.size()), size = kGlobals + count;
   part.errors = Eigen::VectorXd::Zero(count);
-  const Globals centre = centreOf(joint);
+  Globals centre = joint.globals;  // of the priors; that of an eccentricity is about 0, the others are wide
+  centre.segment<4>(kSine1).setZero();
   prior.conservativeResize(size);
   prior.tail(count).setOnes();
   std::optional<Mechanism> hammer = model.mechanism;
@@ -109,9 +103,9 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
       const Information one = informationOf(fit, joint, here, beside, others);
       all.matrix += one.matrix, all.score += one.score;
     }
-    hold(free, all.matrix, all.score);
+    if (joint.centred) holdEccentricity(all.matrix, all.score);
     part.covariance = inverseOf(all.matrix);
-    clearHeld(free, part.covariance);
+    if (joint.centred) clearEccentricity(part.covariance);
     const Eigen::VectorXd change = part.covariance * all.score;
     if (!change.allFinite()) break;
     joint.globals += change.head<kGlobals>();
@@ -149,7 +143,7 @@ bool HammerPart::isCertain() const {
       .all();
 }
 
-void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, const Free& free, double count,
+void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, double count,
                 const Progress& progress) {
   if (joint.fits.empty()) return;
   const Eigen::Index size = hammer.covariance.rows();
@@ -162,9 +156,9 @@ void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, 
       segments.push_back(fit.replica(model, joint.globals, joint.noise, count, i % 2 == 0 ? 1.0 : -1.0, random));
     JointFit replica = joint;
     for (std::size_t k = 0; k < segments.size(); ++k) replica.fits[k] = joint.fits[k].onto(segments[k]);
-    settleNear(replica, model, free, piece(progress, static_cast<double>(i) / kReplicas, (i + 1.0) / kReplicas));
+    settleNear(replica, model, piece(progress, static_cast<double>(i) / kReplicas, (i + 1.0) / kReplicas));
     bias += (replica.globals - joint.globals) / kReplicas;
-    const HammerPart found = findWithHammer(replica, model, free);
+    const HammerPart found = findWithHammer(replica, model);
     of_hammer.head<kGlobals>() += (found.globals - joint.globals) / kReplicas;
     of_hammer.tail(size - kGlobals) += found.errors / kReplicas;
   }

@@ -33,16 +33,15 @@ struct HammerPart {
   bool isCertain() const;
 };
 
-/// From a fit with the file's constants. free: as in the fit; the others stay. A hammer that is exact has no constants
-/// to find. Two steps of least squares, the motion of the constants' hammers by differences; some 20 runs of a blow
-/// each.
-HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free& free);
+/// From a fit with the file's constants. A hammer that is exact has no constants to find. Two steps of least squares,
+/// the motion of the constants' hammers by differences; some 20 runs of a blow each.
+HammerPart findWithHammer(JointFit joint, const SegmentModel& model);
 
 /// Noise biases the parameters of each blow, and thereby the shared ones, in the same direction at every blow, so that
 /// more blows do not average it out. Recordings are therefore simulated from the fit, with its noise and the counts,
 /// and fitted again; their mean error is subtracted from both. Pairs of opposite errors leave no error of first order.
 /// count: of the encoder, in `seen` [rad]; 0: none.
-void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, const Free& free, double count,
+void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, double count,
                 const Progress& progress = {});
 
 }  // namespace hammer_loads::calibration

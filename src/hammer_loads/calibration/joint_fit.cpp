@@ -13,13 +13,6 @@ namespace {
 constexpr int kIterations = 4;         // Numerical: kIterations
 constexpr double kNotExplained = 6.0;  // times the median mean square of the blows
 
-/// Marquardt: a little more of the diagonal.
-LocalMatrix damped(const LocalMatrix& matrix, double part) {
-  LocalMatrix result = matrix;
-  result.diagonal() *= 1.0 + part;
-  return result;
-}
-
 // Numerical: kMostIterations, kLeastIterations, kNearIterations, kConverged
 constexpr int kMostIterations = 40;
 constexpr int kLeastIterations = 8;
@@ -31,13 +24,47 @@ constexpr double kMostTiming = 0.01;      // [s]
 constexpr double kMostAngleNoise = 0.1;   // [rad]
 constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
 
+/// The steps, shortened to what the model's curvature bears.
 Globals limitedGlobals(const Globals& step) {
   static const Globals most = (Globals() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.3, 1e9, 1e9).finished();
-  double part = 1.0;
-  for (Eigen::Index k = 0; k < kGlobals; ++k) {
-    if (std::abs(step[k]) > most[k]) part = std::min(part, most[k] / std::abs(step[k]));
-  }
-  return part * step;
+  return std::min(1.0, most.cwiseQuotient(step.cwiseAbs()).minCoeff()) * step;
+}
+Locals limitedLocals(const Locals& step, const Locals& at) {
+  const auto part = [&](Eigen::Index k, double most) { return most / std::abs(step[k]); };
+  return std::min({1.0, part(kSpeedBefore, 0.3 * at[kSpeedBefore]), part(kSpeedAfter, 0.3 * at[kSpeedAfter]),
+                   part(kInstant, 0.1 / std::max(at[kSpeedBefore], 1.0))}) *
+         step;
+}
+
+/// Information of a blow on the shared parameters once its own are eliminated.
+struct Reduced {
+  GlobalMatrix matrix;
+  Globals score;
+  Eigen::Matrix<double, kLocals, kGlobals> by_global;  ///< -(change of locals per change of globals)
+  Locals own;                                          ///< change of locals with globals as they are
+  double angle_freedom, speed_freedom;                 ///< locals that the angles, that the speeds decide
+};
+
+Reduced reduce(const NormalEquations& e) {
+  Reduced r;
+  const LocalMatrix inverse = inverseOf(e.ll);
+  r.by_global = inverse * e.lg;
+  r.own = inverse * e.l;
+  r.matrix = e.gg - e.lg.transpose() * r.by_global;
+  r.score = e.g - e.lg.transpose() * r.own;
+  r.angle_freedom = (inverse * e.ll_angles).trace();
+  r.speed_freedom = (inverse * e.ll_speeds).trace();
+  return r;
+}
+
+/// Number of free residuals among `given` ones, of which the locals determine `decided`.
+double freeOf(double given, double decided) { return std::max(given - decided, 0.3 * given); }
+
+/// Mean square of the angles' residuals over their deviations.
+double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
+  double sum = 0.0;
+  for (const ResidualAt& r : fit.residuals(model, globals, noise)) sum += square(r.angle / r.deviation.angle);
+  return sum / static_cast<double>(fit.size());
 }
 
 /// A residual of which one kind of noise is asked: its variance is known + lever^2 noise^2.
@@ -65,7 +92,7 @@ double noiseOf(const std::vector<Leftover>& leftovers, double freedom, double mo
 void leaveOut(JointFit& joint, const SegmentModel& model) {
   std::vector<double> squares;
   for (const SegmentFit& fit : joint.fits) squares.push_back(meanSquare(fit, model, joint.globals, joint.noise));
-  const double most = mostExplained(squares);
+  const double most = kNotExplained * std::max(medianOf(squares), 0.05);
   std::vector<SegmentFit> kept;
   for (std::size_t i = 0; i < joint.fits.size(); ++i) {
     if (squares[i] <= most) kept.push_back(joint.fits[i]);
@@ -101,7 +128,6 @@ struct System {
   GlobalMatrix matrix;
   Globals score;
   std::vector<Reduced> reduced;
-  double cost{};
 };
 
 System linearised(const JointFit& joint, const SegmentModel& model) {
@@ -109,13 +135,10 @@ System linearised(const JointFit& joint, const SegmentModel& model) {
   const Globals weight = priorDeviations().cwiseAbs2().cwiseInverse();
   s.matrix = weight.asDiagonal();
   s.score = weight.cwiseProduct(joint.centre - joint.globals);
-  s.cost = 0.5 * (joint.centre - joint.globals).cwiseAbs2().dot(weight);
   for (const SegmentFit& fit : joint.fits) {
-    const NormalEquations e = fit.linearise(model, joint.globals, joint.noise);
-    s.reduced.push_back(reduce(e));
+    s.reduced.push_back(reduce(fit.linearise(model, joint.globals, joint.noise)));
     s.matrix += s.reduced.back().matrix;
     s.score += s.reduced.back().score;
-    s.cost += e.cost;
   }
   return s;
 }
@@ -127,12 +150,11 @@ double costOf(const JointFit& joint, const SegmentModel& model) {
 }
 
 /// One step with backtracking; the largest change in deviations.
-double improve(JointFit& joint, const SegmentModel& model, System& s, const Free& free) {
-  GlobalMatrix matrix = s.matrix;
-  Globals score = s.score;
-  hold(free, matrix, score);
-  const GlobalMatrix inverse = inverseOf(matrix);
-  const Globals whole = limitedGlobals(Globals(inverse * score));
+double improve(JointFit& joint, const SegmentModel& model, System s) {
+  if (joint.centred) holdEccentricity(s.matrix, s.score);
+  const GlobalMatrix inverse = inverseOf(s.matrix);
+  const Globals whole = limitedGlobals(Globals(inverse * s.score));
+  const double cost = costOf(joint, model);
   const JointFit before = joint;
   for (double part = 1.0; part > 0.01; part *= 0.4) {
     joint.globals = before.globals + part * whole;
@@ -141,7 +163,7 @@ double improve(JointFit& joint, const SegmentModel& model, System& s, const Free
       const Locals at = before.fits[i].locals();
       joint.fits[i].setLocals(at + limitedLocals(Locals(part * (r.own - r.by_global * whole)), at));
     }
-    if (costOf(joint, model) < s.cost + 1e-9 * std::abs(s.cost))
+    if (costOf(joint, model) < cost + 1e-9 * std::abs(cost))
       return (part * whole).cwiseQuotient(inverse.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
   }
   joint = before;
@@ -149,7 +171,7 @@ double improve(JointFit& joint, const SegmentModel& model, System& s, const Free
 }
 
 /// Sandwich over the blows, with the neighbours' common errors falling off in a triangle.
-GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Free& free) {
+GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, bool centred) {
   GlobalMatrix middle = GlobalMatrix::Zero();
   const std::size_t n = s.reduced.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -167,16 +189,16 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Fr
     covariance.row(k) *= grow;
     covariance.col(k) *= grow;
   }
-  clearHeld(free, covariance);
+  if (centred) clearEccentricity(covariance);
   return covariance;
 }
 
 /// Until nothing changes any more, at least this many times.
-void settle(JointFit& joint, const SegmentModel& model, const Free& free, int least, const Progress& progress) {
+void settle(JointFit& joint, const SegmentModel& model, int least, const Progress& progress) {
   for (int i = 0; i < kMostIterations && !joint.fits.empty(); ++i) {
     report(progress, std::min(1.0, static_cast<double>(i) / least));
-    System s = linearised(joint, model);
-    joint.converged = improve(joint, model, s, free) < kConverged;
+    const System s = linearised(joint, model);
+    joint.converged = improve(joint, model, s) < kConverged;
     learnNoise(joint, model, s.reduced);
     if (i == kLeastIterations - 2) leaveOut(joint, model);
     if (joint.converged && i + 1 >= least) return;
@@ -184,12 +206,12 @@ void settle(JointFit& joint, const SegmentModel& model, const Free& free, int le
 }
 
 /// Covariances and the mean square of the residuals.
-void judge(JointFit& joint, const SegmentModel& model, const Free& free) {
+void judge(JointFit& joint, const SegmentModel& model) {
   if (joint.fits.empty()) return;
   System s = linearised(joint, model);
-  hold(free, s.matrix, s.score);
+  if (joint.centred) holdEccentricity(s.matrix, s.score);
   joint.plain_covariance = inverseOf(s.matrix);
-  joint.covariance = covarianceOf(s, joint.plain_covariance, free);
+  joint.covariance = covarianceOf(s, joint.plain_covariance, joint.centred);
   double sum = 0.0, freedom = 0.0;
   for (std::size_t i = 0; i < joint.fits.size(); ++i) {
     const auto n = static_cast<double>(joint.fits[i].size());
@@ -201,16 +223,6 @@ void judge(JointFit& joint, const SegmentModel& model, const Free& free) {
 
 }  // namespace
 
-Locals limitedLocals(const Locals& step, const Locals& at) {
-  double part = 1.0;
-  for (const Eigen::Index k : {kSpeedBefore, kSpeedAfter}) {
-    if (std::abs(step[k]) > 0.3 * at[k]) part = std::min(part, 0.3 * at[k] / std::abs(step[k]));
-  }
-  const double most = 0.1 / std::max(at[kSpeedBefore], 1.0);
-  if (std::abs(step[kInstant]) > most) part = std::min(part, most / std::abs(step[kInstant]));
-  return part * step;
-}
-
 void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
   double cost = fit.cost(model, globals, noise);
   double damping = 1e-3;
@@ -219,7 +231,9 @@ void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& global
     const Locals before = fit.locals();
     bool better = false;
     for (int k = 0; k < 5 && !better; ++k) {
-      fit.setLocals(before + limitedLocals(Locals(solved(damped(e.ll, damping), e.l)), before));
+      LocalMatrix damped = e.ll;
+      damped.diagonal() *= 1.0 + damping;
+      fit.setLocals(before + limitedLocals(Locals(solved(damped, e.l)), before));
       const double now = fit.cost(model, globals, noise);
       better = now < cost;
       if (better) {
@@ -232,51 +246,26 @@ void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& global
   }
 }
 
-Reduced reduce(const NormalEquations& e) {
-  Reduced r;
-  r.inverse = inverseOf(e.ll);
-  r.by_global = r.inverse * e.lg;
-  r.own = r.inverse * e.l;
-  r.matrix = e.gg - e.lg.transpose() * r.by_global;
-  r.score = e.g - e.lg.transpose() * r.own;
-  r.angle_freedom = (r.inverse * e.ll_angles).trace();
-  r.speed_freedom = (r.inverse * e.ll_speeds).trace();
-  return r;
-}
-
-double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
-  double sum = 0.0, n = 0.0;
-  for (const ResidualAt& r : fit.residuals(model, globals, noise)) {
-    sum += square(r.angle / r.deviation.angle);
-    n += 1.0;
-  }
-  return sum / n;
-}
-
-double mostExplained(const std::vector<double>& mean_squares) {
-  return kNotExplained * std::max(medianOf(mean_squares), 0.05);
-}
-
 Globals priorDeviations() { return (Globals() << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3).finished(); }
 
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
-                    const Noise& noise, const Free& free, const Progress& progress) {
+                    const Noise& noise, bool centred, const Progress& progress) {
   JointFit joint;
   joint.globals = joint.centre = start;
-  joint.noise = noise;
+  joint.noise = noise, joint.centred = centred;
   for (const BlowSegment& segment : segments) {
     joint.fits.emplace_back(segment, start);
     fitLocals(joint.fits.back(), model, start, noise);
   }
   leaveOut(joint, model);
-  settle(joint, model, free, kLeastIterations, progress);
-  judge(joint, model, free);
+  settle(joint, model, kLeastIterations, progress);
+  judge(joint, model);
   return joint;
 }
 
-void settleNear(JointFit& joint, const SegmentModel& model, const Free& free, const Progress& progress) {
+void settleNear(JointFit& joint, const SegmentModel& model, const Progress& progress) {
   joint.centre = joint.globals;
-  settle(joint, model, free, kNearIterations, progress);
+  settle(joint, model, kNearIterations, progress);
 }
 
 }  // namespace hammer_loads::calibration

@@ -23,14 +23,13 @@ constexpr std::size_t kMostRows = 400;       // rows in use of a longer table
 constexpr int kPieces = 40;                  // differences are over this part of the table
 constexpr double kDifferences = 6.0;         // weight of differences: the lengths serve the lever
 constexpr int kStarts = 300;
-constexpr int kBest = 16;             // number of starts that are fitted to the end
-constexpr double kLeastLink = 0.05;   // a shorter link, or lever of the driven pin, is none of a machine [m]
-constexpr double kAnyPlace = 1.0;     // standard deviation of a pin that was not measured, about the joint [m]
-constexpr double kAnyLink = 0.4;      // mean and standard deviation of a link's length [m]
-constexpr double kReading = 1e-4;     // least residual of a stroke [m]
-constexpr double kInseparable = 0.9;  // correlation
+constexpr int kBest = 16;            // number of starts that are fitted to the end
+constexpr double kLeastLink = 0.05;  // a shorter link, or lever of the driven pin, is none of a machine [m]
+constexpr double kAnyPlace = 1.0;    // standard deviation of a pin that was not measured, about the joint [m]
+constexpr double kAnyLink = 0.4;     // mean and standard deviation of a link's length [m]
+constexpr double kReading = 1e-4;    // least residual of a stroke [m]
 // Numerical: kLeastTableRows, kMostRows, kPieces, kDifferences, kStarts, kBest, kLeastLink, kAnyPlace, kAnyLink,
-// kReading, kInseparable
+// kReading
 
 BucketLinkage linkageOf(const Vector& x, double branch, double sense) {
   return {{x.segment<2>(Unknowns::kBaseX), x.segment<2>(Unknowns::kGuideX), x.segment<2>(Unknowns::kRodX), sense},
@@ -46,6 +45,9 @@ class Problem {
   using ValueType = Eigen::VectorXd;
   using JacobianType = Eigen::MatrixXd;
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+
+  double branch{1.0};
+  double noise{1e-3};  ///< standard deviation of a stroke [m]
 
   Problem(const StrokeTable& table, const LinkageBasis& basis) : sense_(basis.sense) {
     const std::size_t every = 1 + table.stroke.size() / kMostRows;
@@ -64,15 +66,11 @@ class Problem {
   int values() const { return 2 * static_cast<int>(rows_.size()) - apart() + Unknowns::kCount; }
   /// Rows between the two of a difference.
   int apart() const { return std::max(1, static_cast<int>(rows_.size()) / kPieces); }
-  void setBranch(double branch) { branch_ = branch; }
-  void setNoise(double noise) { noise_ = noise; }
-  double branch() const { return branch_; }
-  double noise() const { return noise_; }
 
   int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& f) const {
-    const BucketLinkage linkage = linkageOf(x, branch_, sense_);
+    const BucketLinkage linkage = linkageOf(x, branch, sense_);
     const auto rows = static_cast<Eigen::Index>(rows_.size()), between = rows - apart();
-    for (Eigen::Index i = 0; i < rows; ++i) f[i] = residual(linkage, x, rows_[static_cast<std::size_t>(i)]) / noise_;
+    for (Eigen::Index i = 0; i < rows; ++i) f[i] = residual(linkage, x, rows_[static_cast<std::size_t>(i)]) / noise;
     f.segment(rows, between) = kDifferences * (f.segment(apart(), between) - f.head(between));
     for (int i = 0; i < Unknowns::kCount; ++i) f[f.size() - Unknowns::kCount + i] = (x[i] - mean_[i]) / deviation_[i];
     return 0;
@@ -94,7 +92,7 @@ class Problem {
     std::normal_distribution<> normal;
     Vector x;
     for (int i = 0; i < Unknowns::kCount; ++i) x[i] = mean_[i] + 0.7 * deviation_[i] * normal(random);
-    const BucketLinkage linkage = linkageOf(x, branch_, sense_);
+    const BucketLinkage linkage = linkageOf(x, branch, sense_);
     double mean = 0.0;
     for (const Row& row : rows_) mean += linkage.at(row.cosine, row.sine).length - row.stroke;
     if (deviation_[Unknowns::kClosed] == kAnyPlace) x[Unknowns::kClosed] = mean / static_cast<double>(rows_.size());
@@ -106,7 +104,7 @@ class Problem {
     return f.squaredNorm();
   }
   bool closes(const Vector& x) const {
-    const BucketLinkage linkage = linkageOf(x, branch_, sense_);
+    const BucketLinkage linkage = linkageOf(x, branch, sense_);
     const double least = std::min(
         {std::abs(x[Unknowns::kGuide]), std::abs(x[Unknowns::kCoupler]), x.segment<2>(Unknowns::kRodX).norm()});
     if (least < kLeastLink) return false;
@@ -115,7 +113,7 @@ class Problem {
   }
   /// Residuals of the rows alone, rms and largest [m].
   std::array<double, 2> left(const Vector& x) const {
-    const BucketLinkage linkage = linkageOf(x, branch_, sense_);
+    const BucketLinkage linkage = linkageOf(x, branch, sense_);
     double sum = 0.0, worst = 0.0;
     for (const Row& row : rows_) {
       const double r = std::abs(residual(linkage, x, row));
@@ -124,7 +122,7 @@ class Problem {
     return {std::sqrt(sum / static_cast<double>(rows_.size())), worst};
   }
   Eigen::VectorXd arms(const Vector& x) const {
-    const BucketLinkage linkage = linkageOf(x, branch_, sense_);
+    const BucketLinkage linkage = linkageOf(x, branch, sense_);
     Eigen::VectorXd arm(static_cast<Eigen::Index>(rows_.size()));
     for (std::size_t i = 0; i < rows_.size(); ++i)
       arm[static_cast<Eigen::Index>(i)] = linkage.at(rows_[i].cosine, rows_[i].sine).arm;
@@ -147,7 +145,7 @@ class Problem {
 
   std::vector<Row> rows_;
   Vector mean_, deviation_;
-  double sense_, branch_{1.0}, noise_{1e-3};
+  double sense_;
 };
 
 void settle(Problem& problem, Vector& x, int most) {
@@ -168,10 +166,10 @@ std::vector<Candidate> candidates(Problem& problem, const Progress& progress) {
   std::mt19937 random(1);
   std::vector<Candidate> all;
   for (int i = 0; i < kStarts; ++i) {
-    problem.setBranch(i % 2 == 0 ? 1.0 : -1.0);
+    problem.branch = i % 2 == 0 ? 1.0 : -1.0;
     Vector x = problem.drawn(random);
     settle(problem, x, 60);
-    if (problem.closes(x)) all.push_back({x, problem.branch(), problem.cost(x)});
+    if (problem.closes(x)) all.push_back({x, problem.branch, problem.cost(x)});
     report(progress, 0.7 * (i + 1.0) / kStarts);
   }
   std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
@@ -181,10 +179,10 @@ std::vector<Candidate> candidates(Problem& problem, const Progress& progress) {
 
 /// With the noise that is left, which decides how much what was known before says.
 void refine(Problem& problem, Candidate& candidate) {
-  problem.setBranch(candidate.branch);
+  problem.branch = candidate.branch;
   for (int round = 0; round < 4; ++round) {
     settle(problem, candidate.x, 2000);
-    problem.setNoise(std::max(kReading, problem.left(candidate.x)[0]));
+    problem.noise = std::max(kReading, problem.left(candidate.x)[0]);
   }
   candidate.cost = problem.closes(candidate.x) ? problem.left(candidate.x)[0] : kInfinity;
 }
@@ -192,9 +190,9 @@ void refine(Problem& problem, Candidate& candidate) {
 /// Selects, among fits whose residuals are within the readings' accuracy, the one nearest to the prior.
 const Candidate& mostProbable(Problem& problem, std::vector<Candidate>& all) {
   const auto less = [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; };
-  problem.setNoise(std::max(kReading, std::min_element(all.begin(), all.end(), less)->cost));
+  problem.noise = std::max(kReading, std::min_element(all.begin(), all.end(), less)->cost);
   for (Candidate& c : all) {
-    problem.setBranch(c.branch);
+    problem.branch = c.branch;
     if (std::isfinite(c.cost)) c.cost = problem.cost(c.x);
   }
   return *std::min_element(all.begin(), all.end(), less);
@@ -214,27 +212,18 @@ void fillEstimates(const Problem& problem, const LinkageBasis& basis, const std:
   const auto rows = static_cast<double>(arms.size());
   fit.arm = arms.norm() / std::sqrt(rows);
   fit.arm_std = std::sqrt((by_arm * covariance).cwiseProduct(by_arm).sum() / rows);
+  std::vector<std::string> names;
   for (int i = 0; i < Unknowns::kCount; ++i) {
     const auto& measured = basis.measured[static_cast<std::size_t>(i)];
-    Estimate e;
-    e.key = cylinder + "_" + Unknowns::kKeys[static_cast<std::size_t>(i)];
-    e.unit = "m", e.value = fit.value[i], e.deviation = std::sqrt(covariance(i, i));
-    e.limit = measured ? basis.tape_std : kAnyPlace;
-    e.meaning = measured ? format("measured %.6g", *measured) : "not measured";
-    fit.estimates.push_back(e);
-    for (int j = 0; j < i; ++j) {
-      const double r = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
-      if (std::abs(r) > kInseparable)
-        fit.correlations.push_back({fit.estimates[static_cast<std::size_t>(j)].key, e.key, r});
-    }
+    names.push_back(cylinder + "_" + Unknowns::kKeys[static_cast<std::size_t>(i)]);
+    fit.estimates.push_back({names.back(), "m", fit.value[i], std::sqrt(covariance(i, i)),
+                             measured ? basis.tape_std : kAnyPlace,
+                             measured ? format("measured %.6g", *measured) : "not measured"});
   }
+  addCorrelations(covariance, names, fit);
 }
 
 }  // namespace
-
-const std::array<const char*, LinkageUnknowns::kCount> LinkageUnknowns::kKeys{
-    "base_x_m", "base_z_m", "rocker_link_base_x_m", "rocker_link_base_z_m", "rocker_link_length_m", "coupler_length_m",
-    "rod_x_m",  "rod_z_m",  "closed_length_m"};
 
 BucketLinkage LinkageFit::linkage(double sense) const { return linkageOf(value, branch, sense); }
 
@@ -275,13 +264,13 @@ LinkageFit fitLinkage(const StrokeTable& table, const LinkageBasis& basis, const
     return fit;
   }
   for (std::size_t i = 0; i < best.size(); ++i) {
-    problem.setNoise(1e-3);
+    problem.noise = 1e-3;
     refine(problem, best[i]);
     report(progress, 0.7 + 0.3 * (static_cast<double>(i) + 1.0) / static_cast<double>(best.size()));
   }
   const Candidate& found = mostProbable(problem, best);
-  problem.setBranch(found.branch);
-  problem.setNoise(std::max(kReading, problem.left(found.x)[0]));
+  problem.branch = found.branch;
+  problem.noise = std::max(kReading, problem.left(found.x)[0]);
   fit.value = found.x, fit.branch = found.branch, fit.rows = table.stroke.size();
   for (const int length : {Unknowns::kGuide, Unknowns::kCoupler}) fit.value[length] = std::abs(fit.value[length]);
   const auto [left, worst] = problem.left(fit.value);

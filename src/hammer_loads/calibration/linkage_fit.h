@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "hammer_loads/boom/bucket_linkage.h"
-#include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/calibration/findings.h"
+#include "hammer_loads/util/progress.h"
 
 namespace hammer_loads::calibration {
 
@@ -27,7 +28,15 @@ struct LinkageUnknowns {
   enum Index { kBaseX, kBaseZ, kGuideX, kGuideZ, kGuide, kCoupler, kRodX, kRodZ, kClosed, kCount };
   using Vector = Eigen::Matrix<double, kCount, 1>;
   /// Key of the boom file behind the cylinder's name.
-  static const std::array<const char*, kCount> kKeys;
+  static constexpr std::array<const char*, kCount> kKeys{"base_x_m",
+                                                         "base_z_m",
+                                                         "rocker_link_base_x_m",
+                                                         "rocker_link_base_z_m",
+                                                         "rocker_link_length_m",
+                                                         "coupler_length_m",
+                                                         "rod_x_m",
+                                                         "rod_z_m",
+                                                         "closed_length_m"};
 };
 
 /// Prior knowledge of the linkage. sense: 1 where the joint turns about +y, -1 about -y.
@@ -39,16 +48,12 @@ struct LinkageBasis {
   double sense{1.0};
 };
 
-struct LinkageFit {
-  std::string problem;            ///< reason why there is no result
+struct LinkageFit : Findings {
   LinkageUnknowns::Vector value;  ///< [m]
   double branch{};                ///< BucketLinkageParameters::branch
   std::size_t rows{};
   double left{}, worst{};   ///< rms and largest of the strokes' residuals [m]
   double arm{}, arm_std{};  ///< rms of the lever over the table; standard deviation, rms [m/rad]
-  std::vector<Estimate> estimates;
-  std::vector<Correlation> correlations;  ///< beyond 0.9 in size
-  std::vector<std::string> remarks;
 
   BucketLinkage linkage(double sense) const;
   /// True if the lever is known to 1 % of its rms.

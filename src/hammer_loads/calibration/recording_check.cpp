@@ -1,8 +1,8 @@
 #include "hammer_loads/calibration/recording_check.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/calibration/sensor_check.h"
@@ -25,11 +25,6 @@ constexpr double kAngleStep = 1e-3;   // [rad]: step of differences
 // Numerical: kAngleStep
 constexpr std::size_t kFewestRows = 5;  // of a cylinder in a recording
 
-/// Ways in which the sensor of a joint differs in one recording from itself in the others.
-enum class Flaw { kConstant, kScale };
-constexpr std::array<std::pair<Flaw, const char*>, 2> kFlaws{
-    {{Flaw::kConstant, "reads %.2g deg more"}, {Flaw::kScale, "reads angles %.2g %% wider"}}};
-
 /// Spread of all values but one about their median, as a standard deviation: a faulty recording shifts all others
 /// alike.
 double spreadWithout(const std::vector<double>& values, std::size_t one) {
@@ -38,67 +33,47 @@ double spreadWithout(const std::vector<double>& values, std::size_t one) {
   return stdByMedian(others, medianOf(others));
 }
 
-/// Rows of one recording in the linear system of a fit.
+/// Rows of one recording, which follow one another, in the linear system of a fit.
 struct Part {
-  std::vector<std::size_t> rows;
-  Eigen::MatrixXd slopes;  ///< change of the model's forces by the unknowns [N]
-  Eigen::VectorXd left;    ///< [N]
-  Eigen::VectorXd weight;  ///< [1/N2]
-  std::size_t count() const { return rows.size(); }
-  Eigen::MatrixXd normal() const { return slopes.transpose() * weight.asDiagonal() * slopes; }
+  std::size_t first{}, count{};
+  BoomSystem system;
 };
-
-double meanAngle(const BoomPoints& recording, int joint) {
-  double sum = 0.0;
-  for (const BoomPoint& p : recording.points) sum += p.motion.position[joint];
-  return sum / static_cast<double>(recording.points.size());
-}
-
-/// Angle by which a flaw of size one shifts a reading [rad].
-double shapeOf(Flaw flaw, const BoomPoint& point, int joint, double mean_angle) {
-  return flaw == Flaw::kConstant ? 1.0 : point.motion.position[joint] - mean_angle;
-}
-
-/// Largest of them in a recording [rad].
-double reachOf(Flaw flaw, const BoomPoints& recording, int joint, double mean_angle) {
-  double most = 0.0;
-  for (const BoomPoint& p : recording.points) most = std::max(most, std::abs(shapeOf(flaw, p, joint, mean_angle)));
-  return most;
-}
 
 class Comparison {
  public:
   Comparison(const BoomModel& model, const std::vector<BoomPoints>& recordings, const std::vector<BoomRow>& rows,
              const BoomFit& fit, const std::vector<std::string>& names)
       : model_(model), recordings_(recordings), rows_(rows), fit_(fit), names_(names) {
-    const Eigen::MatrixXd slopes = slopesOf(model, rows, fit.x);
-    const Eigen::VectorXd left = residualsOf(model, rows, fit.x), weight = weightsOf(fit, rows, left);
+    const BoomSystem all = systemOf(model, rows, fit);
     parts_.resize(recordings.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) parts_[rows[i].recording].rows.push_back(i);
-    const Eigen::Index n = fit.x.size();
-    normal_ = Eigen::MatrixXd::Identity(n, n);
+    for (const BoomRow& row : rows) ++parts_[row.recording].count;
+    normal_ = Eigen::MatrixXd::Identity(fit.x.size(), fit.x.size());
+    std::size_t first = 0;
     for (Part& part : parts_) {
-      const auto count = static_cast<Eigen::Index>(part.count());
-      part.slopes.resize(count, n), part.left.resize(count), part.weight.resize(count);
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const auto row = static_cast<Eigen::Index>(part.rows[static_cast<std::size_t>(i)]);
-        part.slopes.row(i) = slopes.row(row), part.left[i] = left[row], part.weight[i] = weight[row];
-      }
-      normal_ += part.normal();
+      part.first = std::exchange(first, first + part.count);
+      const auto begin = static_cast<Eigen::Index>(part.first), count = static_cast<Eigen::Index>(part.count);
+      part.system = {all.left.segment(begin, count), all.weight.segment(begin, count),
+                     all.slopes.middleRows(begin, count)};
+      normal_ += part.system.information();
     }
   }
 
-  std::vector<Contradiction> run() {
+  std::string run() {
     for (std::size_t k = 0; k < model_.given().cylinders().size(); ++k) {
       checkForces(k);
-      for (const auto& [flaw, text] : kFlaws) checkSensor(k, flaw, text);
+      for (const bool is_scale : {false, true}) checkSensor(k, is_scale);
     }
-    std::sort(found_.begin(), found_.end(),
-              [](const Contradiction& a, const Contradiction& b) { return a.size > b.size; });
-    return std::move(found_);
+    return text_;
   }
 
  private:
+  /// size: over its limit.
+  void note(double size, const std::string& text) {
+    if (size > largest_) largest_ = size, text_ = text + ", leave that recording out";
+  }
+  const BoomRow& rowOf(const Part& part, Eigen::Index i) const {
+    return rows_[part.first + static_cast<std::size_t>(i)];
+  }
   const std::string& jointOf(std::size_t cylinder) const {
     return model_.given().cylinders()[cylinder].parameters().joint;
   }
@@ -107,15 +82,15 @@ class Comparison {
   void checkForces(std::size_t cylinder) {
     const std::vector<double> noise = noiseRatios(recordings_, model_.given().cylinders()[cylinder].joint());
     for (std::size_t r = 0; r < parts_.size(); ++r) {
-      const Part& part = parts_[r];
-      const Eigen::MatrixXd covariance = inverseOf(normal_ - part.normal());
-      const Eigen::VectorXd change = -covariance * (part.slopes.transpose() * part.weight.cwiseProduct(part.left));
-      const Eigen::VectorXd off = part.left - part.slopes * change;
+      const BoomSystem& s = parts_[r].system;
+      const Eigen::MatrixXd covariance = inverseOf(normal_ - s.information());
+      const Eigen::VectorXd change = -covariance * (s.slopes.transpose() * s.weight.cwiseProduct(s.left));
+      const Eigen::VectorXd off = s.left - s.slopes * change;
       Eigen::VectorXd slope = Eigen::VectorXd::Zero(fit_.x.size());
       double sum = 0.0, count = 0.0;
       for (Eigen::Index i = 0; i < off.size(); ++i) {
-        if (rows_[part.rows[static_cast<std::size_t>(i)]].cylinder != cylinder) continue;
-        sum += off[i], slope += part.slopes.row(i).transpose(), count += 1.0;
+        if (rowOf(parts_[r], i).cylinder != cylinder) continue;
+        sum += off[i], slope += s.slopes.row(i).transpose(), count += 1.0;
       }
       if (count < static_cast<double>(kFewestRows)) continue;
       slope /= count;
@@ -130,7 +105,7 @@ class Comparison {
                  jointOf(cylinder).c_str(), names_[r].c_str(), sum / count, deviation);
       const std::string why = suspect ? format(", and its sensor has %.0f times their noise: faulty there", noise[r])
                                       : ": its sensor, a pressure or the load on the tip is another there";
-      found_.push_back({size / limit, what + why + ", leave that recording out"});
+      note(size / limit, what + why);
     }
   }
 
@@ -139,8 +114,8 @@ class Comparison {
     std::vector<BoomPoint> points;
     std::vector<BoomRow> up, down;
     const Part& part = parts_[recording];
-    points.reserve(2 * part.count());
-    for (const std::size_t i : part.rows) {
+    points.reserve(2 * part.count);
+    for (std::size_t i = part.first; i < part.first + part.count; ++i) {
       for (const double step : {kAngleStep, -kAngleStep}) {
         points.push_back(*rows_[i].point);
         points.back().motion.position[joint] += step;
@@ -155,11 +130,11 @@ class Comparison {
   /// Slopes of a recording's rows by the unknowns and by friction of its own, one for each cylinder.
   Eigen::MatrixXd withFriction(const Part& part) const {
     const std::size_t cylinders = model_.given().cylinders().size();
-    const Eigen::Index n = part.slopes.cols();
-    Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(part.slopes.rows(), n + static_cast<Eigen::Index>(cylinders));
-    slopes.leftCols(n) = part.slopes;
+    const Eigen::Index n = part.system.slopes.cols();
+    Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(part.system.slopes.rows(), n + static_cast<Eigen::Index>(cylinders));
+    slopes.leftCols(n) = part.system.slopes;
     for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
-      const BoomRow& row = rows_[part.rows[static_cast<std::size_t>(i)]];
+      const BoomRow& row = rowOf(part, i);
       const auto value = [&](BoomUnknown kind) { return model_.valueOf(fit_.x, kind, row.cylinder); };
       Boom boom = model_.given();
       model_.move(boom, fit_.x, *row.point);
@@ -175,38 +150,42 @@ class Comparison {
     double value{}, deviation{}, reach{};
   };
 
-  /// A flaw of one recording's sensor as one more unknown of the fit.
-  Size sizeOf(std::size_t recording, int joint, Flaw flaw) const {
+  /// A sensor that differs in one recording from itself in the others, by a constant or in proportion to the angle, as
+  /// one more unknown of the fit.
+  Size sizeOf(std::size_t recording, int joint, bool is_scale) const {
     const Part& part = parts_[recording];
-    if (part.count() == 0) return {};
-    const double mean_angle = meanAngle(recordings_[recording], joint);
+    if (part.count == 0) return {};
+    const std::vector<BoomPoint>& points = recordings_[recording].points;
+    double mean_angle = 0.0, reach = 0.0;
+    for (const BoomPoint& p : points) mean_angle += p.motion.position[joint] / static_cast<double>(points.size());
+    /// Angle by which a flaw of size one shifts a reading [rad].
+    const auto shiftAt = [&](const BoomPoint& p) { return is_scale ? p.motion.position[joint] - mean_angle : 1.0; };
+    for (const BoomPoint& p : points) reach = std::max(reach, std::abs(shiftAt(p)));
     Eigen::VectorXd slope = slopesByAngle(recording, joint);
-    for (Eigen::Index i = 0; i < slope.size(); ++i)
-      slope[i] *= shapeOf(flaw, *rows_[part.rows[static_cast<std::size_t>(i)]].point, joint, mean_angle);
-    const Eigen::VectorXd weighted = part.weight.cwiseProduct(slope);
+    for (Eigen::Index i = 0; i < slope.size(); ++i) slope[i] *= shiftAt(*rowOf(part, i).point);
+    const Eigen::VectorXd weighted = part.system.weight.cwiseProduct(slope);
     const Eigen::MatrixXd slopes = withFriction(part);
     const Eigen::Index n = normal_.rows(), all = slopes.cols();
     Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(all, all);
-    normal += slopes.transpose() * part.weight.asDiagonal() * slopes;
+    normal += slopes.transpose() * part.system.weight.asDiagonal() * slopes;
     normal.topLeftCorner(n, n) = normal_;
-    Eigen::VectorXd towards = slopes.transpose() * part.weight.cwiseProduct(part.left);
+    Eigen::VectorXd towards = slopes.transpose() * part.system.weight.cwiseProduct(part.system.left);
     towards.head(n).setZero();  // the fit is at its minimum
     const Eigen::VectorXd by_unknowns = slopes.transpose() * weighted, shared = solved(normal, by_unknowns);
     const double rest = slope.dot(weighted) - by_unknowns.dot(shared);
-    const double shown = weighted.dot(part.left) - shared.dot(towards);
-    const double reach = reachOf(flaw, recordings_[recording], joint, mean_angle);
+    const double shown = weighted.dot(part.system.left) - shared.dot(towards);
     if (!(rest > 0.0) || reach < kLeastReach) return {};
     const double information = rest + std::pow(reach / kFlawStd, 2);
     // A reading that is too large by d makes the model's force too large by slope d.
     return {-shown / information, std::sqrt(rest) / information, reach};
   }
 
-  void checkSensor(std::size_t cylinder, Flaw flaw, const char* text) {
+  void checkSensor(std::size_t cylinder, bool is_scale) {
     const int joint = model_.given().cylinders()[cylinder].joint();
     std::vector<Size> sizes;
     std::vector<double> values;
     for (std::size_t r = 0; r < parts_.size(); ++r) {
-      sizes.push_back(sizeOf(r, joint, flaw));
+      sizes.push_back(sizeOf(r, joint, is_scale));
       values.push_back(sizes.back().value);
     }
     for (std::size_t r = 0; r < parts_.size(); ++r) {
@@ -215,11 +194,11 @@ class Comparison {
       const double size = std::abs(s.value) / std::hypot(s.deviation, spreadWithout(values, r));
       if (size <= kContradicts || std::abs(s.value) * s.reach < kLeastAngle) continue;
       if (std::abs(s.value) * s.reach > kMostAngle) continue;
-      const double shown = flaw == Flaw::kScale ? 100.0 * s.value : s.value * 180.0 / kPi;
-      found_.push_back({std::abs(s.value) / s.deviation / kContradicts,
-                        jointOf(cylinder) + ": its sensor " + format(text, shown) +
-                            format(" in %s than in the other recordings: faulty there, leave that recording out",
-                                   names_[r].c_str())});
+      const std::string differs = is_scale ? format("reads angles %.2g %% wider", 100.0 * s.value)
+                                           : format("reads %.2g deg more", s.value * 180.0 / kPi);
+      note(std::abs(s.value) / s.deviation / kContradicts, jointOf(cylinder) + ": its sensor " + differs + " in " +
+                                                               names_[r] +
+                                                               " than in the other recordings: faulty there");
     }
   }
 
@@ -230,16 +209,16 @@ class Comparison {
   const std::vector<std::string>& names_;
   std::vector<Part> parts_;
   Eigen::MatrixXd normal_;
-  std::vector<Contradiction> found_;
+  double largest_{};
+  std::string text_;
 };
 
 }  // namespace
 
-std::vector<Contradiction> contradictions(const BoomModel& model, const std::vector<BoomPoints>& recordings,
-                                          const std::vector<BoomRow>& rows, const BoomFit& fit,
-                                          const std::vector<std::string>& names) {
-  if (recordings.size() < 3) return {};
-  return Comparison(model, recordings, rows, fit, names).run();
+std::string contradictionOf(const BoomModel& model, const std::vector<BoomPoints>& recordings,
+                            const std::vector<BoomRow>& rows, const BoomFit& fit,
+                            const std::vector<std::string>& names) {
+  return recordings.size() < 3 ? "" : Comparison(model, recordings, rows, fit, names).run();
 }
 
 }  // namespace hammer_loads::calibration

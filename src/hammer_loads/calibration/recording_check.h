@@ -8,21 +8,16 @@
 
 namespace hammer_loads::calibration {
 
-/// Contradiction between one recording and the others.
-struct Contradiction {
-  double size{};     ///< over its limit [-]
-  std::string text;  ///< begins with the joint and names the recording
-};
-
-/// Contradictions of recordings to the others, the largest first; none where they are fewer than three.
+/// The largest contradiction of a recording to the others; empty without one, or where they are fewer than three. It
+/// begins with the joint and names the recording.
 ///
 /// Each recording is predicted by a fit to the others, whose covariance, offsets by day and noise give the standard
 /// deviation of that prediction. Beyond four of them a recording contradicts the others, beyond two if a sensor of its
 /// joint has eight times the usual noise. A sensor that differs from itself in the other recordings by a constant or
 /// in proportion to the angle is estimated as one more unknown. It contradicts beyond four standard deviations,
 /// to which the spread of the other recordings contributes.
-std::vector<Contradiction> contradictions(const BoomModel& model, const std::vector<BoomPoints>& recordings,
-                                          const std::vector<BoomRow>& rows, const BoomFit& fit,
-                                          const std::vector<std::string>& names);
+std::string contradictionOf(const BoomModel& model, const std::vector<BoomPoints>& recordings,
+                            const std::vector<BoomRow>& rows, const BoomFit& fit,
+                            const std::vector<std::string>& names);
 
 }  // namespace hammer_loads::calibration

@@ -41,16 +41,16 @@ std::string briefly(const Estimate& e) {
 
 /// Nothing that is zero or belongs to another key: a standard deviation, a phase.
 std::string foundOf(const Calibration& c) {
-  std::string text;
+  std::vector<std::string> texts;
   for (const Estimate& e : c.estimates) {
     const bool of_another = e.key.find("_std") != std::string::npos || e.key.find("_phase") != std::string::npos;
-    if (e.determined() && e.value != 0.0 && !of_another) text += (text.empty() ? "" : ", ") + briefly(e);
+    if (e.determined() && e.value != 0.0 && !of_another) texts.push_back(briefly(e));
   }
-  return text;
+  return joined(texts);
 }
 
 std::string whyNotFound(const Calibration& c, const Estimate& e) {
-  if (c.rod_gives && e.key.rfind("coupling", 0) != 0) return "the connecting rod or its pins are elastic";
+  if (c.rod_gives) return "the connecting rod or its pins are elastic";
   if (!e.hidden_by.empty()) return "hidden by the uncertainty of " + e.hidden_by;
   return std::isfinite(c.more_blows) ? "too few blows" : "this work does not show it";
 }
@@ -92,17 +92,13 @@ std::string nextStepOf(const Calibration& c) {
       at_other_level = true;
     }
   }
-  std::string constants;
-  for (const std::string& key : measured) constants += (constants.empty() ? "" : ", ") + key;
-  if (!measured.empty()) steps.push_back("weigh or measure " + constants + " and give its standard deviation");
+  if (!measured.empty()) steps.push_back("weigh or measure " + joined(measured) + " and give its standard deviation");
   if (at_other_level) steps.emplace_back("set level: linkage");
   if (c.mean_square > square(kLargeResidual))
     steps.emplace_back("check the lengths of the hammer file and the stamps, for the residuals are above 1.3");
   if (few && std::isfinite(c.more_blows)) steps.push_back("record " + needOf(c));
   if (steps.empty()) return "start the node with this file as calibration_file:=FILE, or give it to --params";
-  std::string text;
-  for (const std::string& step : steps) text += (text.empty() ? "" : "; ") + step;
-  return text + "; then calibrate again (--verbose shows every figure)";
+  return joined(steps, "; ") + "; then calibrate again (--verbose shows every figure)";
 }
 
 /// In lines of some 110 characters, the second and later ones indented. A line ends behind a comma, colon or semicolon,

@@ -11,15 +11,8 @@ namespace hammer_loads::calibration {
 /// Evidence of the crank's filter, run with the sensor and the drive of a fit.
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
 
-/// Ratio of the residuals to their expectation, just after the blow and later.
-std::string whereReadingsDiffer(const RodEvidence& rod);
-
-/// Message that the rod is elastic, with the action. settled: the fit with the links of the hammer file converged;
-/// otherwise the links may be wrong.
-std::string whatARodDoes(const RodEvidence& rod, bool settled);
-
-/// Marks the keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
-/// ratio: encoder turns per crank turn.
-void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result);
+/// Ratio of the residuals to their expectation, just after the blow and later; with an elastic rod, its effect and the
+/// action as well. settled: the fit with the links of the hammer file converged; otherwise the links may be wrong.
+std::string textOf(const RodEvidence& rod, bool settled);
 
 }  // namespace hammer_loads::calibration

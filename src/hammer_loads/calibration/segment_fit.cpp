@@ -9,16 +9,20 @@
 namespace hammer_loads::calibration {
 namespace {
 
-/// The reading beyond zero and its slope at an offset.
+/// The reading at an offset, with its derivatives.
 struct Seen {
-  double value, slope;
+  Seen(const Globals& g, double offset)
+      : s1(std::sin(offset)), c1(std::cos(offset)), s2(2.0 * s1 * c1), c2(1.0 - 2.0 * s1 * s1) {
+    value = g[kZero] + offset + g[kSine1] * s1 + g[kCosine1] * (c1 - 1.0) + g[kSine2] * s2 + g[kCosine2] * (c2 - 1.0);
+    slope = 1.0 + g[kSine1] * c1 - g[kCosine1] * s1 + 2.0 * (g[kSine2] * c2 - g[kCosine2] * s2);
+    bend = -g[kSine1] * s1 - g[kCosine1] * c1 - 4.0 * (g[kSine2] * s2 + g[kCosine2] * c2);
+  }
+  double s1, c1, s2, c2;      ///< sine and cosine of the offset, and of twice it
+  double value, slope, bend;  ///< reading [rad], its first and second derivative by the offset
 };
 
-Seen seenAt(const Globals& g, double offset) {
-  const double s1 = std::sin(offset), c1 = std::cos(offset), s2 = 2.0 * s1 * c1, c2 = 1.0 - 2.0 * s1 * s1;
-  return {g[kZero] + offset + g[kSine1] * s1 + g[kCosine1] * (c1 - 1.0) + g[kSine2] * s2 + g[kCosine2] * (c2 - 1.0),
-          1.0 + g[kSine1] * c1 - g[kCosine1] * s1 + 2.0 * (g[kSine2] * c2 - g[kCosine2] * s2)};
-}
+/// Residual beyond which a sample counts less (Huber) [deviations].
+constexpr double kHuber = 3.0;
 
 /// Huber's weight of a residual in deviations, and its cost.
 double weightOf(double r) { return std::abs(r) <= kHuber ? 1.0 : kHuber / std::abs(r); }
@@ -88,17 +92,15 @@ HalfShot SegmentFit::halfOf(const Globals& globals, bool before) const {
   return half;
 }
 
-/// Points of all samples, in their order; slopes as well where they are asked for.
-void SegmentFit::run(const SegmentModel& model, const Globals& globals, std::vector<ShotPoint>& points,
-                     std::vector<MotionSlopes>* slopes) const {
+std::vector<ShotPoint> SegmentFit::motion(const SegmentModel& model, const Globals& globals,
+                                          std::vector<MotionSlopes>* slopes) const {
   const auto& p = segment_->points;
   const std::size_t before = beforeCount();
   ShaftModel shaft = model.shaft;
   shaft.setHullMotion(segment_->gravity);
   std::vector<double> times;
-  std::vector<ShotPoint> side;
+  std::vector<ShotPoint> points(p.size()), side;
   std::vector<ShotSlopes> side_slopes;
-  points.resize(p.size());
   if (slopes) slopes->assign(p.size(), MotionSlopes::Zero());
   for (const bool is_before : {true, false}) {
     const HalfShot half = halfOf(globals, is_before);
@@ -118,6 +120,7 @@ void SegmentFit::run(const SegmentModel& model, const Globals& globals, std::vec
       all.rightCols<kShaping>() = side_slopes[i].middleCols<kShaping>(kOwnLogInertia);
     }
   }
+  return points;
 }
 
 /// A stamp off by d shows an angle off by w d and a speed off by w' d; next to the blow it may lie on the other side of
@@ -148,45 +151,31 @@ double SegmentFit::cost(const SegmentModel& model, const Globals& globals, const
   return cost + 0.5 * square(locals_[kTorqueAtBlow] / noise.torque);
 }
 
-std::vector<ShotPoint> SegmentFit::motion(const SegmentModel& model, const Globals& globals) const {
-  std::vector<ShotPoint> points;
-  run(model, globals, points);
-  return points;
-}
-
 std::vector<ResidualRow> SegmentFit::rows(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
-  std::vector<ShotPoint> base;
   std::vector<MotionSlopes> slopes;
-  run(model, globals, base, &slopes);
+  const std::vector<ShotPoint> points = motion(model, globals, &slopes);
+  const std::vector<ResidualAt> residuals = residualsAt(points, globals, noise);
   std::vector<ResidualRow> rows;
-  rows.reserve(2 * base.size());
-  for (std::size_t i = 0; i < base.size(); ++i) {
-    const CrankPoint& point = segment_->points[i];
-    const double offset = base[i].offset, speed = base[i].speed;
-    const Seen seen = seenAt(globals, offset);
-    const double s1 = std::sin(offset), c1 = std::cos(offset), s2 = 2.0 * s1 * c1, c2 = 1.0 - 2.0 * s1 * s1;
-    const Weighing deviation = weighing(noise, point.time, base[i]);
-    ResidualRow angle{i, base[i], false, point.seen - seen.value, deviation.angle, {}, {}, seen.slope, 0.0};
-    angle.by_local = seen.slope * slopes[i].row(0).head<kLocals>().transpose();
-    angle.by_global << 1.0, s1, c1 - 1.0, s2, c2 - 1.0, seen.slope * slopes[i].row(0).tail<kShaping>().transpose();
+  rows.reserve(2 * points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double speed = points[i].speed, share = residuals[i].deviation.share;
+    const Seen seen(globals, points[i].offset);
+    const auto by_offset = slopes[i].row(0), by_speed = slopes[i].row(1);
+    ResidualRow angle{i, points[i], false, residuals[i].angle, residuals[i].deviation.angle, {}, {}, seen.slope, 0.0};
+    angle.by_local = seen.slope * by_offset.head<kLocals>().transpose();
+    angle.by_global << 1.0, seen.s1, seen.c1 - 1.0, seen.s2, seen.c2 - 1.0,
+        seen.slope * by_offset.tail<kShaping>().transpose();
     rows.push_back(angle);
-    if (!point.speed) continue;
-    const double bend =
-        -globals[kSine1] * s1 - globals[kCosine1] * c1 - 4.0 * (globals[kSine2] * s2 + globals[kCosine2] * c2);
-    const MotionSlope by_motion = seen.slope * slopes[i].row(1) + speed * bend * slopes[i].row(0);
-    ResidualRow of_speed{i,
-                         base[i],
-                         true,
-                         *point.speed - seen.slope * speed - deviation.share * angle.residual,
-                         deviation.speed,
-                         {},
-                         {},
-                         speed * bend - deviation.share * seen.slope,
-                         seen.slope};
-    of_speed.by_local = by_motion.head<kLocals>().transpose() - deviation.share * angle.by_local;
-    of_speed.by_global << 0.0, speed * c1, -speed * s1, 2.0 * speed * c2, -2.0 * speed * s2,
+    if (std::isnan(residuals[i].speed_error)) continue;
+    const Eigen::Matrix<double, 1, kLocals + kShaping> by_motion =
+        seen.slope * by_speed + speed * seen.bend * by_offset;
+    ResidualRow of_speed{i,  points[i], true,      residuals[i].speed_error, residuals[i].deviation.speed, {},
+                         {}, 0.0,       seen.slope};
+    of_speed.by_offset = speed * seen.bend - share * seen.slope;
+    of_speed.by_local = by_motion.head<kLocals>().transpose() - share * angle.by_local;
+    of_speed.by_global << 0.0, speed * seen.c1, -speed * seen.s1, 2.0 * speed * seen.c2, -2.0 * speed * seen.s2,
         by_motion.tail<kShaping>().transpose();
-    of_speed.by_global -= deviation.share * angle.by_global;
+    of_speed.by_global -= share * angle.by_global;
     rows.push_back(of_speed);
   }
   return rows;
@@ -196,7 +185,6 @@ double weightOf(const ResidualRow& row) { return weightOf(row.residual / row.dev
 
 NormalEquations SegmentFit::equationsOf(const std::vector<ResidualRow>& rows, const Noise& noise) const {
   NormalEquations e;
-  e.ll_angles.setZero(), e.ll_speeds.setZero(), e.lg.setZero(), e.gg.setZero(), e.l.setZero(), e.g.setZero();
   for (const ResidualRow& row : rows) {
     const double weight = weightOf(row);
     LocalMatrix& ll = row.of_speed ? e.ll_speeds : e.ll_angles;
@@ -205,8 +193,6 @@ NormalEquations SegmentFit::equationsOf(const std::vector<ResidualRow>& rows, co
     e.gg.noalias() += weight * row.by_global * row.by_global.transpose();
     e.l += weight * row.residual * row.by_local;
     e.g += weight * row.residual * row.by_global;
-    e.cost +=
-        costOf(row.residual / row.deviation) + std::log(row.deviation / (row.of_speed ? noise.speed : noise.angle));
   }
   e.ll = e.ll_angles + e.ll_speeds;
   const double walk = 1.0 / (square(noise.torque_walk) * node_step_);
@@ -216,12 +202,10 @@ NormalEquations SegmentFit::equationsOf(const std::vector<ResidualRow>& rows, co
       const double change = locals_[a] - locals_[b];
       e.ll(a, a) += walk, e.ll(b, b) += walk, e.ll(a, b) -= walk, e.ll(b, a) -= walk;
       e.l[a] -= walk * change, e.l[b] += walk * change;
-      e.cost += 0.5 * walk * square(change);
     }
   }
   e.ll(kTorqueAtBlow, kTorqueAtBlow) += 1.0 / square(noise.torque);
   e.l[kTorqueAtBlow] -= locals_[kTorqueAtBlow] / square(noise.torque);
-  e.cost += 0.5 * square(locals_[kTorqueAtBlow] / noise.torque);
   return e;
 }
 
@@ -237,12 +221,11 @@ BlowSegment SegmentFit::replica(const SegmentModel& model, const Globals& global
   std::sort(taken.begin(), taken.end(), [](const Taken& a, const Taken& b) { return a.time < b.time; });
   BlowSegment instants = *segment_;
   for (std::size_t i = 0; i < size(); ++i) instants.points[i].time = taken[i].time;
-  std::vector<ShotPoint> points;
-  onto(instants).run(model, globals, points);
+  const std::vector<ShotPoint> points = onto(instants).motion(model, globals);
   BlowSegment replica = *segment_;
   const double centre = segment_->points.front().seen;  // of some count
   for (std::size_t i = 0; i < size(); ++i) {
-    const Seen seen = seenAt(globals, points[i].offset);
+    const Seen seen(globals, points[i].offset);
     CrankPoint& point = replica.points[taken[i].place];
     point.seen = seen.value + (noise.angle_known ? 0.0 : sign * noise.angle * normal(random));
     if (count > 0.0) point.seen += sign * (centre + count * std::nearbyint((point.seen - centre) / count) - point.seen);
@@ -251,15 +234,13 @@ BlowSegment SegmentFit::replica(const SegmentModel& model, const Globals& global
   return replica;
 }
 
-std::vector<ResidualAt> SegmentFit::residuals(const SegmentModel& model, const Globals& globals,
-                                              const Noise& noise) const {
-  std::vector<ShotPoint> points;
-  run(model, globals, points);
+std::vector<ResidualAt> SegmentFit::residualsAt(const std::vector<ShotPoint>& points, const Globals& globals,
+                                                const Noise& noise) const {
   std::vector<ResidualAt> all;
   all.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const CrankPoint& point = segment_->points[i];
-    const Seen seen = seenAt(globals, points[i].offset);
+    const Seen seen(globals, points[i].offset);
     const Weighing deviation = weighing(noise, point.time, points[i]);
     const double angle = point.seen - seen.value;
     all.push_back({points[i].offset, points[i].speed, angle,

@@ -40,13 +40,12 @@ using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals>;
 
 /// Least squares of one segment at the present parameters, weighted.
 struct NormalEquations {
-  LocalMatrix ll;                    ///< locals, with the prior of the torque
-  LocalMatrix ll_angles, ll_speeds;  ///< information of the angles and of the speeds on the locals
-  Eigen::Matrix<double, kLocals, kGlobals> lg;
-  GlobalMatrix gg;
-  Locals l;  ///< right-hand sides
-  Globals g;
-  double cost{};  ///< robust, half the sum of squares
+  LocalMatrix ll_angles = LocalMatrix::Zero(), ll_speeds = LocalMatrix::Zero();  ///< information on the locals
+  LocalMatrix ll;                                                                ///< both, with the torque's prior
+  Eigen::Matrix<double, kLocals, kGlobals> lg = Eigen::Matrix<double, kLocals, kGlobals>::Zero();
+  GlobalMatrix gg = GlobalMatrix::Zero();
+  Locals l = Locals::Zero();  ///< right-hand sides
+  Globals g = Globals::Zero();
 };
 
 /// Weights of a sample's residuals. An error of the stamp moves angle and speed together: `share` of the angle's
@@ -95,8 +94,12 @@ class SegmentFit {
   /// rows: of this segment.
   NormalEquations equationsOf(const std::vector<ResidualRow>& rows, const Noise& noise) const;
   std::vector<ResidualRow> rows(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
-  /// The encoder at the segment's points by another hammer, all else the same.
-  std::vector<ShotPoint> motion(const SegmentModel& model, const Globals& globals) const;
+  /// d(offset, speed)/d(locals, shaping globals).
+  using MotionSlopes = Eigen::Matrix<double, 2, kLocals + kShaping>;
+  /// The encoder at the segment's points, in their order, and its slopes where they are asked for. The model may be
+  /// that of another hammer.
+  std::vector<ShotPoint> motion(const SegmentModel& model, const Globals& globals,
+                                std::vector<MotionSlopes>* slopes = nullptr) const;
   /// Replica of the segment: the fitted motion with new noise, read at instants that differ from their stamps.
   /// sign: of all errors; the mean of two replicas that differ in it alone has no error of first order.
   BlowSegment replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count, double sign,
@@ -107,14 +110,13 @@ class SegmentFit {
     other.segment_ = &segment;
     return other;
   }
-  std::vector<ResidualAt> residuals(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
+  std::vector<ResidualAt> residuals(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
+    return residualsAt(motion(model, globals), globals, noise);
+  }
 
  private:
-  /// d(offset, speed)/d(locals, shaping globals).
-  using MotionSlopes = Eigen::Matrix<double, 2, kLocals + kShaping>;
-  using MotionSlope = Eigen::Matrix<double, 1, kLocals + kShaping>;  ///< one row of MotionSlopes
-  void run(const SegmentModel& model, const Globals& globals, std::vector<ShotPoint>& points,
-           std::vector<MotionSlopes>* slopes = nullptr) const;
+  std::vector<ResidualAt> residualsAt(const std::vector<ShotPoint>& points, const Globals& globals,
+                                      const Noise& noise) const;
   Weighing weighing(const Noise& noise, double time, const ShotPoint& at) const;
   HalfShot halfOf(const Globals& globals, bool before) const;
   std::size_t beforeCount() const;
@@ -123,8 +125,5 @@ class SegmentFit {
   Locals locals_;
   double node_step_{}, mean_speed_{};
 };
-
-/// Residual beyond which a sample counts less (Huber) [deviations].
-constexpr double kHuber = 3.0;
 
 }  // namespace hammer_loads::calibration

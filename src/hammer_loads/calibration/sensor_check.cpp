@@ -1,9 +1,9 @@
 #include "hammer_loads/calibration/sensor_check.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "hammer_loads/boom/cylinder.h"
 #include "hammer_loads/util/constants.h"
@@ -123,38 +123,20 @@ constexpr double kFits = 0.5;    // part of the force, rms: errors of nominal ma
 constexpr double kBetter = 0.5;  // another reading of it is off by less than this part
 constexpr double kBeyondLimit = 0.3;  // [rad]
 
-struct PressureUnit {
-  const char* name;
-  double pascal;
-};
-constexpr std::array<PressureUnit, 5> kUnits{
-    {{"Pa", 1.0}, {"bar", 1e5}, {"psi", 6894.757}, {"kPa", 1e3}, {"MPa", 1e6}}};
+constexpr std::pair<const char*, double> kUnits[]{
+    {"Pa", 1.0}, {"bar", 1e5}, {"psi", 6894.757}, {"kPa", 1e3}, {"MPa", 1e6}};
 
-/// One way to read a cylinder's pressures.
-struct ReadAs {
-  std::size_t of{};  ///< the cylinder whose topics these truly are
-  bool exchanged{};  ///< chambers
-  PressureUnit unit{};
-};
-
-std::string textOf(const ReadAs& way, std::size_t cylinder, const BoomModel& model) {
-  std::string text;
-  if (way.of != cylinder) text += " those of " + model.given().cylinders()[way.of].parameters().name;
-  if (way.exchanged) text += std::string(text.empty() ? "" : ",") + " bore and rod exchanged";
-  if (way.unit.pascal != 1.0) text += std::string(text.empty() ? "" : ",") + " in " + way.unit.name;
-  return text;
-}
-
-/// rms of measured less expected force, over that expected.
+/// rms of measured less expected force, over that expected. The pressures are read as those of the cylinder `of`, in
+/// units of so many Pa.
 double misfit(const BoomModel& model, const std::vector<double>& expected, const BoomPoints& recording,
-              std::size_t cylinder, const ReadAs& way) {
+              std::size_t cylinder, std::size_t of, bool exchanged, double unit) {
   const Cylinder& c = model.given().cylinders()[cylinder];
   double off = 0.0, all = 0.0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     if (!std::isfinite(expected[i])) continue;
-    auto p = recording.points[i].pressure[way.of];
-    if (way.exchanged) std::swap(p[0], p[1]);
-    const double difference = way.unit.pascal * forceOf(c, {p[0], p[1]}) - expected[i];
+    auto p = recording.points[i].pressure[of];
+    if (exchanged) std::swap(p[0], p[1]);
+    const double difference = unit * forceOf(c, {p[0], p[1]}) - expected[i];
     off += difference * difference, all += expected[i] * expected[i];
   }
   return all > 0.0 ? std::sqrt(off / all) : 0.0;
@@ -170,23 +152,27 @@ void checkCylinder(const BoomModel& model, const BoomPoints& recording, std::siz
     expected.push_back(
         boom.cylinders()[cylinder].load(boom.cylinderPosition(cylinder), boom.steadyTorque(joint)).force);
   }
-  const double as_said = misfit(model, expected, recording, cylinder, {cylinder, false, kUnits[0]});
+  const double as_said = misfit(model, expected, recording, cylinder, cylinder, false, 1.0);
   if (as_said <= kFits) return;
-  ReadAs best{cylinder, false, kUnits[0]};
+  std::string best;
   double least = as_said;
   for (std::size_t of = 0; of < boom.cylinders().size(); ++of) {
     for (const bool exchanged : {false, true}) {
-      for (const PressureUnit& unit : kUnits) {
-        const ReadAs way{of, exchanged, unit};
-        const double off = misfit(model, expected, recording, cylinder, way);
-        if (off < least) least = off, best = way;
+      for (const auto& [unit, pascal] : kUnits) {
+        const double off = misfit(model, expected, recording, cylinder, of, exchanged, pascal);
+        if (off >= least) continue;
+        std::vector<std::string> differences;
+        if (of != cylinder) differences.push_back("those of " + boom.cylinders()[of].parameters().name);
+        if (exchanged) differences.emplace_back("bore and rod exchanged");
+        if (pascal != 1.0) differences.push_back(std::string("in ") + unit);
+        least = off, best = joined(differences);
       }
     }
   }
   const std::string& name = boom.cylinders()[cylinder].parameters().name;
   if (least < kBetter * as_said && least < kFits) {
-    lines.push_back(format("%s: its pressures are off the boom's weight by %.0f %%, read as%s by %.0f %%", name.c_str(),
-                           100.0 * as_said, textOf(best, cylinder, model).c_str(), 100.0 * least));
+    lines.push_back(format("%s: its pressures are off the boom's weight by %.0f %%, read as %s by %.0f %%",
+                           name.c_str(), 100.0 * as_said, best.c_str(), 100.0 * least));
   } else {
     lines.push_back(
         format("%s: its pressures are off the boom's weight by %.0f %%, must be within %.0f %%: topics, "

@@ -89,20 +89,20 @@ std::string whatIsMissing(const Settings& settings, const std::vector<PressureTo
   const Chain& chain = settings.boom->chain();
   std::set<int> held;
   for (const Cylinder& cylinder : settings.boom->cylinders()) held.insert(cylinder.joint());
-  std::string missing;
-  const auto name = [](std::string& list, const std::string& one) { list += (list.empty() ? "" : ", ") + one; };
+  std::vector<std::string> missing, silent;
   for (int j = 0; j < chain.joints(); ++j) {
     if (!bag.recording.joint[static_cast<std::size_t>(j)].time.empty()) continue;
     const std::string& joint = chain.jointNames()[static_cast<std::size_t>(j)];
     if (held.count(j) == 1)
-      name(missing, joint + " on " + settings.input_topics.joint_states);
+      missing.push_back(joint + " on " + settings.input_topics.joint_states);
     else
-      name(bag.silent, joint);
+      silent.push_back(joint);
   }
   for (const PressureTopic& topic : topics)
     if (bag.recording.pressure[topic.cylinder][static_cast<std::size_t>(topic.chamber)].time.empty())
-      name(missing, topic.name);
-  return missing;
+      missing.push_back(topic.name);
+  bag.silent = joined(silent);
+  return joined(missing);
 }
 
 /// Topics, joints and cylinders as in the settings, which have a boom. Readings that are no numbers, or not newer than
@@ -117,7 +117,7 @@ BoomBag readBoomBag(const BagInputs& inputs, const Settings& settings) {
   BoomReader reader(settings, result.recording);
   sensor_msgs::JointState state;
   sensor_msgs::FluidPressure pressure;
-  try {
+  result.problem = readOrSay(inputs, [&] {
     BagMessages messages = inputs.messagesOn(wanted);
     while (const BagMessage* item = messages.next()) {
       const std::string& topic = item->connection->topic;
@@ -131,11 +131,9 @@ BoomBag readBoomBag(const BagInputs& inputs, const Settings& settings) {
       if (topic == joints) reader.joints(state);
       if (topic == crank) reader.crank(state);
     }
-    result.begin = reader.begin();
-  } catch (const std::exception& error) {
-    result.problem = inputs.names() + ": cannot be read: " + onOneLine(error.what());
-    return result;
-  }
+  });
+  if (!result.problem.empty()) return result;
+  result.begin = reader.begin();
   const std::string missing = whatIsMissing(settings, topics, result);
   if (!missing.empty())
     result.problem =
@@ -146,50 +144,37 @@ BoomBag readBoomBag(const BagInputs& inputs, const Settings& settings) {
 /// A weight's own mass is known to this much, by any scale [-].
 constexpr double kKnownWeight = 0.002;
 
-calibration::TipWeight weightOf(const BoomCalibrationJob& job) {
-  return {*job.weight, kKnownWeight * *job.weight, job.at[0], job.at[1]};
-}
-
 /// Reads bags: one that goes on where the one before ended is its next split, any other a recording of its own.
-class Recordings {
- public:
-  Recordings(const Settings& settings, std::vector<std::string>& problems) : settings_(settings), problems_(problems) {}
-
-  void add(const std::vector<std::string>& files, const calibration::TipWeight& weight, const Progress& progress) {
-    ros::Time begin;
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      const Checked<BagInputs> inputs = BagInputs::open({files[i]});
-      problems_.insert(problems_.end(), inputs.problems.begin(), inputs.problems.end());
-      if (!inputs.value) continue;
-      BoomBag bag = readBoomBag(*inputs.value, settings_);
-      report(progress, (static_cast<double>(i) + 1.0) / static_cast<double>(files.size()));
-      if (!bag.problem.empty()) {
-        problems_.push_back(bag.problem);
-        continue;
-      }
-      if (!bag.silent.empty() && all_.empty()) std::cerr << "note: " << bag.silent << ": never heard, taken at zero\n";
-      const double later = begin.isZero() ? -1.0 : (bag.begin - begin).toSec();
-      if (later > 0.0 && later < endOf(all_.back().recording) + kSplitGap) {
-        append(bag.recording, later, all_.back().recording);
-        continue;
-      }
-      begin = bag.begin;
-      all_.push_back({std::move(bag.recording), weight, std::filesystem::path(files[i]).stem().string()});
-    }
-  }
-  const std::vector<calibration::WeighedRecording>& all() const { return all_; }
-
- private:
-  static constexpr double kSplitGap = 10.0;  // [s]
+void addRecordings(const std::vector<std::string>& files, const calibration::TipWeight& weight,
+                   const Settings& settings, const Progress& progress, std::vector<calibration::WeighedRecording>& all,
+                   std::vector<std::string>& problems) {
+  constexpr double kSplitGap = 10.0;  // [s]
   // Numerical: kSplitGap
-  const Settings& settings_;
-  std::vector<std::string>& problems_;
-  std::vector<calibration::WeighedRecording> all_;
-};
+  ros::Time begin;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Checked<BagInputs> inputs = BagInputs::open({files[i]});
+    problems.insert(problems.end(), inputs.problems.begin(), inputs.problems.end());
+    if (!inputs.value) continue;
+    BoomBag bag = readBoomBag(*inputs.value, settings);
+    report(progress, (static_cast<double>(i) + 1.0) / static_cast<double>(files.size()));
+    if (!bag.problem.empty()) {
+      problems.push_back(bag.problem);
+      continue;
+    }
+    if (!bag.silent.empty() && all.empty()) std::cerr << "note: " << bag.silent << ": never heard, taken at zero\n";
+    const double later = begin.isZero() ? -1.0 : (bag.begin - begin).toSec();
+    if (later > 0.0 && later < endOf(all.back().recording) + kSplitGap) {
+      append(bag.recording, later, all.back().recording);
+      continue;
+    }
+    begin = bag.begin;
+    all.push_back({std::move(bag.recording), weight, std::filesystem::path(files[i]).stem().string()});
+  }
+}
 
 }  // namespace
 
-CalibrationTexts calibrateBoom(const Settings& settings, const BoomCalibrationJob& job, const std::string& source) {
+CalibrationTexts calibrateBoom(const Settings& settings, const CalibrateArguments& given) {
   CalibrationTexts result;
   const auto refuse = [&](const std::string& problem) {
     result.problems.push_back(problem);
@@ -200,21 +185,22 @@ CalibrationTexts calibrateBoom(const Settings& settings, const BoomCalibrationJo
         "cylinders: none, must be given for calibrate --boom: a boom file (--params) and a robot description (--urdf)");
   ProgressBar bar;
   const Progress progress = std::ref(bar);
-  const bool hangs_in_all = job.weight && job.weighed.empty();
-  Recordings recordings(settings, result.problems);
-  recordings.add(job.bags, hangs_in_all ? weightOf(job) : calibration::TipWeight{}, piece(progress, 0.0, 0.1));
-  if (!job.weighed.empty()) recordings.add(job.weighed, weightOf(job), {});
+  calibration::TipWeight weight;
+  if (given.weight) weight = {*given.weight, kKnownWeight * *given.weight, given.at[0], given.at[1]};
+  std::vector<calibration::WeighedRecording> recordings;
+  addRecordings(given.bags, given.weighed.empty() ? weight : calibration::TipWeight{}, settings,
+                piece(progress, 0.0, 0.1), recordings, result.problems);
+  addRecordings(given.weighed, weight, settings, {}, recordings, result.problems);
   if (!result.problems.empty()) return result;
   calibration::BoomBasis basis;
   basis.urdf = settings.robot_description;
   basis.parameters = settings.boom->parameters();
   basis.g_B = gravityInRoot(settings.pipeline.gravity, settings.pipeline.base);
-  const calibration::BoomCalibration found =
-      calibration::calibrateBoom(basis, recordings.all(), piece(progress, 0.1, 1.0));
+  const calibration::BoomCalibration found = calibration::calibrateBoom(basis, recordings, piece(progress, 0.1, 1.0));
   report(progress, 1.0);
-  if (!found.problem.empty()) return refuse(source + ": " + found.problem);
+  if (!found.problem.empty()) return refuse(given.source() + ": " + found.problem);
   result.words = textOf(found);
-  result.yaml = yamlOf(found, boomYaml(settings.yaml), source);
+  result.yaml = yamlOf(found, boomYaml(settings.yaml), given.source());
   if (!result.yaml.empty()) result.picture = svgOf(found);
   return result;
 }

@@ -1,7 +1,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -110,10 +110,7 @@ std::string wordsOf(const calibration::LinkageFit& fit) {
       fit.determined() ? "" : ": NOT DETERMINED, nothing is written");
   for (const calibration::Estimate& e : fit.estimates)
     text += format("%-44s %.4f m +- %.2g; %s\n", e.key.c_str(), e.value, e.deviation, e.meaning.c_str());
-  for (const calibration::Correlation& r : fit.correlations)
-    text += format("cannot be separated (correlation %+.2f): %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
-  for (const std::string& remark : fit.remarks) text += "note: " + remark + "\n";
-  return text;
+  return text + notesOf(fit);
 }
 
 std::string yamlOf(const calibration::LinkageFit& fit, const LinkageArguments& given, const Frames& frames) {
@@ -135,21 +132,21 @@ std::string yamlOf(const calibration::LinkageFit& fit, const LinkageArguments& g
 
 }  // namespace
 
-bool asksForLinkage(int argc, const char* const* argv) {
-  return std::any_of(argv, argv + argc, [](const char* word) { return std::string(word).rfind("--linkage", 0) == 0; });
-}
-
-int calibrateLinkage(int argc, const char* const* argv) {
+std::optional<int> calibrateLinkage(int argc, const char* const* argv) {
+  const auto asks = [](const char* word) { return std::string(word).rfind("--linkage", 0) == 0; };
+  if (std::none_of(argv, argv + argc, asks)) return {};
   CommandLine line("Lengths of a cylinder's bucket linkage from a table of stroke and angle", "calibrate");
   LinkageArguments given;
   addLinkageOptions(line, given);
-  if (const auto code = line.parse(argc, argv)) return *code;
+  if (const auto code = line.parse(argc, argv)) return code;
   endCleanlyOnSignals();
   std::vector<std::string> inputs = given.params;
   inputs.push_back(given.table);
   const auto keep = keepUnlessItBegins({kLinkageYamlBegins}, "it holds no linkage that was fitted");
   Checked<OutputFile> file = OutputFile::make({given.output, inputs, given.force, keep});
   if (!file.value) return fail(file.problems);
+  std::vector<OutputFile> files;
+  files.push_back(*std::move(file.value));
   ParameterMap parameters;
   std::vector<std::string> problems;
   if (!addFiles(given.params, parameters, problems) || !problems.empty()) return fail(problems);
@@ -167,12 +164,7 @@ int calibrateLinkage(int argc, const char* const* argv) {
   ProgressBar bar;
   const calibration::LinkageFit fit = calibration::fitLinkage(*table, basis, given.cylinder, std::ref(bar));
   if (!fit.problem.empty()) return fail({given.table + ": " + fit.problem});
-  (fit.determined() ? std::cout : std::cerr) << wordsOf(fit);
-  if (!fit.determined()) return kExitFailure;
-  std::string why = file.value->fill(yamlOf(fit, given, frames));
-  if (why.empty()) why = file.value->publish();
-  if (!why.empty()) return fail({why});
-  return finishOutput();
+  return finishCalibration({{}, wordsOf(fit), fit.determined() ? yamlOf(fit, given, frames) : "", {}}, files);
 }
 
 }  // namespace hammer_loads

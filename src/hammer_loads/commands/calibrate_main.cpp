@@ -18,26 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// With another ending in place of the last one.
-std::string pictureBeside(const std::string& file) { return fs::path(file).replace_extension(".svg").string(); }
-
-/// Fills all files, then gives all their names. Empty, or the first problem.
-std::string write(std::vector<OutputFile>& files, const std::vector<std::string>& texts) {
-  std::string problem;
-  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) problem = files[i].fill(texts[i]);
-  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) problem = files[i].publish();
-  return problem;
-}
-
-struct Arguments {
-  std::vector<std::string> bags, params;
-  std::string output, urdf;
-  bool force{}, boom{};
-  CrankCalibrationJob crank_job;
-  BoomCalibrationJob boom_job;
-};
-
-void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
+void addOptions(CommandLine& line, CalibrateArguments& given, BagJob& job) {
   line.add_option("input", given.bags, "bags to read, splits of one recording in their order")
       ->required()
       ->type_name("IN.bag");
@@ -49,27 +30,26 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   addUrdfOption(line, given.urdf)->description("robot description, for the hull's pitch");
   addTopicOption(line, job.topics, &InputTopics::crank);
   addTopicOption(line, job.topics, &InputTopics::joint_states);
-  line.add_option("--rocker-inertia-std", given.crank_job.rocker_std, "of the given rocker inertia, relative")
+  line.add_option("--rocker-inertia-std", given.rocker_std, "of the given rocker inertia, relative")
       ->check(within(1e-6, 1.0, ""))
       ->capture_default_str();
   line.add_flag("--force", given.force, "replaces files that exist");
-  line.add_flag("--verbose", given.crank_job.verbose,
-                "prints every estimate with its limit, strong correlations and notes");
+  line.add_flag("--verbose", given.verbose, "prints every estimate with its limit, strong correlations and notes");
   line.add_flag("--boom", given.boom,
                 "weighs the boom instead: from a recording of its free movement without hammering, with cylinder "
                 "pressures; writes a boom file")
       ->excludes("--verbose");
   addTopicOption(line, job.topics, &InputTopics::cylinder_pressures)->needs("--boom");
-  line.add_option("--weight", given.boom_job.weight, "a known weight on the tool [kg]")
+  line.add_option("--weight", given.weight, "a known weight on the tool [kg]")
       ->check(within(0.0, 1e5, "kg"))
       ->type_name("KG")
       ->needs("--boom");
-  line.add_option("--at", given.boom_job.at, "its centre of mass in the tip's frame [m]")
+  line.add_option("--at", given.at, "its centre of mass in the tip's frame [m]")
       ->expected(2, 2)
       ->type_name("X Z")
       ->needs("--weight");
   line.get_option("--weight")->needs("--at");
-  line.add_option("--weighed", given.boom_job.weighed, "recording with that weight; IN.bag are then without it")
+  line.add_option("--weighed", given.weighed, "recording with that weight; IN.bag are then without it")
       ->type_name("BAG")
       ->allow_extra_args(false)
       ->needs("--weight");
@@ -79,11 +59,8 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
 Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
   Checked<Settings> result;
   Checked<std::vector<BagRun>> runs;
-  try {
-    runs = runsOf(inputs, job, warnings);
-  } catch (const std::exception& error) {  // a damaged bag
-    runs.problems = {inputs.names() + ": cannot be read: " + onOneLine(error.what())};
-  }
+  const std::string damage = readOrSay(inputs, [&] { runs = runsOf(inputs, job, warnings); });
+  if (!damage.empty()) runs.problems = {damage};
   result.problems = std::move(runs.problems);
   if (!runs.value) return result;
   result.notes = std::move(runs.notes);
@@ -95,19 +72,19 @@ Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::ve
 
 int run(int argc, const char* const* argv) {
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
-  if (asksForLinkage(argc, argv)) return calibrateLinkage(argc, argv);
+  if (const auto code = calibrateLinkage(argc, argv)) return *code;
   CommandLine line(
       "Crank sensor's place and drive's inertia from a recording of the hammer at work; or, with --boom, the boom's "
       "masses and friction from one of its free movement",
       "calibrate", "A table of stroke and angle gives the lengths of a bucket linkage: calibrate --linkage --help");
-  Arguments given;
+  CalibrateArguments given;
   BagJob job;
   addOptions(line, given, job);
   if (const auto code = line.parse(argc, argv)) return *code;
-  const std::string picture = pictureBeside(given.output);
+  const std::string picture = fs::path(given.output).replace_extension(".svg").string();
   std::vector<std::string> inputs = given.bags;
   inputs.insert(inputs.end(), given.params.begin(), given.params.end());
-  inputs.insert(inputs.end(), given.boom_job.weighed.begin(), given.boom_job.weighed.end());
+  inputs.insert(inputs.end(), given.weighed.begin(), given.weighed.end());
   if (picture == given.output) return fail({given.output + ": ends in .svg, must be a name for YAML"});
   endCleanlyOnSignals();
   std::vector<OutputFile> files;
@@ -128,20 +105,35 @@ int run(int argc, const char* const* argv) {
   if (!settings.value) return fail(settings.problems);
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
   for (const std::string& warning : textsOf(warnings)) std::cerr << "warning: " << warning << '\n';
-  given.boom_job.bags = given.bags;
-  given.crank_job.recording = given.bags.front();
-  const std::string source = fs::path(given.bags.front()).filename().string();
-  const CalibrationTexts texts = given.boom
-                                     ? calibrateBoom(*settings.value, given.boom_job, source)
-                                     : calibrateCrank(*recording.value, *settings.value, given.crank_job, source);
-  if (!texts.problems.empty()) return fail(texts.problems);
-  (texts.yaml.empty() ? std::cerr : std::cout) << texts.words;
-  if (texts.yaml.empty()) return kExitFailure;
-  if (const std::string problem = write(files, {texts.yaml, texts.picture}); !problem.empty()) return fail({problem});
-  return finishOutput();
+  return finishCalibration(
+      given.boom ? calibrateBoom(*settings.value, given) : calibrateCrank(*recording.value, *settings.value, given),
+      files);
 }
 
 }  // namespace
+
+std::string CalibrateArguments::source() const { return fs::path(bags.front()).filename().string(); }
+
+std::string readOrSay(const BagInputs& inputs, const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const std::exception& error) {
+    return inputs.names() + ": cannot be read: " + onOneLine(error.what());
+  }
+  return {};
+}
+
+int finishCalibration(const CalibrationTexts& texts, std::vector<OutputFile>& files) {
+  if (!texts.problems.empty()) return fail(texts.problems);
+  (texts.yaml.empty() ? std::cerr : std::cout) << texts.words;
+  if (texts.yaml.empty()) return kExitFailure;
+  std::string problem;
+  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i)
+    problem = files[i].fill(i == 0 ? texts.yaml : texts.picture);
+  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) problem = files[i].publish();
+  return problem.empty() ? finishOutput() : fail({problem});
+}
+
 }  // namespace hammer_loads
 
 int main(int argc, char** argv) { return hammer_loads::run(argc, argv); }
