@@ -244,10 +244,7 @@ int run(int argc, const char* const* argv) {
   life::LedgerReader reader(file);
   std::string text;
   if (list_runs) {
-    text = "run,epoch,crank_messages,blows\n";
-    for (const life::LedgerRunInfo& r : reader.runs())
-      text += r.name + ',' + std::to_string(r.epoch) + ',' + std::to_string(r.messages) + ',' +
-              std::to_string(r.turns) + '\n';
+    text = reader.runs();
   } else {
     const Json epochs = reportJson(reader);
     text = as_json ? lifeJson(epochs) : as_csv ? lifeCsv(epochs) : lifeText(epochs);

@@ -59,13 +59,13 @@ std::vector<LedgerEpoch> LedgerReader::epochs() {
   return epochs;
 }
 
-std::vector<LedgerRunInfo> LedgerReader::runs() {
+std::string LedgerReader::runs() {
   Database::Statement rows(database_,
-                           "SELECT name, epoch, messages, (SELECT coalesce(sum(turns), 0) FROM days WHERE days.run = "
-                           "runs.run) FROM runs ORDER BY epoch, run");
-  std::vector<LedgerRunInfo> runs;
-  while (rows.step()) runs.push_back({rows.text(0), rows.integer(1), unsignedOf(rows, 2), unsignedOf(rows, 3)});
-  return runs;
+                           "SELECT name || ',' || epoch || ',' || messages || ',' || (SELECT coalesce(sum(turns), 0) "
+                           "FROM days WHERE days.run = runs.run) FROM runs ORDER BY epoch, run");
+  std::string csv = "run,epoch,crank_messages,blows\n";
+  while (rows.step()) csv += rows.text(0) + '\n';
+  return csv;
 }
 
 LedgerCounts LedgerReader::counts(const LedgerEpoch& epoch, const CountedChannel& channel) {

@@ -25,13 +25,6 @@ struct LedgerEpoch {
   std::uint64_t runs{};
 };
 
-struct LedgerRunInfo {
-  std::string name;
-  std::int64_t epoch{};
-  std::uint64_t messages{};  ///< messages of the crank
-  std::uint64_t turns{};
-};
-
 /// Counts of a channel in an epoch.
 struct LedgerCounts {
   CycleCount total;  ///< with the residue of all runs, the one at work included
@@ -48,8 +41,8 @@ class LedgerReader {
 
   /// In the order in which they began.
   std::vector<LedgerEpoch> epochs();
-  /// In the order in which they count.
-  std::vector<LedgerRunInfo> runs();
+  /// CSV of the runs in the order in which they count.
+  std::string runs();
   LedgerCounts counts(const LedgerEpoch& epoch, const CountedChannel& channel);
 
   /// One line after a failed query, whose result is then not to be used; else empty.

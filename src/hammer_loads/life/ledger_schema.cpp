@@ -8,6 +8,7 @@ namespace hammer_loads::life {
 namespace {
 
 constexpr std::int64_t kApplication = 0x484C4C31;  ///< "HLL1"
+constexpr std::int64_t kLedgerVersion = 1;
 
 // Integers of `least`, `classes` and so on belong to LoadGrid; `steps` and `low` to ClosedCycles. A day belongs to one
 // run, so that each run can be taken out.

@@ -9,8 +9,6 @@
 
 namespace hammer_loads::life {
 
-constexpr int kLedgerVersion = 1;
-
 /// False for an empty database; a problem for anything but that and a ledger of this version.
 bool isLedger(Database& database);
 

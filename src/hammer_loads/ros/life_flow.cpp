@@ -156,8 +156,7 @@ LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOut
 }
 
 void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& record_time) {
-  if (!begun_) first_ = stampOf(message.header.stamp), digest_ = Digest().value();
-  begun_ = true;
+  if (!first_) first_ = stampOf(message.header.stamp), digest_ = Digest().value();
   record_time_ = record_time;
   if (follower_.due()) {
     life::LifePiece piece = takePiece();
@@ -183,7 +182,7 @@ void LifeFlow::mark(const sensor_msgs::JointState& message) {
 void LifeFlow::name() {
   if (named_) return;
   named_ = true;
-  life::RunId id(format("%lld-%s-%016llx", static_cast<long long>(first_), machine_.identity.c_str(),
+  life::RunId id(format("%lld-%s-%016llx", static_cast<long long>(*first_), machine_.identity.c_str(),
                         static_cast<unsigned long long>(digest_)));
   id.parameters = parameters_;
   pieces_->begin(machine_, id);

@@ -4,6 +4,7 @@
 #include <ros/time.h>
 #include <sensor_msgs/JointState.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ class LifeFlow {
   /// Sends the counts at the record time of the last message. No further call may follow.
   void finish();
 
-  bool begun() const { return begun_; }
+  bool begun() const { return first_.has_value(); }
   const LifeFollower& follower() const { return follower_; }
   const life::LedgerMachine& machine() const { return machine_; }  ///< machine of the counts
   std::int64_t period() const { return period_; }                  ///< period of ~load_cycles and pieces [ns]
@@ -53,9 +54,8 @@ class LifeFlow {
   std::string parameters_;      ///< digest of those of the sensors
   SampleCounts counts_before_;  ///< counts go on from run to run
   std::int64_t period_;
-  ros::Time record_time_;  ///< record time of the last message
-  bool begun_{};
-  StampNs first_{};                ///< header stamp of the first message
+  ros::Time record_time_;          ///< record time of the last message
+  std::optional<StampNs> first_;   ///< header stamp of the first message
   std::uint64_t digest_{};         ///< digest of the first messages
   std::uint64_t messages_{};       ///< since the count began
   std::uint64_t messages_kept_{};  ///< messages in pieces
