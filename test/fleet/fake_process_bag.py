@@ -40,9 +40,9 @@ def main(arguments):
         file.write("+".join(map(os.path.basename, bags)) + "\n")
     with open(SELF / "options.txt", "w") as file:
         file.write(" ".join(arguments[arguments.index("--db") + 2:]))
-    words = open(bag).read().split()
-    if words[0] == "broken":
-        print(f"{bag}: is no bag, or a damaged one", file=sys.stderr)
+    words = open(bag).read().split() if os.path.exists(bag) else []
+    if words[:1] in ([], ["broken"]):
+        print(f"{bag}: " + ("is no bag, or a damaged one" if words else "cannot be read: No such file"), file=sys.stderr)
         return 1
     parameters = [open(a).read() for b, a in zip(arguments, arguments[1:]) if b == "--params"]
     name = hashlib.sha256("".join(parameters).encode()).hexdigest()[:6]

@@ -68,9 +68,6 @@ def process(splits, options, database, **streams):
 
 def database_of(splits, options, folder):
     """Path of a new database in the folder, named as the recording's first bag; the messages of process_bag go to stderr."""
-    for bag in splits:
-        if not os.path.isfile(bag):
-            raise Problem(f"{bag}: " + ("is no regular file" if os.path.exists(bag) else "cannot be read: No such file"))
     place = pathlib.Path(folder) / str(len(os.listdir(folder)))
     place.mkdir()
     database = str(place / (pathlib.Path(splits[0]).stem + ".sqlite"))
