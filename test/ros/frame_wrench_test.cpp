@@ -26,7 +26,8 @@ geometry_msgs::TransformStamped transform(const std::string& parent, const std::
 
 struct Told {
   std::size_t frame{};
-  geometry_msgs::WrenchStamped wrench;
+  ros::Time stamp;
+  Wrench load;
   double record_time{};
 };
 
@@ -39,19 +40,14 @@ class Frames : public testing::Test {
   }
   /// A load along z with stamp and record time.
   void load(double stamp, double now, double force = 20e3) {
-    geometry_msgs::WrenchStamped w;
-    w.header.frame_id = kHull;
-    w.header.stamp = ros::Time(stamp);
-    w.wrench.force.z = force;
-    w.wrench.torque.y = 7.0;
-    frames_.wrench(w, ros::Time(now));
+    frames_.wrench(ros::Time(stamp), {0.0, force, 7.0}, ros::Time(now));
   }
   std::vector<Told> told_;
   FrameWrenches frames_{{"gauge", "other"},
                         kHull,
                         0.5,
-                        [this](std::size_t frame, const geometry_msgs::WrenchStamped& w, const ros::Time& now) {
-                          told_.push_back({frame, w, now.toSec()});
+                        [this](std::size_t frame, const ros::Time& stamp, const Wrench& wrench, const ros::Time& now) {
+                          told_.push_back({frame, stamp, wrench, now.toSec()});
                         }};
 };
 
@@ -60,11 +56,10 @@ TEST_F(Frames, IncludeTheLeverArm) {
   load(1.0, 1.1);
   ASSERT_EQ(told_.size(), 1U);
   EXPECT_EQ(told_[0].frame, 0U);
-  EXPECT_EQ(told_[0].wrench.header.frame_id, "gauge");
-  EXPECT_EQ(told_[0].wrench.header.stamp, ros::Time(1.0));
+  EXPECT_EQ(told_[0].stamp, ros::Time(1.0));
   EXPECT_EQ(told_[0].record_time, 1.1);
-  EXPECT_EQ(told_[0].wrench.wrench.force.z, 20e3);
-  EXPECT_EQ(told_[0].wrench.wrench.torque.y, 7.0 - 50e3);
+  EXPECT_EQ(told_[0].load.force.z(), 20e3);
+  EXPECT_EQ(told_[0].load.torque.y(), 7.0 - 50e3);
   EXPECT_EQ(frames_.counts(0).published, 1U);
   EXPECT_EQ(frames_.complaint(0), "");
 }
@@ -77,10 +72,10 @@ TEST_F(Frames, FollowAMovingTreeAtTheStamp) {
   load(1.25, 2.0);
   ASSERT_EQ(told_.size(), 1U);
   // From the gauge to the hull (1.25 + 0.5, -0.1) in the arm's axes; gauge x is -z of the arm, gauge z is its x.
-  const geometry_msgs::Wrench& w = told_[0].wrench.wrench;
-  EXPECT_NEAR(w.force.x, -20e3, 1e-9);
-  EXPECT_NEAR(w.force.z, 0.0, 1e-9);
-  EXPECT_NEAR(w.torque.y, 7.0 - 1.75 * 20e3, 1e-8);
+  const Wrench& w = told_[0].load;
+  EXPECT_NEAR(w.force.x(), -20e3, 1e-9);
+  EXPECT_NEAR(w.force.z(), 0.0, 1e-9);
+  EXPECT_NEAR(w.torque.y(), 7.0 - 1.75 * 20e3, 1e-8);
 }
 
 TEST_F(Frames, AWrenchWaitsForItsTransformAndIsRecordedWithIt) {
@@ -91,7 +86,7 @@ TEST_F(Frames, AWrenchWaitsForItsTransformAndIsRecordedWithIt) {
   tf({transform("gauge", kHull, 1.0105, 0.0, 0.0)}, 1.0205);
   ASSERT_EQ(told_.size(), 10U);
   for (std::size_t i = 0; i < 10; ++i) {
-    EXPECT_EQ(told_[i].wrench.wrench.force.z, static_cast<double>(i + 1));
+    EXPECT_EQ(told_[i].load.force.z(), static_cast<double>(i + 1));
     EXPECT_EQ(told_[i].record_time, 1.0205);
   }
   tf({transform("gauge", kHull, 1.040, 0.0, 0.0)}, 1.041);
@@ -130,17 +125,17 @@ TEST_F(Frames, DoNotWaitForWrenchesOlderThanTf) {
   EXPECT_EQ(frames_.counts(0).waiting, 1U);
   tf({transform("gauge", kHull, 1.21, 0.0, 0.0)}, 1.22);
   ASSERT_EQ(told_.size(), 1U);
-  EXPECT_EQ(told_[0].wrench.header.stamp, ros::Time(1.2));
+  EXPECT_EQ(told_[0].stamp, ros::Time(1.2));
 }
 
 TEST_F(Frames, AQueueIsBounded) {
   for (int i = 0; i < 5000; ++i) load(1.0 + 1e-5 * i, 1.0 + 1e-5 * i, i);
   EXPECT_EQ(frames_.counts(0).waiting, 4096U);
-  EXPECT_EQ(frames_.counts(0).crowded, 904U);
+  EXPECT_EQ(frames_.counts(0).dropped, 904U);
   tf({transform("gauge", kHull, 0.0, 0.0, 0.0)}, 1.06, true);
   ASSERT_EQ(told_.size(), 4096U);
-  EXPECT_EQ(told_.front().wrench.wrench.force.z, 904.0);
-  EXPECT_EQ(told_.back().wrench.wrench.force.z, 4999.0);
+  EXPECT_EQ(told_.front().load.force.z(), 904.0);
+  EXPECT_EQ(told_.back().load.force.z(), 4999.0);
 }
 
 TEST_F(Frames, AcceptTimeThatRestarts) {
@@ -154,7 +149,7 @@ TEST_F(Frames, AcceptTimeThatRestarts) {
   EXPECT_TRUE(told_.empty());
   tf({transform("mount", kHull, 1.1, 0.0, 0.0)}, 1.1);
   ASSERT_EQ(told_.size(), 1U);
-  EXPECT_EQ(told_[0].wrench.wrench.torque.y, 7.0 - 20e3);
+  EXPECT_EQ(told_[0].load.torque.y(), 7.0 - 20e3);
 }
 
 /// tf2 throws in the callback for a stamp near the end of time; what it takes may still be no place.
@@ -174,11 +169,10 @@ TEST_F(Frames, RefuseStampsBeyondTf2AndUseTheNextGoodOne) {
     load(1.0, 1.1);
     EXPECT_TRUE(told_.empty()) << i;
   }
-  EXPECT_EQ(frames_.refusedTransforms(), 2 * bad.size());
   tf({transform("gauge", kHull, 0.0, 2.5, 0.0)}, 1.2, true);
   load(1.2, 1.2);
   ASSERT_FALSE(told_.empty());
-  EXPECT_NEAR(told_.back().wrench.wrench.torque.y, 7.0 - 2.5 * 20e3, 1e-6);
+  EXPECT_NEAR(told_.back().load.torque.y(), 7.0 - 2.5 * 20e3, 1e-6);
 }
 
 TEST_F(Frames, AnyTransformAtAnyTimeGivesFiniteWrenchesOrNone) {
@@ -198,17 +192,13 @@ TEST_F(Frames, AnyTransformAtAnyTimeGivesFiniteWrenchesOrNone) {
     t.header.stamp = time();
     tf2_msgs::TFMessage message;
     message.transforms = {t};
-    geometry_msgs::WrenchStamped w;
-    w.header.stamp = time();
-    w.wrench.force.z = 20e3;
     ASSERT_NO_THROW(frames_.transforms(message, random() % 8 == 0, time())) << i;
-    ASSERT_NO_THROW(frames_.wrench(w, time())) << i;
+    ASSERT_NO_THROW(frames_.wrench(time(), {0.0, 20e3, 0.0}, time())) << i;
     if (i % 100 == 99) frames_.reset();
   }
-  EXPECT_GT(frames_.refusedTransforms(), 1000U);
   EXPECT_FALSE(told_.empty()) << "some chains are good";
   for (const Told& told : told_)
-    ASSERT_TRUE(std::isfinite(told.wrench.wrench.force.z + told.wrench.wrench.torque.x + told.wrench.wrench.torque.y));
+    ASSERT_TRUE(std::isfinite(told.load.force.z() + told.load.torque.x() + told.load.torque.y()));
 }
 
 }  // namespace

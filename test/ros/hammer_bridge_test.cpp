@@ -31,14 +31,13 @@ Bytes bytesOf(const Message& message) {
   return bytes;
 }
 
-/// Everything of the topics that `wants` names.
+/// Keeps the messages of the topics that `wants` names, which is asked before each message.
 template <typename Wants>
 void attach(HammerBridge& bridge, const Wants& wants, Kept& kept) {
   bridge.outputs().forEach([&](auto& output) {
-    output.detachAll();
-    if (!wants(output.name())) return;
     output.attach(
-        [&all = kept[output.name()]](const auto& message, const ros::Time&) { all.push_back(bytesOf(message)); });
+        [&all = kept[output.name()]](const auto& message, const ros::Time&) { all.push_back(bytesOf(message)); },
+        [wants, name = output.name()] { return wants(name); });
   });
 }
 
@@ -108,14 +107,10 @@ TEST(WhoListens, GetsWhatTheOthersGotAfterComingBack) {
   HammerBridge with_all(settings), with_some(settings);
   attach(with_all, kAll, all);
   play(with_all, 1000.0, true, kNothing);
-  int listens = -1;
-  play(with_some, 1000.0, true, [&](double time) {
-    const int wanted = time < 3.0 || time > 5.0 ? 1 : 0;  // absent for ten turns
-    if (wanted == listens) return;
-    listens = wanted;
-    attach(
-        with_some, [&](const std::string&) { return wanted == 1; }, some);
-  });
+  bool listens = false;
+  attach(
+      with_some, [&](const std::string&) { return listens; }, some);
+  play(with_some, 1000.0, true, [&](double time) { listens = time < 3.0 || time > 5.0; });  // absent for ten turns
   for (const char* topic : {"pulse", "blow", "joint_loads", "hull_loads"}) {
     ASSERT_GT(some[topic].size(), 5U) << topic;
     ASSERT_LT(some[topic].size(), all[topic].size()) << topic;
@@ -336,9 +331,8 @@ class Notes final : public life::PieceSink {
 };
 
 TEST(LoadCycles, ComeEachPeriodOfStampsAndAtTheEnd) {
-  HammerBridge bridge(test::settingsWith("life_period_s: 2.0\n"));
   Notes notes;
-  bridge.keepPieces(notes);
+  HammerBridge bridge(test::settingsWith("life_period_s: 2.0\n"), &notes);
   std::vector<LoadCycles> counts;
   bridge.outputs().load_cycles.attach([&](const LoadCycles& count, const ros::Time&) { counts.push_back(count); });
   play(bridge, 1000.0, true, kNothing);

@@ -44,7 +44,7 @@ int run() {
   for (const std::string& note : settings.notes) ROS_INFO("%s", note.c_str());
 
   try {
-    MachinePlayer(ros::NodeHandle(), *settings.value).run();
+    playMachine(ros::NodeHandle(), *settings.value);
   } catch (const std::runtime_error& error) {
     std::cerr << "truth_prefix: " << error.what() << '\n';
     return 1;

@@ -25,30 +25,55 @@ namespace hammer_loads {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
 
 std::string limitText(const SliderLimit& limit) { return format("%.13g, %s", limit.slider, nameOf(limit.kind)); }
 
-/// Published at `~diagnostic_period` (1 s) of wall time: rate, age, counts of accepted and refused samples by reason,
-/// with the slider positions that are allowed, log health.
-class GrappleDiagnostics {
+/// In `joint_states`; out, for each jaw, `~jaw_edge/left`, `~jaw_edge/left_twist`, `~jaw_edge/left_accel`, then
+/// `~mechanism`, `~run_info` (latched), /diagnostics. One of each per accepted slider sample, with the sample's stamp.
+class GrappleNode final : public LiveNode {
  public:
-  GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, BagLog& log,
-                     const RecordClock& clock)
-      : flow_(flow), publisher_(node, private_node, log, clock) {
-    publisher_.add("slider", this, &GrappleDiagnostics::describeSlider);
-    publisher_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
-    // Wall time: a stopped /clock is one of the things to report.
-    timer_ = node.createWallTimer(ros::WallDuration(publisher_.period()),
-                                  [this](const ros::WallTimerEvent&) { publisher_.publish(); });
+  /// log: recording, unless nothing shall be logged yet.
+  GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
+              std::unique_ptr<BagLog> log)
+      : log_(std::move(log)),
+        flow_(settings),
+        run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
+        diagnostics_(node, private_node, *log_, clock_, [] {}),
+        log_services_(
+            private_node, *log_, [] {}, [this] { beginRun(); }, [] {}) {
+    diagnostics_.add("slider", this, &GrappleNode::describeSlider);
+    diagnostics_.add("log", [this](DiagnosticStatusWrapper& status) { describeLog(*log_, status); });
+    attachToNode(flow_.outputs(), private_node, *log_);
+    RunInfo info = flow_.outputs().run_info.message;
+    info.header.stamp = ros::Time::now();
+    run_info_.publish(info);
+    joint_states_ = node.subscribe("joint_states", kTopicQueue, &GrappleNode::onJointStates, this,
+                                   ros::TransportHints().tcpNoDelay());
+    topic_ = joint_states_.getTopic();
   }
-
-  /// An input arrived that has the slider joint; its age decides whether the slider is stale.
-  void sliderArrived() { last_slider_ = Clock::now(); }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void describeSlider(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  /// The next input begins a run, and its run_info replaces that of the run before.
+  void beginRun() {
+    flow_.reset();
+    log_->forgetLatched(run_info_.getTopic());
+  }
+  void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
+    const RecordClock::Tick tick = clock_.next(event.getReceiptTime());
+    if (tick.ran_back) {
+      beginRun();
+      log_->split();
+    }
+    if (log_->logsInputs()) log_->write(topic_, tick.time, *event.getConstMessage());
+    const std::uint64_t foreign = flow_.messagesWithoutJoint();
+    flow_.jointStates(*event.getConstMessage(), tick.time);
+    if (flow_.messagesWithoutJoint() == foreign) last_slider_ = Clock::now();
+  }
+  /// Rate, age, counts of accepted and refused samples by reason, with the slider positions that are allowed.
+  void describeSlider(DiagnosticStatusWrapper& status) {
     const Clock::time_point now = Clock::now();
     summarise(now, status);
     const GrappleTracker& tracker = flow_.tracker();
@@ -72,7 +97,7 @@ class GrappleDiagnostics {
     last_without_velocity_ = flow_.withoutVelocity();
     last_report_ = now;
   }
-  void summarise(Clock::time_point now, diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  void summarise(Clock::time_point now, DiagnosticStatusWrapper& status) const {
     const GrappleSettings& settings = flow_.settings();
     const std::uint64_t accepted = flow_.accepted() - last_accepted_, refused = flow_.refused() - last_refused_;
     const double age = secondsBetween(last_slider_, now);
@@ -90,59 +115,15 @@ class GrappleDiagnostics {
     }
   }
 
-  const GrappleFlow& flow_;
-  Clock::time_point last_slider_{}, last_report_{Clock::now()};
-  std::uint64_t last_accepted_{}, last_refused_{}, last_without_velocity_{};
-  DiagnosticsPublisher publisher_;
-  ros::WallTimer timer_;
-};
-
-/// In `joint_states`; out, for each jaw, `~jaw_edge/left`, `~jaw_edge/left_twist`, `~jaw_edge/left_accel`, then
-/// `~mechanism`, `~run_info` (latched), /diagnostics. One of each per accepted slider sample, with the sample's stamp.
-class GrappleNode final : public LiveNode {
- public:
-  /// log: recording, unless nothing shall be logged yet.
-  GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
-              std::unique_ptr<BagLog> log)
-      : log_(std::move(log)),
-        flow_(settings),
-        run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
-        diagnostics_(node, private_node, flow_, *log_, clock_),
-        log_services_(
-            private_node, *log_, [] {}, [this] { beginRun(); }, [] {}) {
-    attachToNode(flow_.outputs(), private_node, *log_);
-    RunInfo info = flow_.outputs().run_info.message;
-    info.header.stamp = ros::Time::now();
-    run_info_.publish(info);
-    joint_states_ = node.subscribe("joint_states", kTopicQueue, &GrappleNode::onJointStates, this,
-                                   ros::TransportHints().tcpNoDelay());
-    topic_ = joint_states_.getTopic();
-  }
-
- private:
-  /// The next input begins a run, and its run_info replaces that of the run before.
-  void beginRun() {
-    flow_.reset();
-    log_->forgetLatched(run_info_.getTopic());
-  }
-  void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
-    const RecordClock::Tick tick = clock_.next(event.getReceiptTime());
-    if (tick.ran_back) {
-      beginRun();
-      log_->split();
-    }
-    if (log_->logsInputs()) log_->write(topic_, tick.time, *event.getConstMessage());
-    const std::uint64_t foreign = flow_.messagesWithoutJoint();
-    flow_.jointStates(*event.getConstMessage(), tick.time);
-    if (flow_.messagesWithoutJoint() == foreign) diagnostics_.sliderArrived();
-  }
-
   // A member stands before those that use it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
   GrappleFlow flow_;
   RecordClock clock_;
   ros::Publisher run_info_;
-  GrappleDiagnostics diagnostics_;
+  Clock::time_point last_slider_{};  ///< arrival of the last input with the slider joint
+  Clock::time_point last_report_{Clock::now()};
+  std::uint64_t last_accepted_{}, last_refused_{}, last_without_velocity_{};
+  DiagnosticsPublisher diagnostics_;
   LogServices log_services_;
   ros::Subscriber joint_states_;
   std::string topic_;  ///< topic of joint_states_
@@ -154,9 +135,9 @@ std::unique_ptr<LiveNode> makeGrappleNode(const ros::NodeHandle& node, const ros
                                           std::vector<std::string>& problems) {
   ParameterMap given = privateParameters(private_node, problems);
   given.erase("diagnostic_period");  // of diagnostic_updater
-  const Checked<GrappleSettings> settings = loadGrappleSettings(configDirectory(), given);
-  problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
-  if (!problems.empty()) return nullptr;
+  const Checked<GrappleSettings> settings = behind(problems, loadGrappleSettings(configDirectory(), given));
+  problems = settings.problems;
+  if (!settings.value) return nullptr;
   auto log = makeNodeLog(settings.value->log, private_node.getNamespace(), problems);
   if (!log) return nullptr;
   return std::make_unique<GrappleNode>(node, private_node, *settings.value, std::move(log));

@@ -17,17 +17,13 @@ namespace {
 /// Topics to read, and their types.
 using Wanted = std::map<std::string, std::string>;
 
-/// Destinations of the results; null: not wanted.
-struct Sinks {
-  BagWriter* bag;
-  BagTables* tables;
-};
-
 /// The hammer's bridge through the runs of a recording.
 class HammerRuns {
  public:
-  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, const Sinks& sinks, BagReport& report)
-      : runs_(runs), job_(job), sinks_(sinks), report_(report) {
+  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, BagReport& report)
+      : runs_(runs), job_(job), report_(report) {
+    if (!job.output.empty()) bag_.emplace(job.output);
+    if (!job.tables.empty()) tables_.emplace(job.tables, job.inputs);
     begin();
   }
 
@@ -60,24 +56,31 @@ class HammerRuns {
     report_.turns += flow_->outputs().blow.sent();
     warnOfRun(*flow_, inputs_->joint_states.count > 0, static_cast<std::int64_t>(report_.runs), report_.warnings);
     flow_->finishCount();
-    if (sinks_.tables != nullptr) sinks_.tables->end(*flow_, inputs_->crank.count);
+    if (tables_) tables_->end(*flow_, inputs_->crank.count);
   }
+
+  /// After the last run.
+  void finish() {
+    if (tables_) tables_->finish(report_.warnings);
+    if (bag_) bag_->close();
+  }
+  std::string tablesProblem() const { return tables_ ? tables_->problem() : ""; }
 
  private:
   void begin() {
     const Settings& settings = runs_[next_++].settings;
-    flow_.emplace(settings);
+    flow_.emplace(settings, job_.pieces);
     inputs_.emplace(settings);
-    if (job_.pieces != nullptr) flow_->keepPieces(*job_.pieces);
-    if (sinks_.bag != nullptr) attachToBag(flow_->outputs(), *sinks_.bag, job_.output_prefix, job_.pins);
-    if (sinks_.tables != nullptr) sinks_.tables->begin(*flow_);
+    if (bag_) attachToBag(flow_->outputs(), *bag_, job_.output_prefix, job_.pins);
+    if (tables_) tables_->begin(*flow_);
     for (const auto& take : latched_) take(*flow_);
   }
 
   const std::vector<BagRun>& runs_;
   const BagJob& job_;
-  const Sinks sinks_;
   BagReport& report_;
+  std::optional<BagWriter> bag_;
+  std::optional<BagTables> tables_;
   std::size_t next_{}, next_load_{};
   std::optional<HammerBridge> flow_;
   std::optional<HammerInputs> inputs_;                       ///< inputs of this run
@@ -107,40 +110,30 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   return {};
 }
 
-void process(const BagInputs& inputs, const BagJob& job, const std::vector<BagRun>& runs, const Sinks& sinks,
-             const std::function<void(double)>& progress, BagReport& report) {
-  std::set<std::string> topics, heard;
-  for (const auto& [name, type] : wantedTopics(runs)) topics.insert(name);
-  HammerRuns hammer(runs, job, sinks, report);
-  BagMessages messages = inputs.messagesOn(topics);
-  std::set<const BagConnection*> connections;  // saves to look up each message's topic
-  const auto count = static_cast<double>(messages.size());
-  double done = 0.0;
-  while (const BagMessage* item = messages.next()) {
-    progress(++done / count);
-    if (connections.insert(item->connection).second) heard.insert(item->connection->topic);
-    hammer.take(*item);
-    if (sinks.tables != nullptr && !sinks.tables->problem().empty()) return;
-  }
-  hammer.end();
-  warnOfPublishers(inputs, topics, report.warnings);
-  warnOfDefinitions(inputs, report.warnings);
-  warnOfLostMessages(inputs, report.warnings);
-  warnOfMissing(inputs, runs, heard, report.warnings);
-}
-
 /// Writes the bag and the tables that are wanted. Returns a problem in one line; empty if there is none.
 std::string write(const BagInputs& inputs, const BagJob& job, const std::vector<BagRun>& runs,
                   const std::function<void(double)>& progress, BagReport& report) {
+  std::set<std::string> topics, heard;
+  for (const auto& [name, type] : wantedTopics(runs)) topics.insert(name);
   try {
-    std::optional<BagWriter> bag;
-    if (!job.output.empty()) bag.emplace(job.output);
-    std::optional<BagTables> tables;
-    if (!job.tables.empty()) tables.emplace(job.tables, job.inputs);
-    process(inputs, job, runs, {bag ? &*bag : nullptr, tables ? &*tables : nullptr}, progress, report);
-    if (tables) tables->finish(report.warnings);
-    if (bag) bag->close();
-    if (tables && !tables->problem().empty()) return job.tables + ": cannot be written: " + tables->problem();
+    HammerRuns hammer(runs, job, report);
+    BagMessages messages = inputs.messagesOn(topics);
+    std::set<const BagConnection*> connections;  // saves to look up each message's topic
+    const auto count = static_cast<double>(messages.size());
+    double done = 0.0;
+    while (hammer.tablesProblem().empty()) {
+      const BagMessage* item = messages.next();
+      if (item == nullptr) break;
+      progress(++done / count);
+      if (connections.insert(item->connection).second) heard.insert(item->connection->topic);
+      hammer.take(*item);
+    }
+    if (hammer.tablesProblem().empty()) {
+      hammer.end();
+      warnOfRecording(inputs, runs, topics, heard, report.warnings);
+    }
+    hammer.finish();
+    if (!hammer.tablesProblem().empty()) return job.tables + ": cannot be written: " + hammer.tablesProblem();
     return {};
   } catch (const std::system_error& error) {  // errors of inputs have another class
     if (job.output.empty()) throw;

@@ -47,6 +47,64 @@ std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
   return names.empty() ? "none" : joined(names);
 }
 
+/// Warns of several publishers on one of these topics. Transforms are excepted, since they usually have several.
+void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings) {
+  for (const std::string& name : topics) {
+    const auto found = inputs.topics().find(name);
+    if (found == inputs.topics().end() || found->second.publishers.size() < 2) continue;
+    if (found->second.types.count(typeOf<tf2_msgs::TFMessage>()) != 0) continue;  // as usual there
+    addOnce(warnings, {"publishers", name + ": several publishers: " + joined(found->second.publishers)});
+  }
+}
+
+/// Warns of messages that the log of these bags has lost.
+void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
+  for (const auto& [name, topic] : inputs.topics()) {
+    if (!isGapTopic(name) || topic.types.count(typeOf<diagnostic_msgs::DiagnosticStatus>()) == 0) continue;
+    std::uint64_t lost = 0;
+    BagMessages messages = inputs.messagesOn({name});
+    diagnostic_msgs::DiagnosticStatus gap;
+    while (const BagMessage* item = messages.next()) {
+      item->to(gap);
+      lost += lostMessages(gap);
+    }
+    if (lost > 0)
+      addOnce(warnings, {"lost messages", name + ": the log lost " + std::to_string(lost) +
+                                              " messages; where an input is among them, the outputs differ from those "
+                                              "of the node"});
+  }
+}
+
+/// Warns of messages of another version of this package, whose definition differs.
+void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
+  std::vector<std::string> others;
+  for (const auto& [name, topic] : inputs.topics()) {
+    const auto known = definitions().find(*topic.types.begin());
+    if (known == definitions().end() || topic.definitions == std::set<std::string>{known->second}) continue;
+    others.push_back(onOneLine(name) + " (" + known->first + ")");
+  }
+  if (!others.empty())
+    addOnce(warnings, {"definitions", "messages of another version of this package cannot be read: " + joined(others)});
+}
+
+/// Warns of topics that the runs need and that have no message.
+void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
+                   std::vector<BagWarning>& warnings) {
+  for (const BagRun& run : runs) {
+    const InputTopics& topics = run.settings.input_topics;
+    const PipelineSettings& pipeline = run.settings.pipeline;
+    const bool joints = !pipeline.pitch_joints.empty() || run.settings.boom;
+    if (joints && heard.count(topics.joint_states) == 0)
+      addOnce(warnings, {"joint states", "no message on " + topics.joint_states +
+                                             " (--joint-states-topic); topics of its type there: " +
+                                             inputs.topicsOfType(typeOf<sensor_msgs::JointState>())});
+    if (pipeline.hull_motion == HullMotionSource::kImu && heard.count(topics.hull_imu) == 0)
+      addOnce(warnings, {"imu", "hull_motion: imu, but no message on " + topics.hull_imu +
+                                    " (--imu-topic): weight by pitch; topics of its type there: " +
+                                    inputs.topicsOfType(typeOf<sensor_msgs::Imu>())});
+  }
+}
+
 }  // namespace
 
 void addOnce(std::vector<std::string>& lines, const std::string& line) {
@@ -111,59 +169,12 @@ void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, s
   for (const Warning& warning : bridge.life().warnings()) addOnce(warnings, {warning.key, warning.text, run});
 }
 
-void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings) {
-  for (const std::string& name : topics) {
-    const auto found = inputs.topics().find(name);
-    if (found == inputs.topics().end() || found->second.publishers.size() < 2) continue;
-    if (found->second.types.count(typeOf<tf2_msgs::TFMessage>()) != 0) continue;  // as usual there
-    addOnce(warnings, {"publishers", name + ": several publishers: " + joined(found->second.publishers)});
-  }
-}
-
-void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
-  for (const auto& [name, topic] : inputs.topics()) {
-    if (!isGapTopic(name) || topic.types.count(typeOf<diagnostic_msgs::DiagnosticStatus>()) == 0) continue;
-    std::uint64_t lost = 0;
-    BagMessages messages = inputs.messagesOn({name});
-    diagnostic_msgs::DiagnosticStatus gap;
-    while (const BagMessage* item = messages.next()) {
-      item->to(gap);
-      lost += lostMessages(gap);
-    }
-    if (lost > 0)
-      addOnce(warnings, {"lost messages", name + ": the log lost " + std::to_string(lost) +
-                                              " messages; where an input is among them, the outputs differ from those "
-                                              "of the node"});
-  }
-}
-
-void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
-  std::vector<std::string> others;
-  for (const auto& [name, topic] : inputs.topics()) {
-    const auto known = definitions().find(*topic.types.begin());
-    if (known == definitions().end() || topic.definitions == std::set<std::string>{known->second}) continue;
-    others.push_back(onOneLine(name) + " (" + known->first + ")");
-  }
-  if (!others.empty())
-    addOnce(warnings, {"definitions", "messages of another version of this package cannot be read: " + joined(others)});
-}
-
-/// Topics that are wanted and did not come.
-void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
-                   std::vector<BagWarning>& warnings) {
-  for (const BagRun& run : runs) {
-    const InputTopics& topics = run.settings.input_topics;
-    const PipelineSettings& pipeline = run.settings.pipeline;
-    const bool joints = !pipeline.pitch_joints.empty() || run.settings.boom;
-    if (joints && heard.count(topics.joint_states) == 0)
-      addOnce(warnings, {"joint states", "no message on " + topics.joint_states +
-                                             " (--joint-states-topic); topics of its type there: " +
-                                             inputs.topicsOfType(typeOf<sensor_msgs::JointState>())});
-    if (pipeline.hull_motion == HullMotionSource::kImu && heard.count(topics.hull_imu) == 0)
-      addOnce(warnings, {"imu", "hull_motion: imu, but no message on " + topics.hull_imu +
-                                    " (--imu-topic): weight by pitch; topics of its type there: " +
-                                    inputs.topicsOfType(typeOf<sensor_msgs::Imu>())});
-  }
+void warnOfRecording(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& topics,
+                     const std::set<std::string>& heard, std::vector<BagWarning>& warnings) {
+  warnOfPublishers(inputs, topics, warnings);
+  warnOfDefinitions(inputs, warnings);
+  warnOfLostMessages(inputs, warnings);
+  warnOfMissing(inputs, runs, heard, warnings);
 }
 
 bool isUseless(const BagReport& report) {

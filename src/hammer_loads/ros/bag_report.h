@@ -50,18 +50,10 @@ std::string summaryOf(const BagReport& report);
 /// joints_came: there were messages on their topic. run: number of the run.
 void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, std::vector<BagWarning>& warnings);
 
-/// Warns of several publishers on one of these topics. Transforms are excepted, since they usually have several.
-void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings);
-
-/// Warns of messages that the log of these bags has lost.
-void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings);
-
-/// Warns of messages of another version of this package, whose definition differs.
-void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warnings);
-
-/// Warns of topics that the runs need and that have no message.
-void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
-                   std::vector<BagWarning>& warnings);
+/// Warnings on the recording as a whole: several publishers on one of the topics read, messages that its log has lost
+/// or that are of another version of this package, topics that the runs need and that were not heard.
+void warnOfRecording(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& topics,
+                     const std::set<std::string>& heard, std::vector<BagWarning>& warnings);
 
 /// Warns if there is no wrench, or if there is no whole turn and most samples contradict the parameters.
 bool isUseless(const BagReport& report);

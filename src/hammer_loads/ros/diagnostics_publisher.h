@@ -7,27 +7,34 @@
 #include <ros/publisher.h>
 
 #include <chrono>
+#include <functional>
 #include <string>
 
 #include "hammer_loads/log/bag_log.h"
 
 namespace hammer_loads {
 
-/// Replaces diagnostic_updater::Updater, which adds its period to the time now. The sum throws within the last second
-/// before 2^32 s, in the constructor as well, and a /clock may have any value.
+/// Reports at `~diagnostic_period` (1 s) of wall time, since a stopped /clock is one of the things to report. Replaces
+/// diagnostic_updater::Updater, which adds its period to the time now. The sum throws within the last second before
+/// 2^32 s, in the constructor as well, and a /clock may have any value.
 class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
  public:
-  /// clock: of the node's inputs; a logged report has the record time of the last one. Both must outlive this.
-  DiagnosticsPublisher(ros::NodeHandle node, const ros::NodeHandle& private_node, BagLog& log, const RecordClock& clock)
+  /// clock: of the node's inputs; a logged report has the record time of the last one. Both must outlive this. before:
+  /// called before each report.
+  DiagnosticsPublisher(ros::NodeHandle node, const ros::NodeHandle& private_node, BagLog& log, const RecordClock& clock,
+                       const std::function<void()>& before)
       : log_(log),
         clock_(clock),
         publisher_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),
-        period_(private_node.param("diagnostic_period", 1.0)),
         // The name space is the node's own, a nodelet's in a manager as well.
-        name_(private_node.getNamespace().substr(1)) {}
+        name_(private_node.getNamespace().substr(1)),
+        timer_(node.createWallTimer(ros::WallDuration(private_node.param("diagnostic_period", 1.0)),
+                                    [this, before](const ros::WallTimerEvent&) {
+                                      before();
+                                      publish();
+                                    })) {}
 
-  double period() const { return period_; }  ///< wall time between two reports [s]
-
+ private:
   void publish() {
     diagnostic_msgs::DiagnosticArray message;
     for (const DiagnosticTaskInternal& task : getTasks()) {
@@ -43,12 +50,11 @@ class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
       log_.write(publisher_.getTopic(), clock_.last(), message);
   }
 
- private:
   BagLog& log_;
   const RecordClock& clock_;
   ros::Publisher publisher_;
-  double period_;
   std::string name_;
+  ros::WallTimer timer_;
 };
 
 /// [s]

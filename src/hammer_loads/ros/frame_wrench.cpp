@@ -4,26 +4,18 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/boom/wrench.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-Eigen::Vector3d vector(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
-
-geometry_msgs::Vector3 vectorMessage(const Eigen::Vector3d& v) {
-  geometry_msgs::Vector3 m;
-  m.x = v.x(), m.y = v.y(), m.z = v.z();
-  return m;
-}
-
 Pose pose(const geometry_msgs::Transform& transform) {
+  const geometry_msgs::Vector3& p = transform.translation;
   const geometry_msgs::Quaternion& q = transform.rotation;
   // TF takes quaternions whose length is wrong by 1e-6.
   const Eigen::Quaterniond rotation = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
-  return Eigen::Translation3d(vector(transform.translation)) * rotation;
+  return Eigen::Translation3d(p.x, p.y, p.z) * rotation;
 }
 
 /// Bounds of transforms: tf2 adds its ten seconds to stamps, multiplies chained transforms, and throws on overflow.
@@ -40,16 +32,10 @@ bool isSound(const geometry_msgs::TransformStamped& transform) {
 
 }  // namespace
 
-void FrameWrenches::Queue::push(const Pending& pending) {
-  if (size == kMostPending) drop(counts.crowded);
-  ring[(first + size) % kMostPending] = pending;
-  ++size;
-}
-
-void FrameWrenches::Queue::drop(std::uint64_t& count) {
-  unknown = front().stamp;
-  ++count;
-  pop();
+void FrameWrenches::Queue::dropOldest() {
+  unknown = pending.front().stamp;
+  ++counts.dropped;
+  pending.pop_front();
 }
 
 FrameWrenches::FrameWrenches(std::vector<std::string> frames, std::string hull, double max_wait, Publish publish)
@@ -57,19 +43,11 @@ FrameWrenches::FrameWrenches(std::vector<std::string> frames, std::string hull, 
       hull_(std::move(hull)),
       max_wait_(max_wait),
       publish_(std::move(publish)),
-      queues_(frames_.size()),
-      messages_(frames_.size()) {
-  for (std::size_t i = 0; i < frames_.size(); ++i) messages_[i].header.frame_id = frames_[i];
-}
+      queues_(frames_.size()) {}
 
 void FrameWrenches::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
-  for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-    if (!isSound(transform)) {
-      ++refused_transforms_;
-      continue;
-    }
-    guarded([&] { refused_transforms_ += !transforms_.setTransform(transform, "tf", is_static); });
-  }
+  for (const geometry_msgs::TransformStamped& transform : message.transforms)
+    if (isSound(transform)) guarded([&] { transforms_.setTransform(transform, "tf", is_static); });
   for (std::size_t i = 0; i < frames_.size(); ++i) guarded([&] { release(i, record_time); });
 }
 
@@ -79,21 +57,22 @@ void FrameWrenches::guarded(const Action& action) {
   try {
     action();
   } catch (const std::exception&) {
-    ++refused_transforms_;
     reset();
   }
 }
 
-void FrameWrenches::wrench(const geometry_msgs::WrenchStamped& load, const ros::Time& record_time) {
+void FrameWrenches::wrench(const ros::Time& stamp, const HullWrench& load, const ros::Time& record_time) {
   for (std::size_t i = 0; i < frames_.size(); ++i) {
-    queues_[i].push({load.header.stamp, record_time, load.wrench});
+    Queue& queue = queues_[i];
+    if (queue.pending.full()) queue.dropOldest();
+    queue.pending.push_back({stamp, record_time, load});
     guarded([&] { release(i, record_time); });
   }
 }
 
 void FrameWrenches::reset() {
   transforms_.clear();
-  for (Queue& queue : queues_) queue.first = queue.size = 0;
+  for (Queue& queue : queues_) queue.pending.clear();
 }
 
 bool FrameWrenches::known(std::size_t frame, const ros::Time& stamp) const {
@@ -108,34 +87,27 @@ bool FrameWrenches::past(std::size_t frame, const ros::Time& stamp) const {
 
 void FrameWrenches::release(std::size_t frame, const ros::Time& record_time) {
   Queue& queue = queues_[frame];
-  while (queue.size > 0) {
-    const Pending& oldest = queue.front();
+  while (!queue.pending.empty()) {
+    const Pending& oldest = queue.pending.front();
     if (known(frame, oldest.stamp)) {
-      publish(frame, oldest, record_time);
-      queue.pop();
+      const Pose X_QH = pose(transforms_.lookupTransform(frames_[frame], hull_, oldest.stamp).transform);
+      const HullWrench& load = oldest.load;
+      publish_(frame, oldest.stamp, shifted(X_QH, {{load.force_x, 0.0, load.force_z}, {0.0, load.torque_y, 0.0}}),
+               record_time);
+      ++queue.counts.published;
+      queue.unknown = ros::Time();
+      queue.pending.pop_front();
     } else if (record_time.toSec() - oldest.arrival.toSec() > max_wait_ || past(frame, oldest.stamp)) {
-      queue.drop(queue.counts.dropped);
+      queue.dropOldest();
     } else {
       return;  // nor can the younger ones be known
     }
   }
 }
 
-void FrameWrenches::publish(std::size_t frame, const Pending& pending, const ros::Time& record_time) {
-  const Pose X_QH = pose(transforms_.lookupTransform(frames_[frame], hull_, pending.stamp).transform);
-  const Wrench w = shifted(X_QH, {vector(pending.load.force), vector(pending.load.torque)});
-  geometry_msgs::WrenchStamped& message = messages_[frame];
-  message.header.stamp = pending.stamp;
-  message.wrench.force = vectorMessage(w.force);
-  message.wrench.torque = vectorMessage(w.torque);
-  publish_(frame, message, record_time);
-  ++queues_[frame].counts.published;
-  queues_[frame].unknown = ros::Time();
-}
-
 FrameWrenchCounts FrameWrenches::counts(std::size_t frame) const {
   FrameWrenchCounts counts = queues_[frame].counts;
-  counts.waiting = queues_[frame].size;
+  counts.waiting = queues_[frame].pending.size();
   return counts;
 }
 

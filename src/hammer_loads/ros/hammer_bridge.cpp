@@ -38,17 +38,16 @@ void HammerBridge::Ahead::forEach(const Each& each) {
   for (ReadingQueue<double>& pressure : pressures) each(pressure);
 }
 
-HammerBridge::HammerBridge(const Settings& settings) : settings_(settings) {
+HammerBridge::HammerBridge(const Settings& settings, life::PieceSink* pieces) : settings_(settings), pieces_(pieces) {
   prepareOutputs();
   std::vector<std::string> frames;
   for (const std::size_t output : frame_outputs_) frames.push_back(settings.pipeline.boom_wrench_links[output]);
   if (!frames.empty()) {
     frame_wrenches_.emplace(
         frames, hullFrame(settings), settings.pipeline.tf_max_wait,
-        [this](std::size_t frame, const geometry_msgs::WrenchStamped& wrench, const ros::Time& time) {
-          auto& output = outputs_.boom_wrench[frame_outputs_[frame]];
-          output.message = wrench;
-          output.send(time);
+        [this](std::size_t frame, const ros::Time& stamp, const Wrench& load, const ros::Time& time) {
+          outputs_.boom_wrench[frame_outputs_[frame]].send(
+              time, [&](geometry_msgs::WrenchStamped& m) { fillWrench(stampOf(stamp), load, m); });
         });
   }
   reset();
@@ -114,11 +113,6 @@ void HammerBridge::finishCount() {
 void HammerBridge::finishRun() {
   end();
   finishCount();
-}
-
-void HammerBridge::keepPieces(life::PieceSink& pieces) {
-  pieces_ = &pieces;
-  beginCount();
 }
 
 /// Sends run_info with the stamp of the first input, so that processing the same input again gives the same message.
@@ -199,15 +193,12 @@ void HammerBridge::end() {
 }
 
 void HammerBridge::send(const WrenchOutput& output, const ros::Time& record_time) {
-  const auto fill = [&](geometry_msgs::WrenchStamped& m) { fillWrench(output.stamp, output.wrench, m); };
-  outputs_.hull_wrench.send(record_time, fill);
+  outputs_.hull_wrench.send(record_time,
+                            [&](geometry_msgs::WrenchStamped& m) { fillWrench(output.stamp, output.wrench, m); });
   outputs_.hull_loads.send(record_time, [&](HullLoads& m) { fillHullLoads(pipeline_->result(), output, m); });
   const bool frames = std::any_of(frame_outputs_.begin(), frame_outputs_.end(),
                                   [&](std::size_t i) { return outputs_.boom_wrench[i].isWanted(); });
-  if (frames) {
-    fill(outputs_.hull_wrench.message);
-    frame_wrenches_->wrench(outputs_.hull_wrench.message, record_time);
-  }
+  if (frames) frame_wrenches_->wrench(timeOf(output.stamp), output.wrench, record_time);
   if (!pipeline_->boom() || !pipeline_->boom()->known()) return;
   for (const ChainLink& link : chain_links_) {
     outputs_.boom_wrench[link.output].send(record_time, [&](geometry_msgs::WrenchStamped& m) {

@@ -27,7 +27,8 @@ namespace hammer_loads {
 /// input, passed on to the outputs that it causes. Readings that are ahead of the crank wait for its samples.
 class HammerBridge {
  public:
-  explicit HammerBridge(const Settings& settings);
+  /// pieces: receives the cycle counts of each run as well, and must outlive this object; null: none.
+  explicit HammerBridge(const Settings& settings, life::PieceSink* pieces = nullptr);
 
   void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
@@ -48,9 +49,6 @@ class HammerBridge {
   /// Begins a run with other settings.
   void begin(const Settings& settings);
 
-  /// Passes the cycle counts of each run to `pieces` as well. Call before the first input; `pieces` must outlive this
-  /// object.
-  void keepPieces(life::PieceSink& pieces);
   /// Called after each crank message and at the end of a run, before its turns are sent; replaced with each call.
   void watch(std::function<void()> sample) { watch_ = std::move(sample); }
   /// Ends the count of the run at work: its last ~load_cycles and piece. The next message begins a new one.
@@ -102,7 +100,7 @@ class HammerBridge {
   HammerOutputs outputs_;
   std::optional<CylinderJoints> cylinder_joints_;  ///< joints of the boom's cylinders, in the mechanism's message
   std::optional<LifeFlow> life_;                   ///< life of the pipeline, replaced with each count
-  life::PieceSink* pieces_{};                      ///< null: none
+  life::PieceSink* pieces_;                        ///< null: none
   std::optional<LimitWatch> limits_;               ///< limits of the run
   ReferenceComparison reference_;                  ///< comparison of the run
   bool goes_on_{};                                 ///< true if the last crank sample was published

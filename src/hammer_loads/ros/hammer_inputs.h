@@ -71,24 +71,14 @@ struct HammerInputs {
   /// subscribed.
   template <typename Visit>
   void forEachSensor(const Visit& visit) {
-    visitSensors(*this, visit);
-  }
-  template <typename Visit>
-  void forEachSensor(const Visit& visit) const {
-    visitSensors(*this, visit);
+    visit(joint_states), visit(hull_imu);
+    for (auto& pressure : pressures) visit(pressure);
+    visit(reference), visit(crank);
   }
   template <typename Visit>
   void forEach(const Visit& visit) {
     visit(tf_static), visit(tf);
     forEachSensor(visit);
-  }
-
- private:
-  template <typename Inputs, typename Visit>
-  static void visitSensors(Inputs& inputs, const Visit& visit) {
-    visit(inputs.joint_states), visit(inputs.hull_imu);
-    for (auto& pressure : inputs.pressures) visit(pressure);
-    visit(inputs.reference), visit(inputs.crank);
   }
 };
 

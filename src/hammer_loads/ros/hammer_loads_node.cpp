@@ -33,7 +33,7 @@ class HammerLoadsNode final : public LiveNode {
                   std::unique_ptr<BagLog> log, std::unique_ptr<life::LiveLedger> ledger)
       : log_(std::move(log)),
         ledger_(std::move(ledger)),
-        bridge_(settings),
+        bridge_(settings, ledger_.get()),
         inputs_(settings),
         run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
         config_(configInForce(log_->isRecording())),
@@ -41,7 +41,6 @@ class HammerLoadsNode final : public LiveNode {
         reconfigure_(reconfigure_mutex_, private_node),
         log_services_(
             private_node, *log_, [this] { bridge_.finishRun(); }, [this] { beginRun(); }, [this] { logSwitched(); }) {
-    if (ledger_) bridge_.keepPieces(*ledger_);
     attachToNode(bridge_.outputs(), private_node, *log_);
     announceRun();
     reconfigure_.updateConfig(config_);

@@ -8,9 +8,11 @@ namespace hammer_loads {
 using diagnostic_msgs::DiagnosticStatus;
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                                 const HammerInputs& inputs, BagLog& log, const RecordClock& clock,
+                                 HammerInputs& inputs, BagLog& log, const RecordClock& clock,
                                  const life::LiveLedger* ledger)
-    : bridge_(bridge), inputs_(inputs), log_(log), ledger_(ledger), publisher_(node, private_node, log, clock) {
+    : bridge_(bridge), inputs_(inputs), log_(log), ledger_(ledger), publisher_(node, private_node, log, clock, [this] {
+        warnOnConsole();
+      }) {
   publisher_.add("inputs", this, &NodeDiagnostics::describeInputs);
   publisher_.add("crank", this, &NodeDiagnostics::describeCrank);
   publisher_.add("hull pitch", this, &NodeDiagnostics::describePitch);
@@ -23,14 +25,11 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   if (bridge.limits()) publisher_.add("limits", this, &NodeDiagnostics::describeLimits);
   publisher_.add("reference", this, &NodeDiagnostics::describeReference);
   publisher_.add("log", [&log](Status& status) { describeLog(log, status); });
-  // Wall time: a stopped /clock is one of the things to report.
-  timer_ =
-      node.createWallTimer(ros::WallDuration(publisher_.period()), [this](const ros::WallTimerEvent&) { report(); });
 }
 
 /// Each warning on the console when it is new, of an input that is awaited where it has not come by the next report
 /// either; a log that stops by itself as above.
-void NodeDiagnostics::report() {
+void NodeDiagnostics::warnOnConsole() {
   std::set<std::string> awaited;
   for (const Warning& warning : warnings()) {
     if (warning.awaited) awaited.insert(warning.key);
@@ -42,10 +41,9 @@ void NodeDiagnostics::report() {
   const bool stopped = health.state == LogState::kDiskFull || health.state == LogState::kFailed;
   if (stopped && health.state != log_state_) ROS_ERROR("log stopped: %s", health.reason.c_str());
   log_state_ = health.state;
-  publisher_.publish();
 }
 
-std::vector<Warning> NodeDiagnostics::warnings() const {
+std::vector<Warning> NodeDiagnostics::warnings() {
   std::vector<Warning> warnings = warningsOf(bridge_.pipeline());
   for (const Warning& warning : bridge_.life().warnings()) warnings.push_back(warning);
   if (const auto warning = ledgerWarning()) warnings.push_back(*warning);
@@ -255,9 +253,9 @@ void NodeDiagnostics::describeFrames(Status& status) {
     }
     const FrameWrenchCounts counts = wrenches.counts(i);
     status.add(wrenches.frames()[i] + ": published", counts.published);
-    status.add(wrenches.frames()[i] + ": dropped", counts.dropped + counts.crowded);
+    status.add(wrenches.frames()[i] + ": dropped", counts.dropped);
     status.add(wrenches.frames()[i] + ": waiting", counts.waiting);
-    used = used || counts.published + counts.dropped + counts.crowded + counts.waiting > 0;
+    used = used || counts.published + counts.dropped + counts.waiting > 0;
   }
   if (!silent) status.summary(DiagnosticStatus::OK, used ? "every frame known" : "not computed: no subscriber, no log");
 }

@@ -20,21 +20,21 @@ namespace hammer_loads {
 /// Value of the crank's status: header stamp of the last sample that the node has taken [ns].
 inline constexpr char kLastSampleKey[] = "header stamp of the last sample [ns]";
 
-/// Published at `~diagnostic_period` (1 s) of wall time: rates, ages, counts of accepted and refused input by reason,
+/// Reports rates, ages, counts of accepted and refused input by reason,
 /// model, boom, log health.
 class NodeDiagnostics {
  public:
   /// inputs: each of a sensor should have one publisher; the age of the crank's decides whether the node is stale.
   /// ledger: null where none is kept.
-  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                  const HammerInputs& inputs, BagLog& log, const RecordClock& clock, const life::LiveLedger* ledger);
+  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge, HammerInputs& inputs,
+                  BagLog& log, const RecordClock& clock, const life::LiveLedger* ledger);
 
  private:
   using Clock = std::chrono::steady_clock;
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
-  void report();
-  std::vector<Warning> warnings() const;
+  void warnOnConsole();
+  std::vector<Warning> warnings();
   void describeInputs(Status& status);
   void describeCrank(Status& status);
   void describePitch(Status& status);
@@ -50,7 +50,7 @@ class NodeDiagnostics {
   std::optional<Warning> ledgerWarning() const;
 
   const HammerBridge& bridge_;
-  const HammerInputs& inputs_;
+  HammerInputs& inputs_;
   const BagLog& log_;
   const life::LiveLedger* ledger_;
   Clock::time_point last_report_{Clock::now()};
@@ -60,7 +60,6 @@ class NodeDiagnostics {
   std::set<std::string> awaited_;  ///< inputs that had not come at the last report
   LogState log_state_{LogState::kOff};
   DiagnosticsPublisher publisher_;
-  ros::WallTimer timer_;
 };
 
 }  // namespace hammer_loads

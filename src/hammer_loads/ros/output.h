@@ -49,7 +49,6 @@ class Output {
   /// Attaches a receiver of all further messages, or of those for which `wants` is true. Receivers are called in the
   /// order of their attachment.
   void attach(Deliver deliver, Wants wants = {}) { attached_.push_back({std::move(deliver), std::move(wants)}); }
-  void detachAll() { attached_.clear(); }
   bool isWanted() const {
     return std::any_of(attached_.begin(), attached_.end(), [](const Attached& to) { return !to.wants || to.wants(); });
   }
