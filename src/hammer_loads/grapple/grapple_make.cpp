@@ -107,9 +107,7 @@ SliderLimit Grapple::limit(const Reach& reach, const std::array<BranchEnd, 2>& e
   SliderLimit nearest{SliderLimit::Kind::kDeadCentre, side < 0 ? reach.low : reach.high};
   for (const BranchEnd& end : ends) {
     if (end.kind == BranchEnd::Kind::kNone) continue;
-    const SliderDrive::Candidates candidates = drive_.slidersAt(end.point.theta1);
-    for (int i = 0; i < candidates.count; ++i) {
-      const double slider = candidates.slider[i];
+    for (const double slider : drive_.slidersAt(end.point.theta1)) {
       const bool between = side * slider > side * reference_.slider && side * slider < side * nearest.slider;
       if (!between || !drive_.at(slider) || std::abs(drive_.theta1(slider) - end.point.theta1) > kSameTheta1) continue;
       nearest = {end.kind == BranchEnd::Kind::kFold ? SliderLimit::Kind::kFold : SliderLimit::Kind::kSingular, slider};

@@ -52,12 +52,11 @@ double SliderDrive::theta1(double slider) const noexcept {
   return arg_g + std::atan2(cross(g, o1h), dot(g, o1h)) - ho1a_;
 }
 
-SliderDrive::Candidates SliderDrive::slidersAt(double theta1) const noexcept {
+std::array<double, 2> SliderDrive::slidersAt(double theta1) const noexcept {
   const Planar h = o1_ + o1h_ * direction(theta1 + ho1a_);
   const double across = std::abs(slider_x_ - h.re);
-  if (!(across <= gh_)) return {};
-  const double along = std::sqrt((gh_ - across) * (gh_ + across));
-  return {{h.im - along, h.im + along}, 2};
+  const double along = std::sqrt((gh_ - across) * (gh_ + across));  // NaN where the rod does not reach the line
+  return {h.im - along, h.im + along};
 }
 
 }  // namespace hammer_loads

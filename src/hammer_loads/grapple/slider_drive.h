@@ -1,6 +1,7 @@
 /// The grapple's drive: slider G - rod GH - rocker O1H, a dyad with one closed form.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "hammer_loads/grapple/vectors.h"
@@ -38,12 +39,8 @@ class SliderDrive {
   /// Direction of O1A [rad], continuous within one interval of reach. Precondition: at(slider) has a value.
   double theta1(double slider) const noexcept;
 
-  /// Up to two slider positions [m] with rocker 1 at theta1 [rad]; both may belong to the other assembly.
-  struct Candidates {
-    double slider[2]{};
-    int count{};
-  };
-  Candidates slidersAt(double theta1) const noexcept;
+  /// Both slider positions [m] with rocker 1 at theta1 [rad]; both may belong to the other assembly. NaN: none.
+  std::array<double, 2> slidersAt(double theta1) const noexcept;
 
  private:
   Planar o1_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
@@ -15,8 +16,6 @@ constexpr std::array<const char*, static_cast<std::size_t>(MessageRefusal::kCoun
     "missing joint", "short array", "out of order", "duplicate"};
 /// Joints of each jaw in the order of sendMechanism.
 constexpr std::array<const char*, 6> kLinks{"drive_rod", "rocker", "lever", "jaw", "tie_rod", "main_rocker"};
-
-double betweenPis(double angle) { return std::remainder(angle, kTwoPi); }
 
 }  // namespace
 
@@ -55,66 +54,35 @@ void GrappleFlow::beginRun(const ros::Time& record_time) {
 }
 
 void GrappleFlow::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+  using Place = StampOrder::Place;
   beginRun(record_time);
-  const std::optional<Reading> reading = read(message);
-  if (!reading) return;
-  const std::optional<StampOrder::Verdict> verdict = order(message.header.stamp);
-  if (!verdict) return;
-  const std::optional<double> slider_acceleration = acceleration(*reading, *verdict);
-  if (!track(*reading, slider_acceleration)) return;
+  const auto found = std::find(message.name.begin(), message.name.end(), settings_.slider_joint);
+  if (found == message.name.end()) return refuse(MessageRefusal::kMissingJoint);
+  const auto i = static_cast<std::size_t>(found - message.name.begin());
+  const bool has_velocity = !message.velocity.empty();
+  if (i >= message.position.size() || (has_velocity && i >= message.velocity.size()))
+    return refuse(MessageRefusal::kShortArray);
+  const StampOrder::Verdict verdict = stamps_.judge(stampOf(message.header.stamp));
+  if (verdict.place == Place::kDuplicate) return refuse(MessageRefusal::kDuplicate);
+  if (verdict.place == Place::kOutOfOrder) return refuse(MessageRefusal::kOutOfOrder);
+
+  SliderMotion slider{message.position[i], has_velocity ? message.velocity[i] : 0.0, 0.0};
+  const bool has_step = verdict.place == Place::kNext && has_velocity_;
+  const bool has_acceleration = has_velocity && (settings_.acceleration == SliderAcceleration::kNone || has_step);
+  if (has_acceleration && settings_.acceleration == SliderAcceleration::kDifference)
+    slider.acceleration = (slider.velocity - tracker_.slider().velocity) / verdict.step;
+  if (const SliderRefusal refusal = tracker_.update(slider); refusal != SliderRefusal::kNone) {
+    last_refused_[static_cast<std::size_t>(refusal)] = slider.position;
+    return;
+  }
   stamps_.accept(stampOf(message.header.stamp));
-  has_velocity_ = reading->velocity.has_value();
-  has_acceleration_ = slider_acceleration.has_value();
+  has_velocity_ = has_velocity;
+  has_acceleration_ = has_acceleration;
   without_velocity_ += !has_velocity_;
   without_acceleration_ += !has_acceleration_;
   sendJaw(tracker_.left(), message.header.stamp, record_time, outputs_.left);
   sendJaw(tracker_.right(), message.header.stamp, record_time, outputs_.right);
   sendMechanism(message.header.stamp, record_time);
-}
-
-std::optional<GrappleFlow::Reading> GrappleFlow::read(const sensor_msgs::JointState& message) noexcept {
-  const auto found = std::find(message.name.begin(), message.name.end(), settings_.slider_joint);
-  if (found == message.name.end()) {
-    refuse(MessageRefusal::kMissingJoint);
-    return std::nullopt;
-  }
-  const auto i = static_cast<std::size_t>(found - message.name.begin());
-  if (i >= message.position.size() || (!message.velocity.empty() && i >= message.velocity.size())) {
-    refuse(MessageRefusal::kShortArray);
-    return std::nullopt;
-  }
-  if (message.velocity.empty()) return Reading{message.position[i], std::nullopt};
-  return Reading{message.position[i], message.velocity[i]};
-}
-
-std::optional<StampOrder::Verdict> GrappleFlow::order(const ros::Time& stamp) noexcept {
-  const StampOrder::Verdict verdict = stamps_.judge(stampOf(stamp));
-  if (verdict.place == StampOrder::Place::kDuplicate) {
-    refuse(MessageRefusal::kDuplicate);
-    return std::nullopt;
-  }
-  if (verdict.place == StampOrder::Place::kOutOfOrder) {
-    refuse(MessageRefusal::kOutOfOrder);
-    return std::nullopt;
-  }
-  return verdict;
-}
-
-/// Acceleration of the slider [m/s2]; none where it is not known.
-std::optional<double> GrappleFlow::acceleration(const Reading& reading,
-                                                const StampOrder::Verdict& verdict) const noexcept {
-  if (!reading.velocity) return std::nullopt;
-  if (settings_.acceleration == SliderAcceleration::kNone) return 0.0;
-  if (verdict.place != StampOrder::Place::kNext || !has_velocity_) return std::nullopt;
-  return (*reading.velocity - tracker_.slider().velocity) / verdict.step;
-}
-
-bool GrappleFlow::track(const Reading& reading, std::optional<double> acceleration) noexcept {
-  const SliderRefusal refusal =
-      tracker_.update({reading.position, reading.velocity.value_or(0.0), acceleration.value_or(0.0)});
-  if (refusal == SliderRefusal::kNone) return true;
-  last_refused_[static_cast<std::size_t>(refusal)] = reading.position;
-  return false;
 }
 
 void GrappleFlow::sendJaw(const JawMotion& motion, const ros::Time& stamp, const ros::Time& record_time,
@@ -146,7 +114,7 @@ void GrappleFlow::sendMechanism(const ros::Time& stamp, const ros::Time& record_
   const auto [rocker, lever, jaw, tie_rod, main_rocker, drive_rod] =
       tracker_.grapple().linkDirections(tracker_.motion());
   const auto against = [](const LinkDirection& link, const LinkDirection& carrier) -> LinkDirection {
-    return {betweenPis(link.angle - carrier.angle), link.d - carrier.d};
+    return {std::remainder(link.angle - carrier.angle, kTwoPi), link.d - carrier.d};
   };
   const std::array<LinkDirection, kLinks.size()> joints{
       drive_rod, rocker, against(lever, rocker), against(jaw, lever), against(tie_rod, lever), main_rocker};
@@ -165,9 +133,8 @@ void GrappleFlow::sendMechanism(const ros::Time& stamp, const ros::Time& record_
 }
 
 std::uint64_t GrappleFlow::refused() const noexcept {
-  std::uint64_t sum = tracker_.refused();
-  for (const std::uint64_t count : message_refusals_) sum += count;
-  return sum - messagesWithoutJoint();
+  const auto messages = std::accumulate(message_refusals_.begin(), message_refusals_.end(), std::uint64_t{0});
+  return tracker_.refused() + messages - messagesWithoutJoint();
 }
 
 std::vector<RefusalCount> GrappleFlow::refusals() const {

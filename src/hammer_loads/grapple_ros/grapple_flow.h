@@ -12,7 +12,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -89,16 +88,7 @@ class GrappleFlow {
   std::vector<RefusalCount> refusals() const;
 
  private:
-  struct Reading {
-    double position{};               ///< [m]
-    std::optional<double> velocity;  ///< [m/s]
-  };
-
   void beginRun(const ros::Time& record_time);
-  std::optional<Reading> read(const sensor_msgs::JointState& message) noexcept;
-  std::optional<StampOrder::Verdict> order(const ros::Time& stamp) noexcept;
-  std::optional<double> acceleration(const Reading& reading, const StampOrder::Verdict& verdict) const noexcept;
-  bool track(const Reading& reading, std::optional<double> acceleration) noexcept;
   void sendJaw(const JawMotion& motion, const ros::Time& stamp, const ros::Time& record_time, JawOutputs& outputs);
   void sendMechanism(const ros::Time& stamp, const ros::Time& record_time);
   void refuse(MessageRefusal refusal) noexcept { ++message_refusals_[static_cast<std::size_t>(refusal)]; }
