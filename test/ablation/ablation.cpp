@@ -90,13 +90,12 @@ int run(int argc, const char* const* argv) {
   if (settings->pipeline.hull_motion == HullMotionSource::kUnmeasured)
     settings->pipeline.hull_motion = HullMotionSource::kFixed;
   choice.speeds = part != "no_speeds";
-  if (part == "machines" || part == "no_speeds") std::cout << accuracy::json(accuracy::machineTable(*settings, choice));
-  if (part == "elastic") std::cout << accuracy::json(accuracy::elasticTable(*settings, choice));
-  if (part == "clean") std::cout << accuracy::json(accuracy::sessionTable(*settings));
-  if (part == "drawings")
-    std::cout << accuracy::json(accuracy::summary(accuracy::drawingTable(*settings, kDrawings, choice.seed)));
+  if (part == "machines" || part == "no_speeds") std::cout << accuracy::machineTable(*settings, choice).json();
+  if (part == "elastic") std::cout << accuracy::tableOf(accuracy::elasticTable(*settings, choice)).json();
+  if (part == "clean") std::cout << accuracy::sessionTable(*settings).json();
+  if (part == "drawings") std::cout << accuracy::drawingTable(*settings, kDrawings, choice.seed).json();
   if (part == "worn") std::cout << wornRows(*settings, choice, as_table);
-  if (part == "boom") std::cout << accuracy::json(accuracy::boomTable());
+  if (part == "boom") std::cout << accuracy::boomTable().errors.json();
   return finishOutput();
 }
 

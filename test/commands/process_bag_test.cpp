@@ -106,7 +106,7 @@ TEST_P(RecordedSession, StaysWithinTheBounds) {
   EXPECT_GT(e.blows, 50);
   // For the README: scripts/update_accuracy.
   std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n",
-              session_case.session, 100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque,
+              session_case.session, 100 * (inertia_factor - 1), 100 * e.x.rms, 100 * e.z.rms, 100 * e.torque.rms,
               100 * e.turn_peak, 100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);
 }
 

@@ -162,9 +162,9 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
       const BoomErrors without = errorsOf(sessionOn(rock), keys, {imu, false}, 3.5, 5.0);
       const BoomErrors late = errorsOf(session, keys, {imu, true}, 3.5, 5.0);
       // On rock the oil is not known yet in these 5 s where no IMU helps.
-      EXPECT_EQ(late.warned_of_pressure_stamps, imu) << rock;
+      EXPECT_EQ(late.warnedOf("pressure stamps"), imu) << rock;
       if (!imu && !rock) {
-        EXPECT_TRUE(late.warned_of_pressure_fit) << "how late does not show";
+        EXPECT_TRUE(late.warnedOf("pressure fit")) << "how late does not show";
       }
       if (imu && !rock) {
         EXPECT_LT(late.worstTorque(), without.worstTorque() + 0.15);
@@ -185,8 +185,8 @@ TEST(MistakenSensors, ImuStampsThatAreOffAreNamedAndAllowedFor) {
         if (rock && !pressures) continue;  // the rock's force is not known at all
         const BoomErrors e = errorsOf(session, kHullByImu, {true, pressures}, 3.5, 5.0);
         EXPECT_GT(e.covered(), 0.85) << late << rock << pressures;
-        EXPECT_EQ(e.warned_of_imu_stamps, late != 0.0) << late << rock << pressures;
-        EXPECT_FALSE(e.warned_of_pressure_stamps) << late << rock << pressures << "which are right";
+        EXPECT_EQ(e.warnedOf("imu stamps"), late != 0.0) << late << rock << pressures;
+        EXPECT_FALSE(e.warnedOf("pressure stamps")) << late << rock << pressures << "which are right";
         EXPECT_LT(e.worstTorque(), 0.05) << late << rock << pressures;
       }
     }
@@ -204,8 +204,8 @@ TEST(MistakenSensors, PressuresThatAreLateAreNamedAndAllowedFor) {
         const BoomErrors e = errorsOf(session, imu ? kHullByImu : kBoomIdentified, {imu, true}, 3.5, 5.0);
         EXPECT_LT(e.worstTorque(), imu ? 0.03 : 0.02 + 25.0 * late) << late << rock << imu;
         EXPECT_GT(e.covered(), 0.85) << late << rock << imu;
-        EXPECT_TRUE(e.warned_of_pressure_stamps && e.warnedOfPressures()) << late << rock << imu;
-        EXPECT_FALSE(e.warned_of_imu_stamps) << late << rock << imu;
+        EXPECT_TRUE(e.warnedOf("pressure stamps") && e.warnedOfPressures()) << late << rock << imu;
+        EXPECT_FALSE(e.warnedOf("imu stamps")) << late << rock << imu;
       }
     }
   }

@@ -43,7 +43,7 @@ TEST(BoomFileThatIsOff, IsWithinTheDeviationsOfOilAndSensors) {
     EXPECT_GT(off.covered(), 0.85);
     EXPECT_GT(off.leastWrenchCovered(), 0.85);
     EXPECT_FALSE(off.warnedOfPressures());
-    EXPECT_FALSE(off.warned_of_rock);
+    EXPECT_FALSE(off.warnedOf("rock"));
     worst = std::max(worst, off.worstTorque());
     as_given = std::max(as_given, test::errorsOf("as it is", session, kBoth, {true, true}).worstTorque());
   }

@@ -201,7 +201,7 @@ TEST(CrankLatency, IsCoveredByItsDeviation) {
     const Settings settings = test::settingsWith(keys);
     const accuracy::SessionRun run =
         accuracy::runSession(session, machine.start_stamp, settings.mechanism, settings.pipeline);
-    return accuracy::judgeAtStamps(run, session, machine, 0.0).covered_z;
+    return accuracy::judgeAtStamps(run, session, machine, 0.0).z.covered;
   };
   EXPECT_LT(covered("{crank_latency_std_s: 0, withhold_above: 10}"), 0.75);
   EXPECT_GT(covered("{crank_latency_std_s: 0.005, withhold_above: 10}"), 0.88);
@@ -232,7 +232,7 @@ TEST(CrankTask, IsNamedAndCovered) {
       const accuracy::SessionRun run =
           accuracy::runSession(session, machine.start_stamp, settings.mechanism, settings.pipeline);
       const accuracy::SessionErrors errors = accuracy::judgeAtStamps(run, session, machine, 0.0);
-      EXPECT_GT(std::min({errors.covered_x, errors.covered_z, errors.covered_torque}), 0.88);
+      EXPECT_GT(std::min({errors.x.covered, errors.z.covered, errors.torque.covered}), 0.88);
     }
   }
 }

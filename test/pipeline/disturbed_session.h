@@ -29,10 +29,7 @@ inline simulation::MachineSettings disturbedMachine(bool on_rock = false) {
 inline BoomErrors errorsOf(const Session& session, const char* keys, const SensorsOnBoom& sensors, double from,
                            double to) {
   const Settings settings = accuracy::shippedBoom(keys);
-  const BoomErrors e =
-      accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, sensors, from, to);
-  std::printf("%s\n", e.text().c_str());
-  return e;
+  return accuracy::boomErrors(session, settings, sensors, from, to);
 }
 
 /// Loads are withheld, or within their deviations.

@@ -19,7 +19,7 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
   int ranges = 0, low = 0;
   constexpr int kDrawings = 12;
   for (int i = 0; i < kDrawings; ++i) {
-    const accuracy::DrawingRow row = accuracy::drawingRow(settings, 901 + static_cast<std::uint64_t>(i), 1.0);
+    const accuracy::DrawingRow row = accuracy::drawingRow(settings, 901 + static_cast<std::uint64_t>(i));
     for (int k = 0; k < 3; ++k) {
       const double part = row.samples[static_cast<std::size_t>(k)].covered;
       low += part < 0.75;

@@ -50,10 +50,9 @@ std::array<double, 2> coveredWithoutSensors(const std::string& keys, double oil)
     simulation::MachineSettings machine = test::machineOnBoom(oil, 100.0, pose);
     machine.duration = kJudgedTo;
     const simulation::Session session = simulation::recordSession(machine);
-    const BoomErrors e = accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, {},
-                                              kJudgedFrom, kJudgedTo);
+    const BoomErrors e = accuracy::boomErrors(session, settings, {}, kJudgedFrom, kJudgedTo);
     EXPECT_GT(e.rmsForce(), 0.01) << "nothing to doubt";
-    for (std::size_t i = 0; i < 2; ++i) covered[i] += e.part(e.wrench_within[i]) / kPoses.size();
+    for (std::size_t i = 0; i < 2; ++i) covered[i] += e.wrench[i].result().covered / kPoses.size();
   }
   return covered;
 }
@@ -86,8 +85,7 @@ TEST(HullByBoom, DeviationsHoldForAnImuThatIsReadTooRarelyOnRock) {
       machine.duration = kJudgedTo;
       const Settings settings = test::withExactHammer(test::settingsWith("level: rocker\nhull_motion: imu\n"));
       const BoomErrors e =
-          accuracy::boomErrors(simulation::recordSession(machine), settings.mechanism, settings.pipeline,
-                               *settings.boom, {true, false}, kJudgedFrom, kJudgedTo);
+          accuracy::boomErrors(simulation::recordSession(machine), settings, {true, false}, kJudgedFrom, kJudgedTo);
       EXPECT_LT(e.worstForce(), 0.5) << rate;
       EXPECT_GT(e.leastWrenchCovered(), 0.85) << rate;
     }

@@ -38,9 +38,7 @@ inline simulation::MachineSettings machineOnBoom(double oil, double joint_rate, 
 inline accuracy::BoomErrors errorsOf(const std::string& name, const simulation::Session& session,
                                      const std::string& parameters, const accuracy::SensorsOnBoom& sensors) {
   const Settings settings = withExactHammer(settingsWith("boom: compliant\n" + parameters));
-  const accuracy::BoomErrors e = accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom,
-                                                      sensors, kJudgedFrom, kJudgedTo);
-  std::printf("%s: %s\n", name.c_str(), e.text().c_str());
+  const accuracy::BoomErrors e = accuracy::boomErrors(session, settings, sensors, kJudgedFrom, kJudgedTo);
   EXPECT_EQ(e.refused, 0U) << name;
   EXPECT_GT(e.blows, 15U) << name;
   return e;

@@ -58,7 +58,7 @@ void expectLoads(const BoomErrors& e) {
   EXPECT_GT(e.sectionsCovered(), 0.85);
   EXPECT_GT(e.part(e.lost_as_shown), 0.8);
   EXPECT_EQ(e.unknown, 0U);
-  EXPECT_FALSE(e.warned_of_rock);
+  EXPECT_FALSE(e.warnedOf("rock"));
 }
 
 TEST_P(OnRock, PressuresShowWhatTheBoomCarries) {
@@ -84,8 +84,8 @@ TEST_P(OnRock, AnImuAloneShowsThatTheRocksForceIsNotKnown) {
   const BoomErrors e = errorsOf("imu", session, kByImuToo, {true, false});
   EXPECT_GT(e.part(e.unknown), 0.95);
   EXPECT_GT(e.part(e.withheld), 0.99);
-  EXPECT_TRUE(e.warned_of_rock);
-  EXPECT_TRUE(e.warned_of_loads);
+  EXPECT_TRUE(e.warnedOf("rock"));
+  EXPECT_TRUE(e.warnedOf("boom loads"));
   EXPECT_LT(e.moment.rms(), 0.025) << "the hammer's own loads are as ever";
   EXPECT_LT(std::abs(e.energy()), 0.02);
   EXPECT_NEAR(

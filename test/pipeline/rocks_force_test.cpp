@@ -39,7 +39,7 @@ TEST(RocksForce, IsNoneBetweenLandings) {
     EXPECT_GT(e.part(e.lost_as_shown), 0.7) << seed;
     EXPECT_LT(e.worstTorque(), 0.15) << seed;
     EXPECT_GT(e.covered(), 0.85) << seed;
-    EXPECT_FALSE(e.warned_of_pressure_stamps) << "which are right";
+    EXPECT_FALSE(e.warnedOf("pressure stamps")) << "which are right";
   }
 }
 

@@ -87,8 +87,8 @@ TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
     const simulation::Session& session = rubbingSession(friction);
     for (const bool imu : {false, true}) {
       const BoomErrors e = errorsOf("seals", session, "boom_stiffness: identified\n", {imu, true});
-      EXPECT_FALSE(e.warnedOfPressures() || e.warned_of_imu_stamps || e.warned_of_rock) << friction << imu;
-      EXPECT_FALSE(e.warned_of_damping && (imu || friction < 0.05)) << friction << imu;
+      EXPECT_FALSE(e.warnedOfPressures() || e.warnedOf("imu stamps") || e.warnedOf("rock")) << friction << imu;
+      EXPECT_FALSE(e.warnedOf("boom damping") && (imu || friction < 0.05)) << friction << imu;
       EXPECT_GT(e.covered(), 0.85) << friction << imu;
     }
   }

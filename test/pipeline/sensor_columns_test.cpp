@@ -59,7 +59,7 @@ SensorJudged judgeSensor(const simulation::MachineSettings& machine, CrankStamps
   for (const simulation::CrankTruth& t : simulation::truthAt(machine, times))
     right.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y});
   const accuracy::SessionErrors e = accuracy::sessionErrors(found, right, {}, {}, {from, kInfinity, {}});
-  return {e.rms_x, e.rms_z, e.rms_torque, std::min({e.covered_x, e.covered_z, e.covered_torque}), warningsOf(pipeline)};
+  return {e.x.rms, e.z.rms, e.torque.rms, std::min({e.x.covered, e.z.covered, e.torque.covered}), warningsOf(pipeline)};
 }
 
 double namedAfter(const std::string& text, const std::string& words) {

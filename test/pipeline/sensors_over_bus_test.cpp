@@ -34,8 +34,8 @@ TEST(SensorsOverBus, LeaveTheTorquesOfABoomThatIsIdentified) {
     EXPECT_LT(e.worstTorque(), 0.12);
     EXPECT_GT(e.covered(), 0.85);
     EXPECT_GT(e.leastWrenchCovered(), 0.85) << "by an IMU over the bus";
-    EXPECT_TRUE(e.warned_of_pressure_stamps);
-    EXPECT_FALSE(e.warned_of_rock);
+    EXPECT_TRUE(e.warnedOf("pressure stamps"));
+    EXPECT_FALSE(e.warnedOf("rock"));
   }
 }
 
@@ -44,11 +44,11 @@ TEST(SensorsOverBus, LeaveNoTorquesByPressuresAlone) {
   const OverBus line{5e-3, 1e-3, test::kUsualPose, 1.0, 0.0};
   const accuracy::BoomErrors alone = over(line, 100.0, 39e3, 73, false);
   EXPECT_GT(alone.part(alone.withheld), 0.95);
-  EXPECT_TRUE(alone.warned_of_loads);
+  EXPECT_TRUE(alone.warnedOf("boom loads"));
   EXPECT_GT(alone.leastWrenchCovered(), 0.85) << "the hammer's own loads are published";
   const accuracy::BoomErrors with_imu = over(line, 100.0, 39e3);
   EXPECT_EQ(with_imu.withheld, 0U);
-  EXPECT_FALSE(with_imu.warned_of_loads);
+  EXPECT_FALSE(with_imu.warnedOf("boom loads"));
 }
 
 /// Stamps that jitter are no delay.

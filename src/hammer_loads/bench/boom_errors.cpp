@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "hammer_loads/pipeline/warnings.h"
-#include "hammer_loads/util/format.h"
 #include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::accuracy {
@@ -44,16 +43,6 @@ simulation::MachineSettings machineOnBoom(double duration) {
   return m;
 }
 
-std::string BoomErrors::text() const {
-  return format(
-      "Fz %.2f|%.2f  My %.2f  torques %.2f %.2f %.2f  sections %.2f %.2f %.2f (correlation %.4f)  energy %.2f  covered "
-      "%.0f %% %.0f %%  %.2f Hz  contact %.2f  flag %.0f %%",
-      100 * force_z.rmsOfLargest(), 100 * force_z.worstOfLargest(), 100 * moment.rms(), 100 * torque[0].rms(),
-      100 * torque[1].rms(), 100 * torque[2].rms(), 100 * section[0].rmsOfRange(), 100 * section[1].rmsOfRange(),
-      100 * section[2].rmsOfRange(), leastCorrelation(), 100 * energy(), 100 * covered(), 100 * sectionsCovered(),
-      frequency, 100 * contact.rmsOfRange(), 100 * part(lost_as_shown));
-}
-
 void BoomErrors::addBlows(const simulation::Session& session, const SampleResult& result) {
   for (std::size_t k = 0; k < result.turn_ends; ++k) {
     life_force_z.endTurn();
@@ -72,11 +61,11 @@ void BoomErrors::addWrench(const simulation::OnBoomTruth& truth, const SampleRes
   const double x = result.wrench.force_x - truth.load.force_x, z = result.wrench.force_z - truth.load.force_z;
   const double torque_y = result.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y;
   worst_force = std::max(worst_force, std::hypot(x, z));
-  if (result.outputs.empty()) return;
-  const HullWrench& deviation = result.outputs.back().deviation.wrench;
-  wrench_within[0] += std::abs(x) <= 2.0 * deviation.force_x;
-  wrench_within[1] += std::abs(z) <= 2.0 * deviation.force_z;
-  wrench_within[2] += std::abs(torque_y) <= 2.0 * deviation.torque_y;
+  const HullWrench deviation =
+      result.outputs.empty() ? HullWrench{kNaN, kNaN, kNaN} : result.outputs.back().deviation.wrench;
+  wrench[0].add(x, deviation.force_x);
+  wrench[1].add(z, deviation.force_z);
+  wrench[2].add(torque_y, deviation.torque_y);
 }
 
 void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleResult& result) {
@@ -98,21 +87,21 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
     torque[j].add(total - weight, -truth.hold[j] - weight);
     life_torque[j].add(total, -truth.hold[j], said(boom.deviations.torque[j + 1], boom.common.torque[j + 1]));
     torque_said[j] += square(boom.deviations.torque[j + 1]);
-    within += std::abs(total + truth.hold[j]) <= 2.0 * boom.deviations.torque[j + 1];
+    torques.add(total + truth.hold[j], boom.deviations.torque[j + 1]);
   }
   for (std::size_t s = 0; s < 3; ++s) {
     const double bending = boom.steel.section[s].torque.y(), right = truth.cut[s].torque_y;
     section[s].add(bending, right);
     life_section[s].add(bending, right, said(boom.deviations.section[s].torque.y(), boom.common.section[s].torque.y()));
-    sections_within += std::abs(bending - right) <= 2.0 * boom.deviations.section[s].torque.y();
+    bendings.add(bending - right, boom.deviations.section[s].torque.y());
   }
   contact.add(boom.contact.force.z(), truth.rock.force_z);
   lost_as_shown += boom.hold_down_force_lost == (truth.rock.force_z < kLeastContact);
 }
 
-BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mechanism, const PipelineSettings& settings,
-                      const Boom& boom, const SensorsOnBoom& sensors, double from, double to) {
-  SessionPlayer player(mechanism, settings, boom, session);
+BoomErrors boomErrors(const simulation::Session& session, const Settings& settings, const SensorsOnBoom& sensors,
+                      double from, double to) {
+  SessionPlayer player(settings.mechanism, settings.pipeline, settings.boom, session);
   player.imu_speaks = sensors.imu, player.pressures_speak = sensors.pressures;
   BoomErrors errors;
   std::size_t i = 0;
@@ -124,14 +113,7 @@ BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mecha
     if (known && result.isPublished()) errors.addSample(truth, result);  // as it is published
     errors.refused += !known;
   });
-  for (const Warning& warning : warningsOf(player.pipeline)) {
-    errors.warned_of_rock |= std::string(warning.key) == "rock";
-    errors.warned_of_pressure_stamps |= std::string(warning.key) == "pressure stamps";
-    errors.warned_of_pressure_fit |= std::string(warning.key) == "pressure fit";
-    errors.warned_of_damping |= std::string(warning.key) == "boom damping";
-    errors.warned_of_loads |= std::string(warning.key) == "boom loads";
-    errors.warned_of_imu_stamps |= std::string(warning.key) == "imu stamps";
-  }
+  for (const Warning& warning : warningsOf(player.pipeline)) errors.warnings.insert(warning.key);
   return errors;
 }
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <set>
 #include <string>
 
 #include "hammer_loads/bench/estimate_errors.h"
@@ -16,20 +16,20 @@ namespace hammer_loads::accuracy {
 struct BoomErrors {
   SignalError force_x, force_z, moment, torque[3], section[3], contact;
   LifeError life_force_z, life_torque[3], life_section[3];  ///< errors of loads with weight, as they are counted
-  std::size_t samples{}, refused{}, within{}, blows{};
+  std::size_t samples{}, refused{}, blows{};
   std::size_t withheld{};                 ///< samples without the boom's loads
-  std::size_t wrench_within[3]{};         ///< number of force x, force z, moment within two standard deviations
-  double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]
+  FigureErrors wrench[3];                 ///< force x, force z, moment with their deviations
+  FigureErrors torques, bendings;         ///< torques of all joints with weight, bending moments of all sections
   double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
-  std::size_t sections_within{};          ///< bending moments within two deviations
+  double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]
   std::size_t lost_as_shown{};            ///< samples with a correct flag of a lost hold-down force
-  bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_pressure_fit{}, warned_of_imu_stamps{},
-      warned_of_damping{}, warned_of_loads{};
-  std::size_t unknown{};  ///< samples at which the rock's force is reported as unknown
-  double energy_sum{};    ///< sum of the blows' relative errors
-  double frequency{};     ///< frequency of the lowest mode at the end [Hz]
+  std::set<std::string> warnings;         ///< keys of the pipeline's warnings at the end
+  std::size_t unknown{};                  ///< samples at which the rock's force is reported as unknown
+  double energy_sum{};                    ///< sum of the blows' relative errors
+  double frequency{};                     ///< frequency of the lowest mode at the end [Hz]
 
-  bool warnedOfPressures() const { return warned_of_pressure_stamps || warned_of_pressure_fit; }
+  bool warnedOf(const char* key) const { return warnings.count(key) > 0; }
+  bool warnedOfPressures() const { return warnedOf("pressure stamps") || warnedOf("pressure fit"); }
   double worstTorque() const { return std::max({torque[0].rms(), torque[1].rms(), torque[2].rms()}); }
   double worstSection() const {
     return std::max({section[0].rmsOfRange(), section[1].rmsOfRange(), section[2].rmsOfRange()});
@@ -42,15 +42,12 @@ struct BoomErrors {
   }
   double worstForce() const { return worst_force / largest_force; }
   double leastWrenchCovered() const {
-    return part(*std::min_element(std::begin(wrench_within), std::end(wrench_within)));
+    return std::min({wrench[0].result().covered, wrench[1].result().covered, wrench[2].result().covered});
   }
   double part(std::size_t count) const { return static_cast<double>(count) / static_cast<double>(samples); }
-  /// Returns the part of three torques in each sample that has them; NaN where none has.
-  double partOfTorques(std::size_t count) const {
-    return static_cast<double>(count) / (3.0 * static_cast<double>(samples - withheld));
-  }
-  double sectionsCovered() const { return partOfTorques(sections_within); }
-  double covered() const { return partOfTorques(within); }
+  /// Parts within two deviations, of the samples with loads of the boom; NaN without such samples.
+  double covered() const { return torques.result().covered; }
+  double sectionsCovered() const { return bendings.result().covered; }
   double energy() const { return energy_sum / static_cast<double>(std::max<std::size_t>(1, blows)); }  ///< mean
   /// Largest ratio of the torques' deviations to their errors, as root mean squares.
   double widest() const {
@@ -58,7 +55,6 @@ struct BoomErrors {
     for (int j = 0; j < 3; ++j) widest = std::max(widest, std::sqrt(torque_said[j] / torque[j].square));
     return widest;
   }
-  std::string text() const;  ///< one line
 
   void addBlows(const simulation::Session& session, const SampleResult& result);
   void addWrench(const simulation::OnBoomTruth& truth, const SampleResult& result);
@@ -76,8 +72,8 @@ struct SensorsOnBoom {
   bool imu{}, pressures{};
 };
 
-/// Over the samples from a time to another [s]; nothing of the session is left out before. boom: the shipped one.
-BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mechanism, const PipelineSettings& settings,
-                      const Boom& boom, const SensorsOnBoom& sensors, double from, double to);
+/// Over the samples from a time to another [s]; nothing of the session is left out before. settings: with a boom.
+BoomErrors boomErrors(const simulation::Session& session, const Settings& settings, const SensorsOnBoom& sensors,
+                      double from, double to);
 
 }  // namespace hammer_loads::accuracy

@@ -7,7 +7,6 @@
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/util/constants.h"
-#include "hammer_loads/util/format.h"
 
 namespace hammer_loads::accuracy {
 namespace {
@@ -102,33 +101,56 @@ void takeWorse(const LifeError& e, LifeFigure& worst) {
   if (std::abs(figure.error) > std::abs(worst.error)) worst = figure;
 }
 
-void takeWorst(const BoomErrors& e, BoomRow& row) {
-  row.torque = std::max(row.torque, e.worstTorque());
-  row.section = std::max(row.section, e.worstSection());
-  row.moment = std::max(row.moment, e.moment.rms());
-  row.force_z = std::max(row.force_z, e.force_z.rmsOfLargest());
-  row.worst_z = std::max(row.worst_z, e.force_z.worstOfLargest());
-  row.force_x = std::max(row.force_x, e.force_x.rmsOfLargest());
-  row.force = std::max(row.force, e.rmsForce());
-  row.worst_force = std::max(row.worst_force, e.worstForce());
-  row.covered_wrench = std::min(row.covered_wrench, e.leastWrenchCovered());
-  row.energy = std::max(row.energy, std::abs(e.energy()));
-  row.contact = std::max(row.contact, e.contact.rmsOfRange());
-  if (e.withheld < e.samples) row.covered = std::min(row.covered, e.covered());
-  row.samples += e.samples, row.withheld += e.withheld;
-  takeWorse(e.life_force_z, row.life_force);
-  for (const LifeError& joint : e.life_torque) takeWorse(joint, row.life_torque);
-  for (const LifeError& cut : e.life_section) takeWorse(cut, row.life_section);
-}
-
-std::string percent(double part, const char* unknown = "withheld") {
-  return std::isfinite(part) ? format("%.1f %%", 100.0 * part) : unknown;
+void addRow(const BoomKind& kind, const Way& way, const std::vector<BoomErrors>& poses, BoomTable& to) {
+  std::size_t samples = 0, withheld = 0;
+  double covered = 1.0, covered_wrench = 1.0;
+  BoomLife life{kind.name, way.name, {}, {}, {}};
+  for (const BoomErrors& e : poses) {
+    samples += e.samples, withheld += e.withheld;
+    if (e.withheld < e.samples) covered = std::min(covered, e.covered());
+    covered_wrench = std::min(covered_wrench, e.leastWrenchCovered());
+    takeWorse(e.life_force_z, life.force);
+    for (const LifeError& joint : e.life_torque) takeWorse(joint, life.torque);
+    for (const LifeError& cut : e.life_section) takeWorse(cut, life.section);
+  }
+  const bool known = withheld<samples, on_rock = kind.hold_down_force> 0.0;
+  if (!known) life.torque = life.section = {kNaN, kNaN, kNaN};
+  const auto worst = [&](const auto& figure) {
+    double most = 0.0;
+    for (const BoomErrors& e : poses) most = std::max(most, figure(e));
+    return most;
+  };
+  const auto worstIf = [&](bool is_known, const auto& figure) { return is_known ? worst(figure) : kNaN; };
+  using Errors = const BoomErrors&;
+  Table& table = to.errors;
+  table.beginRow();
+  table.text("machine", "machine", kind.name);
+  table.text("sensors", "sensors", way.name);
+  table.percent("joint torques", "torque", 1, worstIf(known, [](Errors e) { return e.worstTorque(); }));
+  table.percent("bending", "section", 1, worstIf(known, [](Errors e) { return e.worstSection(); }));
+  table.percent("hull moment", "moment", 1, worst([](Errors e) { return e.moment.rms(); }));
+  table.percent("Fx", "rms_x", 1, worst([](Errors e) { return e.force_x.rmsOfLargest(); }));
+  table.percent("Fz", "rms_z", 1, worst([](Errors e) { return e.force_z.rmsOfLargest(); }));
+  table.percent("worst sample of Fz", "worst_z", 1, worst([](Errors e) { return e.force_z.worstOfLargest(); }));
+  table.percent("force", "rms_force", 1, worst([](Errors e) { return e.rmsForce(); }));
+  table.percent("worst sample of the force", "worst_force", 1, worst([](Errors e) { return e.worstForce(); }));
+  table.percent("energy", "energy", 1, worst([](Errors e) { return std::abs(e.energy()); }));
+  table.percent("rock's force", "contact", 1,
+                worstIf(known && on_rock && way.sensors.pressures, [](Errors e) { return e.contact.rmsOfRange(); }),
+                "not known");
+  table.percent("torques withheld", "withheld_torque", 0, static_cast<double>(withheld) / static_cast<double>(samples));
+  table.percent("torques within two standard deviations", "covered_torque", 0, known ? covered : kNaN);
+  table.percent("smallest of Fx, Fz, moment within two standard deviations", "covered_wrench", 0, covered_wrench);
+  table.field("life_force", json(life.force));
+  table.field("life_torque", json(life.torque));
+  table.field("life_section", json(life.section));
+  to.life.push_back(life);
 }
 
 }  // namespace
 
-std::vector<BoomRow> boomTable() {
-  std::vector<BoomRow> rows;
+BoomTable boomTable() {
+  BoomTable table{Table(4), {}};
   const Settings shipped = shippedBoom("{}");
   for (const BoomKind& kind : kBoomKinds) {
     std::vector<simulation::Session> sessions;
@@ -136,54 +158,13 @@ std::vector<BoomRow> boomTable() {
       sessions.push_back(simulation::recordSession(machineOf(kind, pose, shipped.boom->chain())));
     for (const Way& way : kWays) {
       const Settings settings = shippedBoom(way.keys);
-      BoomRow row{kind.name, way.name};
+      std::vector<BoomErrors> poses;
       for (const simulation::Session& session : sessions)
-        takeWorst(boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, way.sensors, kJudgedFrom,
-                             kJudgedTo),
-                  row);
-      if (row.withheld == row.samples) {
-        row.torque = row.section = row.covered = row.contact = kNaN;
-        row.life_torque = row.life_section = {kNaN, kNaN, kNaN};
-      }
-      if (!(kind.hold_down_force > 0.0) || !way.sensors.pressures) row.contact = kNaN;
-      rows.push_back(row);
+        poses.push_back(boomErrors(session, settings, way.sensors, kJudgedFrom, kJudgedTo));
+      addRow(kind, way, poses, table);
     }
   }
-  return rows;
-}
-
-std::string markdown(const std::vector<BoomRow>& rows) {
-  std::string text =
-      "| machine | sensors | joint torques | bending | hull moment | Fx | Fz | worst sample of Fz | force | worst "
-      "sample of the force | energy | rock's force | torques withheld | torques within two standard deviations | "
-      "smallest of Fx, Fz, moment within two standard deviations "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const BoomRow& r : rows) {
-    text += format("| %s | %s |", r.machine.c_str(), r.sensors.c_str());
-    for (const double part :
-         {r.torque, r.section, r.moment, r.force_x, r.force_z, r.worst_z, r.force, r.worst_force, r.energy})
-      text += ' ' + percent(part) + " |";
-    text += ' ' + percent(r.contact, "not known") + format(" | %.0f %% | ", 100.0 * r.withheldPart()) +
-            (std::isfinite(r.covered) ? format("%.0f %%", 100.0 * r.covered) : "withheld") +
-            format(" | %.0f %% |\n", 100.0 * r.covered_wrench);
-  }
-  return text;
-}
-
-std::string json(const std::vector<BoomRow>& rows) {
-  std::string text = "[";
-  for (const BoomRow& r : rows)
-    text += format(
-        "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %s, \"section\": %s, \"moment\": %.4g, "
-        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %s, "
-        "\"withheld_torque\": %.4g, \"rms_x\": "
-        "%.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g, \"life_force\": %s, "
-        "\"life_torque\": %s, \"life_section\": %s}",
-        &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), jsonNumber(r.torque).c_str(),
-        jsonNumber(r.section).c_str(), r.moment, r.force_z, r.worst_z, r.energy, jsonNumber(r.contact).c_str(),
-        jsonNumber(r.covered).c_str(), r.withheldPart(), r.force_x, r.force, r.worst_force, r.covered_wrench,
-        json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());
-  return text + "\n]";
+  return table;
 }
 
 }  // namespace hammer_loads::accuracy

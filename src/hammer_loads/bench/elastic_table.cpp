@@ -22,42 +22,36 @@ constexpr double kLargestLoad = 2e5, kFine = 1e-4;  // [N], [s]
 constexpr int kGrid = 4096;
 constexpr double kAfterFrom = 0.006, kAfterTo = 0.040;  // interval of the vibration, from the first touch [s]
 
-std::array<double, 3> valuesOf(const CrankTruth& t) {
-  return {t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
-}
-
 /// Gathers one part of the turn.
 struct Gathering {
-  std::array<double, 3> square{}, truth_square{}, within{};
+  std::array<FigureErrors, 3> errors, truth;
   int count{};
-  void add(const WrenchAt& estimate, const std::array<double, 3>& truth) {
+  void add(const WrenchAt& estimate, const Eigen::Vector3d& right) {
     const double value[]{estimate.force_x, estimate.force_z, estimate.torque_y};
     const double deviation[]{estimate.force_x_std, estimate.force_z_std, estimate.torque_y_std};
     for (std::size_t i = 0; i < 3; ++i) {
-      const double error = value[i] - truth[i];
-      square[i] += error * error, truth_square[i] += truth[i] * truth[i];
-      within[i] += std::abs(error) <= 2.0 * deviation[i];
+      const double is = right[static_cast<Eigen::Index>(i)];
+      errors[i].add(value[i] - is, deviation[i]), truth[i].add(is, 0.0);
     }
     ++count;
   }
-  PartErrors over(const std::array<double, 3>& scale) const {
+  /// scale: of the root mean squares; that of the truth without one.
+  PartErrors over(const std::optional<Eigen::Vector3d>& scale = {}) const {
     PartErrors e;
-    for (std::size_t i = 0; i < 3; ++i)
-      e.rms[i] = std::sqrt(square[i] / count) / scale[i], e.covered[i] = within[i] / count;
-    e.scale = scale, e.count = count;
+    e.count = count;
+    for (std::size_t i = 0; i < 3; ++i) {
+      e.scale[i] = scale ? (*scale)[static_cast<Eigen::Index>(i)] : truth[i].result().rms;
+      const FigureErrors::Result result = errors[i].result(e.scale[i]);
+      e.rms[i] = result.rms, e.covered[i] = result.covered;
+    }
     return e;
-  }
-  std::array<double, 3> truthRms() const {
-    std::array<double, 3> rms;
-    for (std::size_t i = 0; i < 3; ++i) rms[i] = std::sqrt(truth_square[i] / count);
-    return rms;
   }
 };
 
 ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& session, const MachineSettings& machine) {
   const std::vector<CrankTruth> truth = simulation::truthAt(machine, run.accepted);
   Gathering whole, strike, after;
-  std::array<double, 3> largest{};
+  Eigen::Vector3d largest = Eigen::Vector3d::Zero();
   const auto isJudged = [&](double time) { return time >= kFrom && time <= machine.duration - kLeftOut; };
   const auto readings =
       std::count_if(session.truth.begin(), session.truth.end(), [&](const CrankTruth& t) { return isJudged(t.time); });
@@ -68,8 +62,8 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
     const bool is_withheld = published == run.wrenches.end() || published->time != time;
     const WrenchAt wrench = is_withheld ? WrenchAt{} : *published++;
     if (!isJudged(time)) continue;
-    const std::array<double, 3> values = valuesOf(truth[k]);
-    for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
+    const Eigen::Vector3d values = wrenchOf(truth[k]);
+    largest = largest.cwiseMax(values.cwiseAbs());
     if (is_withheld) continue;
     ++wrenches;
     whole.add(wrench, values);
@@ -77,7 +71,7 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
     const double since = sinceBlow(session.blows, time);
     if (since >= kAfterFrom && since <= kAfterTo) after.add(wrench, values);
   }
-  ElasticErrors errors{whole.over(largest), strike.over(largest), after.over(after.truthRms()), {}, {}, 0.0};
+  ElasticErrors errors{whole.over(largest), strike.over(largest), after.over(), {}, {}, 0.0};
   errors.withheld = 1.0 - static_cast<double>(wrenches) / static_cast<double>(readings);
   return errors;
 }
@@ -119,6 +113,11 @@ void makeTogether(MachineSettings& s) {
   s.hammer.crank_mass *= 1.02;
   s.hammer.rod_mass *= 0.98;
 }
+
+/// Force z on the hull [N] by the time from the first touch [s]; of an estimate with its standard deviation [N].
+struct ForceTrace {
+  std::vector<double> time, force_z, deviation;
+};
 
 constexpr double kRodKnown = 5.0;                        // [s]
 constexpr double kTraceFrom = -0.005, kTraceTo = 0.045;  // [s]
@@ -208,64 +207,40 @@ std::vector<ElasticRow> elasticTable(const Settings& settings, const MachineChoi
   return rows;
 }
 
-namespace {
-
-std::string cells(const PartErrors& e, int digits) {
-  const auto three = [](const std::array<double, 3>& v, int places) {
-    return format("%.*f, %.*f, %.*f %%", places, 100 * v[0], places, 100 * v[1], places, 100 * v[2]);
+Table tableOf(const std::vector<ElasticRow>& rows) {
+  Table table(4);
+  const auto add = [&](const char* part, int digits, const PartErrors& e, const char* rms) {
+    const auto three = [](const std::array<double, 3>& v) { return format("[%.6g, %.6g, %.6g]", v[0], v[1], v[2]); };
+    table.cell(rms, percents(digits, e.rms));
+    table.cell("within two standard deviations", percents(0, e.covered));
+    table.field(part, "{\"rms\": " + three(e.rms) + ", \"covered\": " + three(e.covered) +
+                          ", \"scale\": " + three(e.scale) + format(", \"samples\": %d}", e.count));
   };
-  return three(e.rms, digits) + " | " + three(e.covered, 0) + " | ";
-}
-
-std::string jsonOf(const char* name, const PartErrors& e) {
-  const auto three = [](const std::array<double, 3>& v) { return format("[%.6g, %.6g, %.6g]", v[0], v[1], v[2]); };
-  return format("\"%s\": {\"rms\": ", name) + three(e.rms) + ", \"covered\": " + three(e.covered) +
-         ", \"scale\": " + three(e.scale) + format(", \"samples\": %d}", e.count);
-}
-
-}  // namespace
-
-std::string markdown(const std::vector<ElasticRow>& rows) {
-  std::string text =
-      "| machine | level | withheld | whole revolution: rms Fx, Fz, moment | within two standard deviations | 180 to "
-      "360 deg: rms | within two standard deviations | 6 to 40 ms after the blow: rms over the truth's | within two "
-      "standard deviations | true Fz there |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ElasticRow& row : rows) {
     const ElasticErrors& e = row.errors;
-    text += "| " + row.machine + " | " + nameOf(row.level) + format(" | %.1f %% | ", 100.0 * e.withheld) +
-            cells(e.whole, 2) + cells(e.strike, 2) + cells(e.after, 0) + format("%.0f N rms |\n", e.after.scale[1]);
+    table.beginRow();
+    table.text("machine", "machine", row.machine);
+    table.text("level", "level", nameOf(row.level));
+    table.percent("withheld", "withheld", 1, e.withheld);
+    table.field("life", json(e.life));
+    table.field("life_with_touch", json(e.life_with_touch));
+    add("whole", 2, e.whole, "whole revolution: rms Fx, Fz, moment");
+    add("strike", 2, e.strike, "180 to 360 deg: rms");
+    add("after", 0, e.after, "6 to 40 ms after the blow: rms over the truth's");
+    table.cell("true Fz there", format("%.0f N rms", e.after.scale[1]));
   }
-  return text;
+  return table;
 }
 
-std::string json(const std::vector<ElasticRow>& rows) {
-  std::string text = "[";
-  for (const ElasticRow& row : rows) {
-    text += format(
-                "%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"withheld\": %.4g, \"life\": %s, \"life_with_touch\": "
-                "%s, ",
-                &row == rows.data() ? "" : ",", row.machine.c_str(), nameOf(row.level), row.errors.withheld,
-                json(row.errors.life).c_str(), json(row.errors.life_with_touch).c_str()) +
-            jsonOf("whole", row.errors.whole) + ", " + jsonOf("strike", row.errors.strike) + ", " +
-            jsonOf("after", row.errors.after) + "}";
-  }
-  return text + "\n]";
-}
-
-BlowTrace blowTrace(const Settings& settings) {
+std::string blowTrace(const Settings& settings) {
   const ElasticKind kind = elasticKinds(settings.mechanism.parameters())[1];
   const simulation::Session session = simulation::recordSession(kind.machine);
   const double touch = std::find_if(session.blows.begin(), session.blows.end(), [](const simulation::BlowTruth& blow) {
                          return blow.time > kRodKnown;
                        })->time;
-  const auto at = [&](Level level) { return estimated(session, kind.machine, settings, level, touch); };
-  return {kind.name, fine(kind.machine, touch), at(Level::kLinkage), at(Level::kElastic)};
-}
-
-std::string json(const BlowTrace& trace) {
-  return "{\"machine\": \"" + trace.machine + "\", \"truth\": " + jsonOf(trace.truth) +
-         ",\n  \"linkage\": " + jsonOf(trace.linkage) + ",\n  \"elastic\": " + jsonOf(trace.elastic) + "}";
+  const auto at = [&](Level level) { return jsonOf(estimated(session, kind.machine, settings, level, touch)); };
+  return "{\"machine\": \"" + kind.name + "\", \"truth\": " + jsonOf(fine(kind.machine, touch)) +
+         ",\n  \"linkage\": " + at(Level::kLinkage) + ",\n  \"elastic\": " + at(Level::kElastic) + "}";
 }
 
 }  // namespace hammer_loads::accuracy

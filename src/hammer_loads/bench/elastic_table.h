@@ -55,26 +55,10 @@ ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, L
 /// Every machine at levels rocker, linkage and elastic, some twenty seconds of computing.
 std::vector<ElasticRow> elasticTable(const Settings& settings, const MachineChoice& choice = {});
 
-/// Rows as a table in Markdown.
-std::string markdown(const std::vector<ElasticRow>& rows);
-/// Rows as a JSON array of objects, errors as parts of one.
-std::string json(const std::vector<ElasticRow>& rows);
+Table tableOf(const std::vector<ElasticRow>& rows);
 
-/// Force z on the hull [N] by the time from the first touch [s]; of an estimate with its standard deviation [N].
-struct ForceTrace {
-  std::vector<double> time, force_z, deviation;
-};
-
-struct BlowTrace {
-  std::string machine;  ///< name in elasticKinds()
-  ForceTrace truth;     ///< each 0.1 ms, without deviation
-  ForceTrace linkage, elastic;
-};
-
-/// The first blow once the rod is known, from 5 ms before it to 45 ms after it.
-BlowTrace blowTrace(const Settings& settings);
-
-/// Trace as a JSON object.
-std::string json(const BlowTrace& trace);
+/// Force z around the first blow once the rod is known, from 5 ms before it to 45 ms after it, true and by level, as a
+/// JSON object.
+std::string blowTrace(const Settings& settings);
 
 }  // namespace hammer_loads::accuracy

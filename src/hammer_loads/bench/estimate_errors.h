@@ -18,25 +18,29 @@ class FigureErrors {
   struct Result {
     double rms{}, said{};  ///< root mean squares of errors and of standard deviations
     double covered{};      ///< part of the errors within two of their deviations
+    double bias{};         ///< mean error
+    double worst{};        ///< largest magnitude of an error
   };
 
   void add(double error, double deviation) {
     ++count_;
     sum_ += error, squares_ += square(error), said_ += square(deviation);
     inside_ += std::abs(error) <= 2.0 * deviation;
+    worst_ = std::max(worst_, std::abs(error));
   }
   void addRelative(double found, double truth, double deviation) {
     add((found - truth) / truth, deviation / std::abs(truth));
   }
   /// In parts of `unit`.
   Result result(double unit = 1.0) const {
-    return {std::sqrt(squares_ / count_) / unit, std::sqrt(said_ / count_) / unit, inside_ / count_};
+    return {std::sqrt(squares_ / count_) / unit, std::sqrt(said_ / count_) / unit, inside_ / count_,
+            sum_ / count_ / unit, worst_ / unit};
   }
-  double bias() const { return sum_ / count_; }  ///< mean error
   double count() const { return count_; }
+  double squares() const { return squares_; }  ///< sum of the squares of the errors
 
  private:
-  double count_{}, sum_{}, squares_{}, said_{}, inside_{};
+  double count_{}, sum_{}, squares_{}, said_{}, inside_{}, worst_{};
 };
 
 /// Errors over root mean square and over the largest of the truth.

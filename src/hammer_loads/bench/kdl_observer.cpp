@@ -48,25 +48,19 @@ OuterLoad truthOf(const simulation::OnBoomTruth& truth) {
 #ifdef HAMMER_LOADS_KDL_OBSERVER
 
 /// Joints at an instant, on the line between two readings.
-class JointLine {
- public:
-  explicit JointLine(const simulation::Session& session) : readings_(session.joints) {}
-  void at(StampNs stamp, KDL::JntArray& position, KDL::JntArray& velocity) {
-    while (next_ + 1 < readings_.size() && readings_[next_].stamp < stamp) ++next_;
-    const simulation::JointReading& b = readings_[next_];
-    const simulation::JointReading& a = readings_[next_ == 0 ? 0 : next_ - 1];
-    const double part =
-        b.stamp > a.stamp ? static_cast<double>(stamp - a.stamp) / static_cast<double>(b.stamp - a.stamp) : 0.0;
-    for (unsigned j = 0; j < 4; ++j) {
-      position(j) = a.position[j] + part * (b.position[j] - a.position[j]);
-      velocity(j) = a.velocity[j] + part * (b.velocity[j] - a.velocity[j]);
-    }
+void jointsAt(const std::vector<simulation::JointReading>& readings, StampNs stamp, KDL::JntArray& position,
+              KDL::JntArray& velocity) {
+  const auto after =
+      std::lower_bound(readings.begin(), std::prev(readings.end()), stamp,
+                       [](const simulation::JointReading& r, StampNs wanted) { return r.stamp < wanted; });
+  const simulation::JointReading &b = *after, &a = after == readings.begin() ? b : *std::prev(after);
+  const double part =
+      b.stamp > a.stamp ? static_cast<double>(stamp - a.stamp) / static_cast<double>(b.stamp - a.stamp) : 0.0;
+  for (unsigned j = 0; j < 4; ++j) {
+    position(j) = a.position[j] + part * (b.position[j] - a.position[j]);
+    velocity(j) = a.velocity[j] + part * (b.velocity[j] - a.velocity[j]);
   }
-
- private:
-  const std::vector<simulation::JointReading>& readings_;
-  std::size_t next_{};
-};
+}
 
 /// Nearest in time.
 const simulation::OnBoomTruth& truthAt(const simulation::Session& session, double time) {
@@ -92,11 +86,10 @@ std::optional<OuterLoadErrors> kdlErrors(const simulation::Session& session, con
                                              0.0);
   const auto joints = static_cast<unsigned>(boom.chain().joints());
   KDL::JntArray position(joints), velocity(joints), torque(joints);
-  JointLine line(session);
   Signals signals;
   bool first = true;
   for (const simulation::PressureReading& reading : pressures) {
-    line.at(reading.stamp, position, velocity);
+    jointsAt(session.joints, reading.stamp, position, velocity);
     for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
       const Cylinder& cylinder = boom.cylinders()[i];
       const auto joint = static_cast<unsigned>(cylinder.joint());
@@ -136,35 +129,34 @@ OuterLoadErrors pipelineErrors(const simulation::Session& session, const Setting
   return signals.errors();
 }
 
-std::vector<ObserverRow> observerTable() {
-  std::vector<ObserverRow> rows;
+Table observerTable() {
+  Table table(4);
   const Settings settings = shippedBoom("{boom: compliant, boom_stiffness: identified, hull_motion: model}");
   const Settings by_imu = shippedBoom("{boom: compliant, boom_stiffness: identified, hull_motion: imu}");
   for (const bool on_rock : {false, true}) {
-    const std::string name = on_rock ? "hull pressed on rock with 4 kN" : "hull free of the rock";
     simulation::MachineSettings machine = machineOnBoom(kObservedTo);
     if (on_rock) machine.on_boom.rock = {3e7, 3.0, kPressed};
     const simulation::Session session = simulation::recordSession(machine);
+    const auto add = [&](const std::string& way, const OuterLoadErrors& errors) {
+      table.beginRow();
+      table.text("machine", "machine", on_rock ? "hull pressed on rock with 4 kN" : "hull free of the rock");
+      table.text("way", "way", way);
+      table.percent("Fx", "rms_x", 1, errors.force_x.rmsOfLargest());
+      table.percent("Fz", "rms_z", 1, errors.force_z.rmsOfLargest());
+      table.percent("moment", "rms_torque", 1, errors.moment.rmsOfLargest());
+      table.percent("worst sample of Fz", "worst_z", 0, errors.force_z.worstOfLargest());
+    };
     std::optional<OuterLoadErrors> best;
     double best_gain = 0.0;
     for (const double gain : kObserverGains) {
       const auto errors = kdlErrors(session, settings, gain, kObservedFrom, kObservedTo);
       if (errors && (!best || errors->force_z.rms() < best->force_z.rms())) best = errors, best_gain = gain;
     }
-    if (best) rows.push_back({name, format("KDL's momentum observer, gain %.0f", best_gain), *best});
-    rows.push_back({name, "this package", pipelineErrors(session, settings, false, kObservedFrom, kObservedTo)});
-    rows.push_back({name, "with an IMU", pipelineErrors(session, by_imu, true, kObservedFrom, kObservedTo)});
+    if (best) add(format("KDL's momentum observer, gain %.0f", best_gain), *best);
+    add("this package", pipelineErrors(session, settings, false, kObservedFrom, kObservedTo));
+    add("with an IMU", pipelineErrors(session, by_imu, true, kObservedFrom, kObservedTo));
   }
-  return rows;
-}
-
-std::string markdown(const std::vector<ObserverRow>& rows) {
-  std::string text = "| machine | way | Fx | Fz | moment | worst sample of Fz |\n|---|---|---|---|---|---|\n";
-  for (const ObserverRow& r : rows)
-    text += format("| %s | %s | %.1f %% | %.1f %% | %.1f %% | %.0f %% |\n", r.machine.c_str(), r.way.c_str(),
-                   100.0 * r.errors.force_x.rmsOfLargest(), 100.0 * r.errors.force_z.rmsOfLargest(),
-                   100.0 * r.errors.moment.rmsOfLargest(), 100.0 * r.errors.force_z.worstOfLargest());
-  return text;
+  return table;
 }
 
 }  // namespace hammer_loads::accuracy

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "hammer_loads/bench/estimate_errors.h"
+#include "hammer_loads/bench/table.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 
@@ -28,14 +27,7 @@ std::optional<OuterLoadErrors> kdlErrors(const simulation::Session& session, con
 OuterLoadErrors pipelineErrors(const simulation::Session& session, const Settings& settings, bool imu, double from,
                                double to);
 
-struct ObserverRow {
-  std::string machine, way;
-  OuterLoadErrors errors;
-};
-
 /// The simulated EO-2621 free and on rock, oil as in the boom file, one pose; the observer with the best of its gains.
-std::vector<ObserverRow> observerTable();
-
-std::string markdown(const std::vector<ObserverRow>& rows);
+Table observerTable();
 
 }  // namespace hammer_loads::accuracy

@@ -3,6 +3,7 @@
 #include <functional>
 #include <regex>
 
+#include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/calibration/calibration.h"
 #include "hammer_loads/pipeline/filter_settings.h"
 #include "hammer_loads/util/constants.h"
@@ -148,7 +149,7 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
   pipeline.crank_sensor = *CrankSensor::make(place).value;
 }
 
-MachineRow rowOf(const Settings& settings, const Kind& kind, const MachineSettings& machine) {
+SessionErrors errorsOn(const Settings& settings, const Kind& kind, const MachineSettings& machine) {
   const simulation::Session session = simulation::recordSession(machine);
   HammerParameters hammer = settings.mechanism.parameters();
   hammer.drive_inertia = kind.inertia_guess * machine.drive.inertia;
@@ -156,8 +157,34 @@ MachineRow rowOf(const Settings& settings, const Kind& kind, const MachineSettin
   pipeline.crank_stamps = kind.stamps;
   if (kind.calibrated) applyCalibration(session, machine, hammer, pipeline);
   const SessionRun run = runSession(session, machine.start_stamp, *Mechanism::make(hammer).value, pipeline);
-  return {kind.name, machine.crank.rate, machine.crank.speed,
-          judgeAtStamps(run, session, machine, kind.shift + 0.5 * machine.crank.driver.tick)};
+  return judgeAtStamps(run, session, machine, kind.shift + 0.5 * machine.crank.driver.tick);
+}
+
+void addRow(const Kind& kind, const simulation::CrankSensorSettings& crank, const SessionErrors& e, Table& table) {
+  table.beginRow();
+  table.text("machine", "machine", kind.name);
+  table.cell("rate, Hz", format("%.0f", crank.rate)), table.number("rate_hz", crank.rate);
+  table.cell("speed", crank.speed ? "measured" : "none"), table.field("speed_measured", crank.speed ? "true" : "false");
+  const std::string blows = std::to_string(e.blows), missed = std::to_string(e.unseen_blows);
+  if (std::isnan(e.rms_force)) {
+    table.field("withheld", "true");
+    for (const std::string& text : {std::string("withheld"), {}, {}, {}, {}, blows, missed, {}}) table.cell({}, text);
+    return;
+  }
+  table.percents("rms force, Fx, Fz, moment", 2,
+                 {{"rms_force", e.rms_force}, {"rms_x", e.x.rms}, {"rms_z", e.z.rms}, {"rms_torque", e.torque.rms}});
+  table.percents("worst sample of each", 1,
+                 {{"worst_force", e.worst_force},
+                  {"worst_x", e.x.worst},
+                  {"worst_z", e.z.worst},
+                  {"worst_torque", e.torque.worst}});
+  table.percents("within two standard deviations: Fx, Fz, moment", 0,
+                 {{"covered_x", e.x.covered}, {"covered_z", e.z.covered}, {"covered_torque", e.torque.covered}});
+  table.cell("blow instant", format("%.2f ms", 1e3 * e.blow_time)), table.number("blow_time_s", e.blow_time);
+  table.cell("energy", energyCell(e, 1)), table.number("energy", e.energy);
+  table.cell("blows", blows), table.number("blows", e.blows);
+  table.cell("missed", missed), table.number("missed_blows", e.unseen_blows);
+  table.cell("false", std::to_string(e.false_blows)), table.number("false_blows", e.false_blows);
 }
 
 }  // namespace
@@ -177,8 +204,8 @@ bool MachineChoice::has(const std::string& name) const {
   return rows.empty() || std::regex_search(name, std::regex(rows));
 }
 
-std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoice& choice) {
-  std::vector<MachineRow> rows;
+Table machineTable(const Settings& settings, const MachineChoice& choice) {
+  Table table(6);
   for (const std::vector<Kind>& all : {kinds(), sensorKinds()}) {
     for (const Kind& kind : all) {
       for (const double rate : kind.rates) {
@@ -186,55 +213,11 @@ std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoi
         MachineSettings machine = machineOf(settings, kind, rate, choice.seed);
         if (!choice.speeds && !machine.crank.speed) continue;
         machine.crank.speed = machine.crank.speed && choice.speeds;
-        rows.push_back(rowOf(settings, kind, machine));
+        addRow(kind, machine.crank, errorsOn(settings, kind, machine), table);
       }
     }
   }
-  return rows;
-}
-
-std::string markdown(const std::vector<MachineRow>& rows) {
-  std::string text =
-      "| machine | rate, Hz | speed | rms force, Fx, Fz, moment | worst sample of each | within two standard "
-      "deviations: Fx, Fz, moment | blow instant | energy | blows | missed | false "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const MachineRow& row : rows) {
-    const SessionErrors& e = row.errors;
-    if (std::isnan(e.rms_force)) {
-      text += format("| %s | %.0f | %s | withheld | | | | | %d | %d | |\n", row.machine.c_str(), row.rate,
-                     row.speed ? "measured" : "none", e.blows, e.unseen_blows);
-      continue;
-    }
-    text += format(
-        "| %s | %.0f | %s | %.2f, %.2f, %.2f, %.2f %% | %.1f, %.1f, %.1f, %.1f %% | %.0f, %.0f, %.0f %% | %.2f ms | %s "
-        "| %d | %d | %d |\n",
-        row.machine.c_str(), row.rate, row.speed ? "measured" : "none", 100 * e.rms_force, 100 * e.rms_x, 100 * e.rms_z,
-        100 * e.rms_torque, 100 * e.worst_force, 100 * e.worst_x, 100 * e.worst_z, 100 * e.worst_torque,
-        100 * e.covered_x, 100 * e.covered_z, 100 * e.covered_torque, 1e3 * e.blow_time, energyCell(e, 1).c_str(),
-        e.blows, e.unseen_blows, e.false_blows);
-  }
-  return text;
-}
-
-std::string json(const std::vector<MachineRow>& rows) {
-  std::string text = "[";
-  for (const MachineRow& row : rows) {
-    const SessionErrors& e = row.errors;
-    if (std::isnan(e.rms_force)) {
-      text += format("%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"withheld\": true}",
-                     &row == rows.data() ? "" : ",", row.machine.c_str(), row.rate, row.speed ? "true" : "false");
-      continue;
-    }
-    text += format(
-        "%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"rms_z\": %.6g, \"worst_z\": %.6g, "
-        "\"covered_z\": %.6g, \"rms_force\": %.6g, \"worst_force\": %.6g, \"rms_x\": %.6g, \"worst_x\": %.6g, "
-        "\"covered_x\": %.6g, \"rms_torque\": %.6g, \"worst_torque\": %.6g, \"covered_torque\": %.6g, \"blow_time_s\": "
-        "%.6g, \"energy\": %s, \"blows\": %d, \"missed_blows\": %d, \"false_blows\": %d}",
-        &row == rows.data() ? "" : ",", row.machine.c_str(), row.rate, row.speed ? "true" : "false", e.rms_z, e.worst_z,
-        e.covered_z, e.rms_force, e.worst_force, e.rms_x, e.worst_x, e.covered_x, e.rms_torque, e.worst_torque,
-        e.covered_torque, e.blow_time, energyJson(e).c_str(), e.blows, e.unseen_blows, e.false_blows);
-  }
-  return text + "\n]";
+  return table;
 }
 
 }  // namespace hammer_loads::accuracy

@@ -3,9 +3,8 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
-#include "hammer_loads/bench/session_run.h"
+#include "hammer_loads/bench/table.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/machine_settings.h"
 
@@ -24,20 +23,8 @@ struct MachineChoice {
   bool has(const std::string& name) const;
 };
 
-struct MachineRow {
-  std::string machine;
-  double rate{};  ///< rate of crank samples [Hz]
-  bool speed{};   ///< speeds are measured too
-  SessionErrors errors;
-};
-
 /// Simulated working sessions with the mechanism's filter as shipped (seeded: the same on every run), some minute of
 /// computing.
-std::vector<MachineRow> machineTable(const Settings& settings, const MachineChoice& choice = {});
-
-/// Rows as a table in Markdown.
-std::string markdown(const std::vector<MachineRow>& rows);
-/// Rows as a JSON array of objects, errors as parts of one.
-std::string json(const std::vector<MachineRow>& rows);
+Table machineTable(const Settings& settings, const MachineChoice& choice = {});
 
 }  // namespace hammer_loads::accuracy

@@ -22,16 +22,16 @@ struct Judge {
   std::vector<WrenchOutput> means;
   FigureErrors energy, restitution;
 
-  double seconds(StampNs stamp) const { return 1e-9 * static_cast<double>(stamp - machine.start_stamp); }
+  double timeOf(StampNs stamp) const { return seconds(stamp - machine.start_stamp); }
   bool isJudged(double time) const { return time >= kKnownFrom && time <= machine.duration - kBefore; }
   void take(const SampleResult& result) {
     for (std::size_t i = 0; i < result.turn_ends; ++i) takeBlow(result.ends[i]);
     if (result.refusal) return;
     for (const WrenchOutput& output : result.outputs)
-      if (isJudged(seconds(output.stamp)) && std::abs(output.interval - kSlow) < 1e-4) means.push_back(output);
+      if (isJudged(timeOf(output.stamp)) && std::abs(output.interval - kSlow) < 1e-4) means.push_back(output);
   }
   void takeBlow(const TurnEnd& end) {
-    const double time = seconds(end.stamp);
+    const double time = timeOf(end.stamp);
     const auto blow = std::find_if(session.blows.begin(), session.blows.end(), [&](const simulation::BlowTruth& truth) {
       return std::abs(truth.time - time) < kOneBlow;
     });
@@ -45,7 +45,7 @@ struct Judge {
     std::vector<double> times;
     for (const WrenchOutput& mean : means)
       for (int i = 0; i < kInMean; ++i)
-        times.push_back(seconds(mean.stamp) + mean.interval * ((i + 0.5) / kInMean - 1.0));
+        times.push_back(timeOf(mean.stamp) + mean.interval * ((i + 0.5) / kInMean - 1.0));
     const std::vector<simulation::CrankTruth> truth = simulation::truthAt(machine, times);
     std::array<FigureErrors, 3> errors;
     Eigen::Vector3d largest = Eigen::Vector3d::Zero();
@@ -54,7 +54,7 @@ struct Judge {
       Eigen::Vector3d right = Eigen::Vector3d::Zero();
       bool touches = false;
       for (int i = 0; i < kInMean; ++i, ++at) {
-        right += Eigen::Vector3d(at->load.force_x, at->load.force_z, at->load.torque_y + at->drive_reaction_y);
+        right += wrenchOf(*at);
         touches = touches || at->touches();
       }
       if (touches) continue;
@@ -71,7 +71,7 @@ struct Judge {
 
 }  // namespace
 
-SceneRow sceneRow(const Settings& settings, const ElasticKind& kind, Level level) {
+SceneErrors sceneErrors(const Settings& settings, const ElasticKind& kind, Level level) {
   const simulation::Session session = simulation::recordSession(kind.machine);
   PipelineSettings pipeline = settings.pipeline;
   pipeline.level = level;
@@ -80,58 +80,46 @@ SceneRow sceneRow(const Settings& settings, const ElasticKind& kind, Level level
   SessionPlayer player(settings.mechanism, pipeline, {}, session);
   Judge judge{kind.machine, session, {}, {}, {}};
   player.playTo(kInfinity, [&](double, const SampleResult& result) { judge.take(result); });
-  SceneRow row{kind.name, level, judge.slow(), {}, judge.energy.result(), judge.restitution.result()};
-  row.energy_bias = judge.energy.bias(), row.restitution_bias = judge.restitution.bias();
-  return row;
+  return {judge.slow(), judge.energy.result(), judge.restitution.result()};
 }
 
-std::vector<SceneRow> sceneTable(const Settings& settings, const std::vector<ElasticRow>& elastic) {
+Table sceneTable(const Settings& settings, const std::vector<ElasticRow>& elastic) {
+  Table table(4);
+  const auto cell = [&](const char* header, const char* pattern, double value) {
+    table.cell(header, format(pattern, value));
+  };
+  const auto field = [&](const char* key, const FigureErrors::Result& f) {
+    table.field(key, format("{\"rms\": %.4g, \"stated\": %.4g, \"covered\": %.4g}", f.rms, f.said, f.covered));
+  };
   const std::vector<ElasticKind> kinds = elasticKinds(settings.mechanism.parameters());
-  std::vector<SceneRow> rows;
   for (const ElasticRow& row : elastic) {
     const auto kind =
         std::find_if(kinds.begin(), kinds.end(), [&](const ElasticKind& k) { return k.name == row.machine; });
-    rows.push_back(sceneRow(settings, *kind, row.level));
-    rows.back().life = row.errors.life;
+    const auto [slow, energy, restitution] = sceneErrors(settings, *kind, row.level);
+    const auto& [x, z, moment] = slow;
+    const LifeFigure& life = row.errors.life;
+    table.beginRow();
+    table.text("machine", "machine", row.machine);
+    table.text("level", "level", nameOf(row.level));
+    table.cell("means of 1/60 s: rms Fx, Fz, moment", percents(2, {x.rms, z.rms, moment.rms}));
+    table.cell("stated", percents(2, {x.said, z.said, moment.said}));
+    table.cell("within two standard deviations", percents(0, {x.covered, z.covered, moment.covered}));
+    field("slow_x", x), field("slow_z", z), field("slow_y", moment);
+    cell("damage-equivalent range of Fz", "%+.1f %%", 100.0 * life.error);
+    cell("stated", "%.1f %%", 100.0 * std::hypot(life.own, life.common));
+    table.field("life", json(life));
+    cell("energy: mean error", "%+.1f %%", 100.0 * energy.bias), table.number("energy_bias", energy.bias);
+    cell("rms", "%.1f %%", 100.0 * energy.rms);
+    cell("stated", "%.1f %%", 100.0 * energy.said);
+    cell("within", "%.0f %%", 100.0 * energy.covered);
+    field("energy", energy);
+    cell("restitution: mean error", "%+.3f", restitution.bias), table.number("restitution_bias", restitution.bias);
+    cell("rms", "%.3f", restitution.rms);
+    cell("stated", "%.3f", restitution.said);
+    cell("within", "%.0f %%", 100.0 * restitution.covered);
+    field("restitution", restitution);
   }
-  return rows;
-}
-
-std::string markdown(const std::vector<SceneRow>& rows) {
-  std::string text =
-      "| machine | level | means of 1/60 s: rms Fx, Fz, moment | stated | within two standard deviations | "
-      "damage-equivalent range of Fz | stated | energy: mean error | rms | stated | within | restitution: mean error | "
-      "rms | stated | within |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  const auto each = [](const SceneRow& row, double FigureErrors::Result::*part, int digits) {
-    return format("%.*f, %.*f, %.*f %% | ", digits, 100.0 * (row.slow[0].*part), digits, 100.0 * (row.slow[1].*part),
-                  digits, 100.0 * (row.slow[2].*part));
-  };
-  for (const SceneRow& r : rows) {
-    text += "| " + r.machine + " | " + nameOf(r.level) + " | " + each(r, &FigureErrors::Result::rms, 2) +
-            each(r, &FigureErrors::Result::said, 2) + each(r, &FigureErrors::Result::covered, 0);
-    text += format("%+.1f %% | %.1f %% | ", 100.0 * r.life.error, 100.0 * std::hypot(r.life.own, r.life.common));
-    text += format("%+.1f %% | %.1f %% | %.1f %% | %.0f %% | ", 100.0 * r.energy_bias, 100.0 * r.energy.rms,
-                   100.0 * r.energy.said, 100.0 * r.energy.covered);
-    text += format("%+.3f | %.3f | %.3f | %.0f %% |\n", r.restitution_bias, r.restitution.rms, r.restitution.said,
-                   100.0 * r.restitution.covered);
-  }
-  return text;
-}
-
-std::string json(const std::vector<SceneRow>& rows) {
-  const auto figure = [](const char* name, const FigureErrors::Result& r) {
-    return format("\"%s\": {\"rms\": %.4g, \"stated\": %.4g, \"covered\": %.4g}", name, r.rms, r.said, r.covered);
-  };
-  std::string text = "[";
-  for (const SceneRow& r : rows)
-    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", ", &r == rows.data() ? "" : ",", r.machine.c_str(),
-                   nameOf(r.level)) +
-            figure("slow_x", r.slow[0]) + ", " + figure("slow_z", r.slow[1]) + ", " + figure("slow_y", r.slow[2]) +
-            ", \"life\": " + json(r.life) + ", " + figure("energy", r.energy) + ", " +
-            figure("restitution", r.restitution) +
-            format(", \"energy_bias\": %.4g, \"restitution_bias\": %.4g}", r.energy_bias, r.restitution_bias);
-  return text + "\n]";
+  return table;
 }
 
 }  // namespace hammer_loads::accuracy

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "hammer_loads/bench/elastic_table.h"
@@ -11,25 +10,16 @@
 
 namespace hammer_loads::accuracy {
 
-struct SceneRow {
-  std::string machine;
-  Level level{};
+struct SceneErrors {
   /// Errors of Fx, Fz and the moment: means over 1/60 s, to which a boom below 30 Hz responds, over the largest of the
   /// true ones. Means in which a tool is touched are left out: there the blow's impulse is added.
   std::array<FigureErrors::Result, 3> slow;
-  LifeFigure life;                           ///< error of Fz's damage-equivalent range, see ElasticErrors
   FigureErrors::Result energy, restitution;  ///< errors of blows: energy relative, restitution as a difference [-]
-  double energy_bias{}, restitution_bias{};  ///< mean errors
 };
 
-/// Row of one session through the pipeline at a level.
-SceneRow sceneRow(const Settings& settings, const ElasticKind& kind, Level level);
-/// Rows of all elasticKinds() at levels rocker, linkage and elastic; `elastic`: their rows of that table.
-std::vector<SceneRow> sceneTable(const Settings& settings, const std::vector<ElasticRow>& elastic);
-
-/// Rows as a table in Markdown.
-std::string markdown(const std::vector<SceneRow>& rows);
-/// Rows as a JSON array of objects, errors as parts of one.
-std::string json(const std::vector<SceneRow>& rows);
+/// Errors of one session through the pipeline at a level.
+SceneErrors sceneErrors(const Settings& settings, const ElasticKind& kind, Level level);
+/// All elasticKinds() at levels rocker, linkage and elastic, with the errors of `elastic`, their rows of that table.
+Table sceneTable(const Settings& settings, const std::vector<ElasticRow>& elastic);
 
 }  // namespace hammer_loads::accuracy

@@ -11,6 +11,11 @@
 
 namespace hammer_loads::accuracy {
 
+/// True load as it is published: with the drive's reaction.
+inline Eigen::Vector3d wrenchOf(const simulation::CrankTruth& truth) {
+  return {truth.load.force_x, truth.load.force_z, truth.load.torque_y + truth.drive_reaction_y};
+}
+
 /// In the order of the stamps. The session must live as long.
 class SessionPlayer {
  public:

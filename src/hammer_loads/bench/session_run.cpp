@@ -10,8 +10,10 @@ namespace {
 SessionErrors judgeBy(const std::vector<simulation::CrankTruth>& at, const SessionRun& run,
                       const simulation::Session& session, const simulation::MachineSettings& machine) {
   std::vector<WrenchAt> truth;
-  for (const simulation::CrankTruth& t : at)
-    truth.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y});
+  for (const simulation::CrankTruth& t : at) {
+    const Eigen::Vector3d wrench = wrenchOf(t);
+    truth.push_back({t.time, wrench[0], wrench[1], wrench[2]});
+  }
   std::vector<BlowAt> blows;
   for (const simulation::BlowTruth& b : session.blows)
     blows.push_back({b.time, b.strike.energy, b.strike.tool_impulse, b.turn_peak_force_z, b.turn_impulse_z});
@@ -20,7 +22,13 @@ SessionErrors judgeBy(const std::vector<simulation::CrankTruth>& at, const Sessi
   return sessionErrors(run.wrenches, truth, run.blows, blows, judged);
 }
 
-simulation::MachineSettings machineOf(const Settings& settings, const SessionRow& row) {
+struct CrankSensorKind {
+  double rate;  ///< rate of crank samples [Hz]
+  int counts;   ///< counts of the encoder per revolution
+  bool speed;   ///< speeds are measured too
+};
+
+simulation::MachineSettings machineOf(const Settings& settings, const CrankSensorKind& kind) {
   simulation::MachineSettings machine = simulation::workingMo100();
   const double drive_inertia = machine.drive.inertia;
   machine.hammer = settings.mechanism.parameters();
@@ -28,17 +36,17 @@ simulation::MachineSettings machineOf(const Settings& settings, const SessionRow
   machine.drive.inertia = drive_inertia;
   machine.duration = 15.0;
   machine.drive.stop_time = 13.5;
-  machine.crank.rate = row.rate;
-  machine.crank.counts = row.counts;
-  machine.crank.speed = row.speed;
+  machine.crank.rate = kind.rate;
+  machine.crank.counts = kind.counts;
+  machine.crank.speed = kind.speed;
   return machine;
 }
 
-SessionErrors errorsOf(const Settings& settings, const SessionRow& row) {
-  const simulation::MachineSettings machine = machineOf(settings, row);
+SessionErrors errorsOf(const Settings& settings, const CrankSensorKind& kind) {
+  const simulation::MachineSettings machine = machineOf(settings, kind);
   const simulation::Session session = simulation::recordSession(machine);
   PipelineSettings pipeline = settings.pipeline;
-  pipeline.crank_angle_resolution = kTwoPi / row.counts;
+  pipeline.crank_angle_resolution = kTwoPi / kind.counts;
   return judge(runSession(session, machine.start_stamp, settings.mechanism, pipeline), session, machine);
 }
 
@@ -79,10 +87,6 @@ std::string energyCell(const SessionErrors& e, int digits) {
   return e.known_energies == seen ? worst : worst + format(", %d of %d known", e.known_energies, seen);
 }
 
-std::string energyJson(const SessionErrors& e) {
-  return e.known_energies == 0 ? std::string("null") : format("%.6g", e.energy);
-}
-
 SessionErrors judge(const SessionRun& run, const simulation::Session& session,
                     const simulation::MachineSettings& machine) {
   return judgeBy(session.truth, run, session, machine);
@@ -97,40 +101,28 @@ SessionErrors judgeAtStamps(const SessionRun& run, const simulation::Session& se
   return judgeBy(simulation::truthAt(machine, times), shifted, session, machine);
 }
 
-std::vector<SessionRow> sessionTable(const Settings& settings) {
-  std::vector<SessionRow> rows;
-  for (const double rate : {2000.0, 1000.0, 500.0, 200.0, 100.0, 50.0, 20.0}) rows.push_back({rate, 4096, true, {}});
-  for (const int counts : {512, 1024, 2048, 8192, 65536}) rows.push_back({1000.0, counts, true, {}});
-  for (const double rate : {1000.0, 100.0}) rows.push_back({rate, 4096, false, {}});
-  for (SessionRow& row : rows) row.errors = errorsOf(settings, row);
-  return rows;
-}
-
-std::string markdown(const std::vector<SessionRow>& rows) {
-  std::string text =
-      "| rate, Hz | encoder counts | speed | rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow "
-      "instant | energy |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const SessionRow& row : rows) {
-    const SessionErrors& e = row.errors;
-    text += format("| %.0f | %d | %s | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %s |\n", row.rate,
-                   row.counts, row.speed ? "measured" : "none", 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque,
-                   100 * e.turn_peak, 100 * e.turn_impulse, 1e3 * e.blow_time, energyCell(e, 2).c_str());
+Table sessionTable(const Settings& settings) {
+  std::vector<CrankSensorKind> kinds;
+  for (const double rate : {2000.0, 1000.0, 500.0, 200.0, 100.0, 50.0, 20.0}) kinds.push_back({rate, 4096, true});
+  for (const int counts : {512, 1024, 2048, 8192, 65536}) kinds.push_back({1000.0, counts, true});
+  for (const double rate : {1000.0, 100.0}) kinds.push_back({rate, 4096, false});
+  Table table(6);
+  for (const CrankSensorKind& kind : kinds) {
+    const SessionErrors e = errorsOf(settings, kind);
+    table.beginRow();
+    table.cell("rate, Hz", format("%.0f", kind.rate)), table.number("rate_hz", kind.rate);
+    table.cell("encoder counts", std::to_string(kind.counts)), table.number("encoder_counts", kind.counts);
+    table.cell("speed", kind.speed ? "measured" : "none"), table.field("speed_measured", kind.speed ? "true" : "false");
+    table.percent("rms Fx", "rms_x", 2, e.x.rms);
+    table.percent("rms Fz", "rms_z", 2, e.z.rms);
+    table.percent("rms torque", "rms_torque", 2, e.torque.rms);
+    table.percent("peak, worst turn", "turn_peak", 2, e.turn_peak);
+    table.percent("turn impulse", "turn_impulse", 2, e.turn_impulse);
+    table.cell("blow instant", format("%.3f ms", 1e3 * e.blow_time)), table.number("blow_time_s", e.blow_time);
+    table.cell("energy", energyCell(e, 2)), table.number("energy", e.energy);
+    table.number("blows", e.blows), table.number("missed_blows", e.missed_blows);
   }
-  return text;
-}
-
-std::string json(const std::vector<SessionRow>& rows) {
-  std::string text = "[";
-  for (const SessionRow& row : rows) {
-    const SessionErrors& e = row.errors;
-    text += format(
-        "%s\n  {\"rate_hz\": %g, \"encoder_counts\": %d, \"speed_measured\": %s, \"rms_x\": %.6g, \"rms_z\": %.6g, "
-        "\"rms_torque\": %.6g, \"turn_peak\": %.6g, \"turn_impulse\": %.6g, \"blow_time_s\": %.6g, \"energy\": %s, "
-        "\"blows\": %d, \"missed_blows\": %d}",
-        &row == rows.data() ? "" : ",", row.rate, row.counts, row.speed ? "true" : "false", e.rms_x, e.rms_z,
-        e.rms_torque, e.turn_peak, e.turn_impulse, e.blow_time, energyJson(e).c_str(), e.blows, e.missed_blows);
-  }
-  return text + "\n]";
+  return table;
 }
 
 }  // namespace hammer_loads::accuracy

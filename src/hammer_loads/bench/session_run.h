@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/bench/estimate_errors.h"
+#include "hammer_loads/bench/table.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
@@ -30,13 +32,11 @@ struct BlowAt {
 
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
 struct SessionErrors {
-  double rms_x{}, rms_z{}, rms_torque{};
-  double worst_x{}, worst_z{}, worst_torque{};        ///< errors of one sample
-  double covered_x{}, covered_z{}, covered_torque{};  ///< part of the errors within two of their deviations
-  double rms_force{}, worst_force{};                  ///< errors of the force as a vector, over its largest magnitude
-  double turn_peak{};                                 ///< relative, worst turn
-  double turn_impulse{};                              ///< error over the blow's tool impulse, worst turn
-  double blow_time{};                                 ///< [s], worst
+  FigureErrors::Result x, z, torque;
+  double rms_force{}, worst_force{};  ///< errors of the force as a vector, over its largest magnitude
+  double turn_peak{};                 ///< relative, worst turn
+  double turn_impulse{};              ///< error over the blow's tool impulse, worst turn
+  double blow_time{};                 ///< [s], worst
   /// Relative, worst of those that are known; NaN where none is.
   double energy{std::numeric_limits<double>::quiet_NaN()};
   int known_energies{};
@@ -60,7 +60,8 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
                                    const std::vector<BlowAt>& blows, const std::vector<BlowAt>& true_blows,
                                    const Judged& judged) {
   SessionErrors e;
-  double peak_x = 0, peak_z = 0, peak_torque = 0, peak_force = 0, count = 0;
+  FigureErrors x, z, torque;
+  double peak_x = 0, peak_z = 0, peak_torque = 0, peak_force = 0;
   std::size_t next = 0;
   for (const WrenchAt& t : truth) {
     while (next < estimate.size() && estimate[next].time < t.time - 1e-5) ++next;
@@ -71,22 +72,14 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
     peak_force = std::max(peak_force, std::hypot(t.force_x, t.force_z));
     if (next == estimate.size() || std::abs(estimate[next].time - t.time) > 1e-5) continue;  // withheld
     const WrenchAt& w = estimate[next];
-    const double x = w.force_x - t.force_x, z = w.force_z - t.force_z, torque = w.torque_y - t.torque_y;
-    e.rms_x += x * x, e.rms_z += z * z, e.rms_torque += torque * torque;
-    e.worst_x = std::max(e.worst_x, std::abs(x)), e.worst_z = std::max(e.worst_z, std::abs(z));
-    e.worst_torque = std::max(e.worst_torque, std::abs(torque));
-    e.worst_force = std::max(e.worst_force, std::hypot(x, z));
-    e.covered_x += std::abs(x) <= 2.0 * w.force_x_std;
-    e.covered_z += std::abs(z) <= 2.0 * w.force_z_std;
-    e.covered_torque += std::abs(torque) <= 2.0 * w.torque_y_std;
-    ++count;
+    x.add(w.force_x - t.force_x, w.force_x_std);
+    z.add(w.force_z - t.force_z, w.force_z_std);
+    torque.add(w.torque_y - t.torque_y, w.torque_y_std);
+    e.worst_force = std::max(e.worst_force, std::hypot(w.force_x - t.force_x, w.force_z - t.force_z));
   }
-  e.rms_force = std::sqrt((e.rms_x + e.rms_z) / count) / peak_force;
-  e.rms_x = std::sqrt(e.rms_x / count) / peak_x;
-  e.rms_z = std::sqrt(e.rms_z / count) / peak_z;
-  e.rms_torque = std::sqrt(e.rms_torque / count) / peak_torque;
-  e.worst_x /= peak_x, e.worst_z /= peak_z, e.worst_torque /= peak_torque, e.worst_force /= peak_force;
-  e.covered_x /= count, e.covered_z /= count, e.covered_torque /= count;
+  e.x = x.result(peak_x), e.z = z.result(peak_z), e.torque = torque.result(peak_torque);
+  e.rms_force = std::sqrt((x.squares() + z.squares()) / x.count()) / peak_force;
+  e.worst_force /= peak_force;
   for (const BlowAt& t : true_blows) {
     if (!judged(t.time)) continue;
     ++e.blows;
@@ -126,9 +119,8 @@ struct SessionRun {
 SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
                       const PipelineSettings& settings);
 
-/// The blows' energy as a table's cell, and in JSON: null where none is known.
+/// The blows' energy as a table's cell.
 std::string energyCell(const SessionErrors& errors, int digits);
-std::string energyJson(const SessionErrors& errors);
 
 /// Judged from 3 s after the start to 3 s before the end, without the two turns after each drop-out.
 SessionErrors judge(const SessionRun& run, const simulation::Session& session,
@@ -139,19 +131,8 @@ SessionErrors judge(const SessionRun& run, const simulation::Session& session,
 SessionErrors judgeAtStamps(const SessionRun& run, const simulation::Session& session,
                             const simulation::MachineSettings& machine, double shift);
 
-struct SessionRow {
-  double rate{};  ///< rate of crank samples [Hz]
-  int counts{};   ///< counts of the encoder per revolution
-  bool speed{};   ///< speeds are measured too
-  SessionErrors errors;
-};
-
-/// Simulated working sessions of the given hammer (seeded: the same on every run), some 20 s of computing.
-std::vector<SessionRow> sessionTable(const Settings& settings);
-
-/// Rows as a table in Markdown.
-std::string markdown(const std::vector<SessionRow>& rows);
-/// Rows as a JSON array of objects, errors as parts of one.
-std::string json(const std::vector<SessionRow>& rows);
+/// Errors by sample rate and encoder: simulated working sessions of the given hammer (seeded: the same on every run),
+/// some 20 s of computing.
+Table sessionTable(const Settings& settings);
 
 }  // namespace hammer_loads::accuracy

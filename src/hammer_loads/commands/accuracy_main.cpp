@@ -15,10 +15,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr char kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ", kBoom[] = "\"boom\": ",
-               kElastic[] = "\"elastic\": ", kDrawn[] = "\"drawings\": ", kBlow[] = "\"blow\": ",
-               kScene[] = "\"scene\": ";
-
 constexpr int kDrawings = 50;
 
 /// The settings for machines whose zero is known as well as `calibrate` finds it.
@@ -27,74 +23,78 @@ Settings withKnownZero(Settings settings) {
   return settings;
 }
 
-std::string stated(const accuracy::LifeFigure& f) { return format("%.1f, %.1f %%", 100.0 * f.own, 100.0 * f.common); }
-std::string cells(const accuracy::LifeFigure& f) {
-  if (std::isnan(f.error)) return " withheld | |";
-  return format(" %+.1f %% | ", 100.0 * f.error) + stated(f) + " |";
-}
+std::string stated(const accuracy::LifeFigure& f) { return accuracy::percents(1, {f.own, f.common}); }
 
-/// Errors of the damage-equivalent ranges, on which fatigue is judged, as a table in Markdown: hull force z, the worst
-/// joint's torque and bending at the worst cut, by the machine and its sensors. For machines with an elastic connecting
-/// rod, at levels linkage and elastic, hull force z alone.
-std::string lifeMarkdown(const std::vector<accuracy::BoomRow>& boom, const std::vector<accuracy::ElasticRow>& elastic) {
-  std::string text =
-      "| machine | sensors | hull force z | stated: of revolutions, of constants | joint torque | stated | bending | "
-      "stated |\n|---|---|---|---|---|---|---|---|\n";
-  for (const accuracy::BoomRow& r : boom)
-    text += "| " + r.machine + " | " + r.sensors + " |" + cells(r.life_force) + cells(r.life_torque) +
-            cells(r.life_section) + "\n";
+/// Errors of the damage-equivalent ranges, on which fatigue is judged: hull force z, the worst joint's torque and
+/// bending at the worst cut, by the machine and its sensors. For machines with an elastic connecting rod, at levels
+/// linkage and elastic, hull force z alone.
+accuracy::Table lifeTable(const std::vector<accuracy::BoomLife>& boom,
+                          const std::vector<accuracy::ElasticRow>& elastic) {
+  accuracy::Table table(4);
+  const auto add = [&](const std::vector<std::string>& cells) {
+    const char* headers[] = {"machine",      "sensors", "hull force z", "stated: of revolutions, of constants",
+                             "joint torque", "stated",  "bending",      "stated"};
+    table.beginRow();
+    for (std::size_t i = 0; i < std::size(headers); ++i) table.cell(headers[i], i < cells.size() ? cells[i] : "");
+  };
+  for (const accuracy::BoomLife& r : boom) {
+    std::vector<std::string> cells{r.machine, r.sensors};
+    for (const accuracy::LifeFigure& f : {r.force, r.torque, r.section}) {
+      const bool withheld = std::isnan(f.error);
+      cells.push_back(withheld ? "withheld" : format("%+.1f %%", 100.0 * f.error));
+      cells.push_back(withheld ? "" : stated(f));
+    }
+    add(cells);
+  }
   for (const accuracy::ElasticRow& r : elastic) {
     const accuracy::LifeFigure &life = r.errors.life, &with_touch = r.errors.life_with_touch;
-    if (r.level != Level::kRocker)
-      text += format("| %s, level %s | none | %+.1f %%; with the touch %+.1f %% | %s | | | | |\n", r.machine.c_str(),
-                     nameOf(r.level), 100.0 * life.error, 100.0 * with_touch.error, stated(life).c_str());
+    if (r.level == Level::kRocker) continue;
+    add({r.machine + ", level " + nameOf(r.level), "none",
+         format("%+.1f %%; with the touch %+.1f %%", 100.0 * life.error, 100.0 * with_touch.error), stated(life)});
   }
-  return text +
-         "| *others: towers of wind turbines, simulated* | | | | | | 5 to 10 % | |\n"
-         "| *others: measured; corrected in the field* | | | | | | 10 to 15 %; below 5 % | |\n";
+  add({"*others: towers of wind turbines, simulated*", "", "", "", "", "", "5 to 10 %"});
+  add({"*others: measured; corrected in the field*", "", "", "", "", "", "10 to 15 %; below 5 %"});
+  return table;
 }
 
 /// Prints the tables; the same as the members of a JSON object.
 std::string printTables(const Settings& settings, const std::string& only) {
+  const bool all = only.empty();
   const Settings known = withKnownZero(settings);
-  if (only == "drawings") {
-    const auto drawings = accuracy::summary(accuracy::drawingTable(known, kDrawings));
-    std::cout << accuracy::markdown(drawings);
-    return kDrawn + accuracy::json(drawings);
+  std::vector<std::string> members;
+  bool first = true;
+  const auto member = [&](const char* key, const std::string& json) {
+    members.push_back(format("\"%s\": ", key) + json);
+  };
+  const auto print = [&](const char* title, const accuracy::Table& table) {
+    std::cout << (first ? "" : "\n") << (all ? format("### %s\n\n", title) : "") << table.markdown();
+    first = false;
+  };
+  const auto show = [&](const char* title, const char* key, const accuracy::Table& table) {
+    print(title, table), member(key, table.json());
+  };
+  std::optional<accuracy::Table> sessions;
+  if (all) {
+    sessions = accuracy::sessionTable(settings);
+    member("sessions", sessions->json());
+    show("Simulated machines with sensor flaws", "machines", accuracy::machineTable(settings));
   }
-  if (only == "observer") {
-    std::cout << accuracy::markdown(accuracy::observerTable());
-    return "";
+  if (all || only == "drawings")
+    show("Tolerances of the hammer file", "drawings", accuracy::drawingTable(known, kDrawings));
+  std::vector<accuracy::ElasticRow> elastic;
+  if (all || only == "elastic" || only == "life") elastic = accuracy::elasticTable(known);
+  if (all || only == "elastic") {
+    show("Elastic connecting rod", "elastic", accuracy::tableOf(elastic));
+    show("Choice of the level", "scene", accuracy::sceneTable(known, elastic));
+    member("blow", accuracy::blowTrace(known));
   }
-  if (only == "life") {
-    std::cout << lifeMarkdown(accuracy::boomTable(), accuracy::elasticTable(known));
-    return "";
-  }
-  if (only == "elastic") {
-    const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(known);
-    std::cout << accuracy::markdown(elastic);
-    const std::vector<accuracy::SceneRow> scene = accuracy::sceneTable(known, elastic);
-    std::cout << "\n" << accuracy::markdown(scene);
-    return kElastic + accuracy::json(elastic) + ",\n" + kScene + accuracy::json(scene) + ",\n" + kBlow +
-           accuracy::json(accuracy::blowTrace(known));
-  }
-  const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
-  const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
-  std::cout << "### Simulated machines with sensor flaws\n\n" << accuracy::markdown(machines);
-  const auto drawings = accuracy::summary(accuracy::drawingTable(known, kDrawings));
-  std::cout << "\n### Tolerances of the hammer file\n\n" << accuracy::markdown(drawings);
-  const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(known);
-  std::cout << "\n### Elastic connecting rod\n\n" << accuracy::markdown(elastic);
-  const std::vector<accuracy::SceneRow> scene = accuracy::sceneTable(known, elastic);
-  std::cout << "\n### Choice of the level\n\n" << accuracy::markdown(scene);
-  const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
-  std::cout << "\n### Boom loads\n\n" << accuracy::markdown(boom);
-  std::cout << "\n### Comparison with KDL's momentum observer\n\n" << accuracy::markdown(accuracy::observerTable());
-  std::cout << "\n### Damage-equivalent ranges\n\n" << lifeMarkdown(boom, elastic);
-  std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
-  return kSessions + accuracy::json(sessions) + ",\n" + kMachines + accuracy::json(machines) + ",\n" + kDrawn +
-         accuracy::json(drawings) + ",\n" + kBoom + accuracy::json(boom) + ",\n" + kElastic + accuracy::json(elastic) +
-         ",\n" + kScene + accuracy::json(scene) + ",\n" + kBlow + accuracy::json(accuracy::blowTrace(known));
+  std::optional<accuracy::BoomTable> boom;
+  if (all || only == "life") boom = accuracy::boomTable();
+  if (all) show("Boom loads", "boom", boom->errors);
+  if (all || only == "observer") print("Comparison with KDL's momentum observer", accuracy::observerTable());
+  if (all || only == "life") print("Damage-equivalent ranges", lifeTable(boom->life, elastic));
+  if (all) print("Clean sessions", *sessions);
+  return joined(members, ",\n");
 }
 
 int run(int argc, const char* const* argv) {
@@ -116,7 +116,7 @@ int run(int argc, const char* const* argv) {
     settings->pipeline.hull_motion = HullMotionSource::kFixed;
   std::optional<OutputFile> file;  // taken before the computing, which takes a minute
   if (!json_file.empty()) {
-    const auto keep = keepUnlessItBegins({std::string("{") + kSessions, std::string("{") + kElastic},
+    const auto keep = keepUnlessItBegins({"{\"sessions\": ", "{\"drawings\": ", "{\"elastic\": "},
                                          "it holds no figures of this command");
     Checked<OutputFile> made = OutputFile::make({json_file, {}, force, keep});
     if (!made.value) return fail(made.problems);
