@@ -22,13 +22,10 @@ inline simulation::MachineSettings atWork(double seconds, double rate) {
 
 inline std::vector<calibration::RecordedSample> recorded(const simulation::MachineSettings& s) {
   const simulation::Session session = simulation::recordSession(s);
-  const simulation::WorkingMachine machine(s);
   std::vector<calibration::RecordedSample> samples;
   for (const simulation::CrankReading& reading : session.crank) {
     const double time = 1e-9 * static_cast<double>(reading.stamp - s.start_stamp);
-    const double pitch = machine.hullPitch(std::max(time, 0.0));
-    samples.push_back(
-        {time, reading.angle, reading.speed, {s.gravity * std::sin(pitch), -s.gravity * std::cos(pitch)}});
+    samples.push_back({time, reading.angle, reading.speed, simulation::hullGravity(s, std::max(time, 0.0))});
   }
   return samples;
 }

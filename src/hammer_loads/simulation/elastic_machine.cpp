@@ -33,17 +33,6 @@ ElasticMachine::ElasticMachine(const MachineSettings& settings)
   view_ = now_;
 }
 
-double ElasticMachine::pitch(double time) const noexcept {
-  double pitch = 0.0;
-  for (std::size_t i = 1; i < settings_.boom.size(); ++i) pitch += positionOf(settings_.boom[i], time);
-  return pitch;
-}
-
-Gravity ElasticMachine::gravity(double time) const noexcept {
-  const double at = pitch(time);
-  return {settings_.gravity * std::sin(at), -settings_.gravity * std::cos(at)};
-}
-
 StruckTool::Striker ElasticMachine::striker(const State& y) const noexcept {
   const std::complex<double> rocker = ElasticLinks::rockerAt(y[kRocker]);
   return {links_.depth(rocker), links_.depthSlope(rocker) * y[kRockerSpeed]};
@@ -51,7 +40,7 @@ StruckTool::Striker ElasticMachine::striker(const State& y) const noexcept {
 
 ElasticMachine::Acting ElasticMachine::acting(const State& y, double time) const noexcept {
   Acting a;
-  const Gravity g = gravity(time);
+  const Gravity g = hullGravity(settings_, time);
   const TwoBodies w = speeds(y);
   const ElasticLinks::View view = links_.at(angles(y), w);
   const double rate = view.rod.rate(w);
@@ -147,15 +136,10 @@ void ElasticMachine::advanceTo(double time) {
 }
 
 void ElasticMachine::accept(const State& next, const State& slope, double dt, int contacts) {
-  const double force_before = slope_[kImpulseZ], force = slope[kImpulseZ];
-  if (force_before <= 0.0 && force > 0.0) {
-    const double part = dt * force_before / (force_before - force);
-    current_.lobe = now_[kImpulseZ] + 0.5 * force_before * part;
-  }
   const bool put_back = now_[kRocker] <= 1.0 && next[kRocker] > 1.0;  // rocker far from the tool, on its way up
   now_ = next, slope_ = slope, contacts_ = contacts;
   time_ += dt;
-  current_.peak = std::max(current_.peak, force);
+  current_.peak = std::max(current_.peak, slope_[kImpulseZ]);
   if (now_[kCrankSpeed] < 0.0) current_.whole = false;
   passDeadCentre();
   followBlow();
@@ -181,9 +165,8 @@ CrankTruth ElasticMachine::truth() const noexcept {
   if (t.angle >= kTwoPi) t.angle = std::nextafter(kTwoPi, 0.0);
   t.speed = t.motor_speed = view_[kCrankSpeed];
   t.acceleration = a.acceleration[0];
-  t.net_torque = a.net_torque;
   t.pressure = view_[kPressure];
-  t.hull_pitch = pitch(asked_);
+  t.hull_pitch = hullPitch(settings_, asked_);
   t.load = a.load;
   t.drive_reaction_y = -settings_.hammer.drive_reaction_ratio * settings_.drive.inertia * a.acceleration[0];
   t.rocker_angle = view_[kRocker], t.rocker_speed = view_[kRockerSpeed];
@@ -215,9 +198,8 @@ void ElasticMachine::followBlow() {
   begun->turn_peak_force_z = current_.peak;
   begun->turn_impulse_x = now_[kImpulseX] - current_.impulse_x;
   begun->turn_impulse_z = now_[kImpulseZ] - current_.impulse_z;
-  begun->last_lobe_impulse_z = now_[kImpulseZ] - current_.lobe;
   begun->whole_turn = current_.whole;
-  current_ = {time_, now_[kImpulseX], now_[kImpulseZ], now_[kImpulseZ], slope_[kImpulseZ], true};
+  current_ = {time_, now_[kImpulseX], now_[kImpulseZ], slope_[kImpulseZ], true};
 }
 
 /// Resets the tool, as the hull follows or the tool slides back; its remaining energy is counted as the rock's.

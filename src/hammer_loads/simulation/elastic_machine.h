@@ -82,8 +82,6 @@ class ElasticMachine {
   static TwoBodies speeds(const State& y) noexcept { return {y[kCrankSpeed], y[kRockerSpeed]}; }
   static ToolState tool(const State& y) noexcept { return {y[kToolWay], y[kToolSpeed], y[kYielded]}; }
   StruckTool::Striker striker(const State& y) const noexcept;
-  Gravity gravity(double time) const noexcept;
-  double pitch(double time) const noexcept;
   Acting acting(const State& y, double time) const noexcept;
   void rate(const State& y, State& slope, double time) const noexcept;
   int contacts(const State& y) const noexcept;
@@ -110,7 +108,6 @@ class ElasticMachine {
 
   struct Turn {
     double start{}, impulse_x{}, impulse_z{};  ///< [s], [N s]
-    double lobe{};                             ///< impulse where Fz last rose through zero [N s]
     double peak{};                             ///< [N]
     bool whole{};
   } current_;

@@ -38,11 +38,11 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
   takeMovingPartsOffTheHull();
   now_ = heldAt(0.0);
   held_rocker_ = rockerAt(now_);
-  now_.v[3] = now_.v[4] = 0.0;
+  now_.v()[3] = now_.v()[4] = 0.0;
   stiffenLinks();
   now_.before_blow = machine.start_angle > kPi;
-  now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
-  now_.x[4] = rockerOf(machine.start_angle);
+  now_.x()[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
+  now_.x()[4] = rockerOf(machine.start_angle);
   step_ = machine_.on_boom.step;
   if (const double presliding = machine_.on_boom.seals.presliding; presliding > 0.0)
     step_ = std::min(step_, presliding / kFastRod);
@@ -69,9 +69,9 @@ void HammerOnBoom::takeMovingPartsOffTheHull() {
   PlanePoint at = 0.0;
   double inertia = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
-    held.x[3] = (i + 0.5) * kTwoPi / kPlaces - kPi;
-    held.before_blow = held.x[3] < 0.0;
-    held.x[4] = rockerOf(held.before_blow ? held.x[3] + kTwoPi : held.x[3]);
+    held.x()[3] = (i + 0.5) * kTwoPi / kPlaces - kPi;
+    held.before_blow = held.x()[3] < 0.0;
+    held.x()[4] = rockerOf(held.before_blow ? held.x()[3] + kTwoPi : held.x()[3]);
     const Body rocker = bodies(held).body[3];
     const PlanePoint place = (rocker.place - joint) * to_hull;
     mass = rocker.mass, inertia = rocker.inertia;
@@ -106,13 +106,13 @@ Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
 HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
   State s;
   s.time = time;
-  s.x.tail<2>().setZero(), s.v.tail<2>().setZero();
+  s.x().tail<2>().setZero(), s.v().tail<2>().setZero();
   for (int k = 0; k < 3; ++k) {
     const JointMotion& joint = machine_.boom[static_cast<std::size_t>(k + 1)];
-    s.x[k] = positionOf(joint, time), s.v[k] = velocityOf(joint, time);
+    s.x()[k] = positionOf(joint, time), s.v()[k] = velocityOf(joint, time);
   }
-  s.x[3] = 0.5 * kPi, s.v[3] = 0.0;
-  s.x[4] = rockerOf(s.x[3]), s.v[4] = 0.0;
+  s.x()[3] = 0.5 * kPi, s.v()[3] = 0.0;
+  s.x()[4] = rockerOf(s.x()[3]), s.v()[4] = 0.0;
   return s;
 }
 
@@ -125,8 +125,8 @@ HammerOnBoom::Hold HammerOnBoom::holdAt(double time) const {
 
 double HammerOnBoom::angleBefore(const State& s, std::size_t joint) {
   double angle = 0.0;
-  for (std::size_t k = 0; k < joint; ++k) angle += s.x[static_cast<int>(k)];
-  for (std::size_t k = 0; k + 1 < joint; ++k) angle += s.x[5 + static_cast<int>(k)];
+  for (std::size_t k = 0; k < joint; ++k) angle += s.x()[static_cast<int>(k)];
+  for (std::size_t k = 0; k + 1 < joint; ++k) angle += s.x()[5 + static_cast<int>(k)];
   return angle;
 }
 
@@ -149,7 +149,7 @@ HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, co
   all.joint[0] = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const OilBoomLink& link = links[k];
-    all.angle[k] = (k == 0 ? 0.0 : bentAngle(s, k - 1)) + s.x[static_cast<int>(k)];
+    all.angle[k] = (k == 0 ? 0.0 : bentAngle(s, k - 1)) + s.x()[static_cast<int>(k)];
     const PlanePoint turned = all.hull_turned = turnedBy(all.angle[k]);
     const PlanePoint middle = all.joint[k] + turned * middleOf(k);
     if (k < 2) all.middle[k] = middle;
@@ -219,8 +219,9 @@ HammerOnBoom::Coordinates HammerOnBoom::force(const State& s, const Bodies& all,
     Q += rockForce(at) * at.lift;
   }
   if (bends())
-    Q.tail<2>() -= hold.bent + link_stiffness_.cwiseProduct(s.x.tail<2>()) + link_damping_.cwiseProduct(s.v.tail<2>());
-  Q[3] += netTorque(machine_.drive, s.pressure, s.v[3]);
+    Q.tail<2>() -=
+        hold.bent + link_stiffness_.cwiseProduct(s.x().tail<2>()) + link_damping_.cwiseProduct(s.v().tail<2>());
+  Q[3] += netTorque(machine_.drive, s.y[kPressure], s.v()[3]);
   if (elastic_) Q += elasticForce(s);
   return Q;
 }
@@ -233,16 +234,16 @@ HammerOnBoom::Coordinates HammerOnBoom::inertiaOfSpeeds(const State& s, const Bo
   double rate = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Body& link = all.body[k];
-    rate += s.v[static_cast<int>(k)];
+    rate += s.v()[static_cast<int>(k)];
     const PlanePoint a = of_joint - rate * rate * (link.place - all.joint[k]);
     Q += link.mass * (a.real() * link.x + a.imag() * link.z);
     const int bend = 5 + static_cast<int>(k);
-    if (k < 2) of_joint -= rate * rate * (all.middle[k] - all.joint[k]), rate += s.v[bend];
+    if (k < 2) of_joint -= rate * rate * (all.middle[k] - all.joint[k]), rate += s.v()[bend];
     of_joint -= rate * rate * (all.joint[k + 1] - (k < 2 ? all.middle[k] : all.joint[k]));
   }
   const Body& r = all.body[3];
   const int k = rockerIndex();
-  const double w = s.v[k];
+  const double w = s.v()[k];
   const PlanePoint by_crank(r.x[k], r.z[k]),
       bend = all.hull_turned * inHull(rocker.xi.second, rocker.eta.second, machine_.hammer.rocker_com_angle);
   const PlanePoint a =

@@ -50,8 +50,7 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
 class HammerOnBoom {
  public:
   /// Level rocker, rigid coupling; throws std::invalid_argument when the hammer's linkage is impossible.
-  HammerOnBoom(const MachineSettings& machine, const OilBoom& boom);
-  explicit HammerOnBoom(const MachineSettings& machine) : HammerOnBoom(machine, oilBoomEo2621()) {}
+  explicit HammerOnBoom(const MachineSettings& machine, const OilBoom& boom = oilBoomEo2621());
 
   /// time >= now [s].
   void advanceTo(double time);
@@ -61,23 +60,36 @@ class HammerOnBoom {
   std::vector<BlowTruth> takeBlows();
   /// Natural frequencies at the operator's pose at a time, by the oil alone; lowest first [Hz].
   Eigen::Vector3d frequencies(double time) const;
-  const MachineSettings& settings() const noexcept { return machine_; }
 
  private:
   /// Joints, crank, rocker, bends of boom and arm. Where the rod is rigid the fifth one stays zero, and the crank moves
   /// the rocker; rigid links leave the last two zero.
   using Coordinates = Eigen::Matrix<double, 7, 1>;
   using Inertia = Eigen::Matrix<double, 7, 7>;
+  /// Elements of a state after the coordinates and their speeds.
+  enum Index {
+    kPressure = 14,            // at the motor [Pa]
+    kLeaked,                   // oil leaked in each cylinder, from bore to rod side [m3]
+    kSheared = kLeaked + 3,    // displacement of each cylinder's seals before they slide [m]
+    kTool = kSheared + 3,      // ToolState of an elastic machine; its impulses and energy follow
+    kToolImpulse = kTool + 3,  // since the start [N s]
+    kToolEnergy,               // [J]
+    kRetainerImpulse,          // [N s]
+    kSize
+  };
+  using Vector = Eigen::Matrix<double, kSize, 1>;
   struct State {
     double time{};
     bool before_blow{};
-    bool resting{};     ///< the crank turned back onto the tool and is held at the dead centre, as by a brake
-    Coordinates x, v;   ///< angles of the joints, crank's offset from its nearest dead centre, rocker
-    double pressure{};  ///< at the motor [Pa]
-    Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};   ///< oil leaked in each cylinder, from bore to rod side [m3]
-    Eigen::Vector3d sheared{Eigen::Vector3d::Zero()};  ///< displacement of each cylinder's seals before they slide [m]
-    ToolState tool;                                    ///< tool of an elastic machine; its impulses and energy follow
-    double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
+    bool resting{};  ///< the crank turned back onto the tool and is held at the dead centre, as by a brake
+    Vector y{Vector::Zero()};
+    auto x() { return y.head<7>(); }  ///< angles of the joints, crank's offset from its nearest dead centre, rocker
+    auto x() const { return y.head<7>(); }
+    auto v() { return y.segment<7>(7); }
+    auto v() const { return y.segment<7>(7); }
+    auto leaked() const { return y.segment<3>(kLeaked); }
+    auto sheared() const { return y.segment<3>(kSheared); }
+    ToolState tool() const { return {y[kTool], y[kTool + 1], y[kTool + 2]}; }
   };
   /// A moving body: its place, and what each coordinate does to place and angle.
   struct Body {
@@ -164,11 +176,13 @@ class HammerOnBoom {
   Hold holdBetween(double time) const;
   void advanceElastic(double time);
   void acceptElastic(const State& next);
+  Vector rate(const State& s, const Hold& hold) const;
   State stepped(const State& s, double dt) const;
   double timeToDeadCentre(double dt) const;
   void release();
   void passDeadCentre();
   void blow();
+  void endTurn(BlowTruth& blow);
 
   bool bends() const { return machine_.on_boom.bending_frequency > 0.0; }
   void stiffenLinks();
@@ -180,7 +194,7 @@ class HammerOnBoom {
   /// Angle of the link that ends in a joint, before its middle; bentAngle: of the part beyond the middle.
   static double angleBefore(const State& s, std::size_t joint);
   static double bentAngle(const State& s, std::size_t link) {
-    return angleBefore(s, link + 1) + (link < 2 ? s.x[5 + static_cast<int>(link)] : 0.0);
+    return angleBefore(s, link + 1) + (link < 2 ? s.x()[5 + static_cast<int>(link)] : 0.0);
   }
   PlanePoint middleOf(std::size_t link) const { return link < 2 ? 0.5 * boom_.links[link].to_next : 0.0; }
   static double hullAngle(const State& s) { return angleBefore(s, 3); }

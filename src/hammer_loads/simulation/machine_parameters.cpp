@@ -181,29 +181,21 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   return s;
 }
 
-/// Reports settings that a hull on its boom excludes.
-void checkOnBoom(ParameterReader& reader, const MachineSettings& machine) {
-  if (!machine.on_boom.on) return;
-  if (machine.level != Level::kRocker) reader.addProblem("level: must be rocker with hull_on_boom: true");
+/// Reports settings of a rigid blow with a hull on its boom, or with an elastic rod, whose blow follows from contact.
+void checkBlow(ParameterReader& reader, const MachineSettings& machine) {
+  const bool on_boom = machine.on_boom.on, elastic = machine.rod.stiffness > 0.0;
   const auto mustBeZero = [&](const char* key, double value) {
-    if (value > 0.0) reader.addProblem(format("%s: %.9g, must be 0 with hull_on_boom: true", key, value));
+    for (const auto& [is_on, name] : {std::pair{on_boom, "hull_on_boom: true"}, {elastic, "rod: elastic"}})
+      if (is_on && value > 0.0) reader.addProblem(format("%s: %.9g, must be 0 with %s", key, value, name));
   };
   mustBeZero("coupling_frequency_Hz", machine.drive.coupling_frequency);
   mustBeZero("blow_crank_loss", machine.blow.crank_loss);
   mustBeZero("tool_early_rad", machine.blow.tool_early);
-  mustBeZero("blank_share", machine.blow.blank_share);
-}
-
-/// Reports settings that follow from an elastic rod and the tool's contact, and must not be given.
-void checkElastic(ParameterReader& reader, const MachineSettings& machine) {
-  if (machine.rod.stiffness == 0.0) return;
-  const auto mustBeZero = [&](const char* key, double value) {
-    if (value > 0.0) reader.addProblem(format("%s: %.9g, must be 0 with rod: elastic", key, value));
-  };
-  if (machine.blow.restitution_drawn) reader.addProblem("restitution_drawn: true, must be false with rod: elastic");
-  mustBeZero("coupling_frequency_Hz", machine.drive.coupling_frequency);
-  mustBeZero("blow_crank_loss", machine.blow.crank_loss);
-  mustBeZero("tool_early_rad", machine.blow.tool_early);
+  if (on_boom && machine.level != Level::kRocker) reader.addProblem("level: must be rocker with hull_on_boom: true");
+  if (on_boom && machine.blow.blank_share > 0.0)
+    reader.addProblem(format("blank_share: %.9g, must be 0 with hull_on_boom: true", machine.blow.blank_share));
+  if (elastic && machine.blow.restitution_drawn)
+    reader.addProblem("restitution_drawn: true, must be false with rod: elastic");
 }
 
 JointMotion readJoint(ParameterReader& reader, const std::string& joint) {
@@ -248,8 +240,7 @@ MachineSettings readMachine(ParameterReader& reader) {
   machine.step = reader.number("integration_step_s", "s", kPositive);
   machine.seed = static_cast<std::uint64_t>(reader.integer("seed", "", 0, kLargestSeed));
   readTimes(reader, machine);
-  checkOnBoom(reader, machine);
-  checkElastic(reader, machine);
+  checkBlow(reader, machine);
   return machine;
 }
 

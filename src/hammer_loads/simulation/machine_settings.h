@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/simulation/normal_noise.h"
 
@@ -246,6 +247,11 @@ struct MachineSettings {
   std::int64_t start_stamp{};  ///< header stamp of t = 0 [ns]
   std::uint64_t seed{};        ///< seed of all noise
 };
+
+/// Pitch of a hull whose boom follows the operator exactly, at a time since the start [rad].
+double hullPitch(const MachineSettings& settings, double time) noexcept;
+/// Gravity in the axes of that hull [m/s2].
+Gravity hullGravity(const MachineSettings& settings, double time) noexcept;
 
 /// A hammer MO-100 at 1000 J on an excavator's boom: works from about 2 s until 2 s before the end of 20 s.
 MachineSettings workingMo100();

@@ -14,7 +14,7 @@ double HammerOnBoom::oilOf(std::size_t cylinder) const {
 /// Steady pressures: one chamber carries the steady load, the other has the preload.
 HammerOnBoom::Chambers HammerOnBoom::heldChambers(std::size_t k, const State& held, double weight) const {
   const OilCylinder& c = boom_.cylinders[k];
-  const double steady = -weight / c.arm(held.x[static_cast<int>(k)]), preload = machine_.on_boom.pressures.preload;
+  const double steady = -weight / c.arm(held.x()[static_cast<int>(k)]), preload = machine_.on_boom.pressures.preload;
   const double bore_push = std::max(steady, 0.0) + preload * (steady > 0.0 ? c.rod_area : c.bore_area);
   return {bore_push / c.bore_area, (bore_push - steady) / c.rod_area};
 }
@@ -25,7 +25,7 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held, const Eigen::Vector3d
   for (int j = 0; j < 3; ++j) {
     const auto k = static_cast<std::size_t>(j);
     const OilCylinder& c = boom_.cylinders[k];
-    const double angle = held.x[j], arm = c.arm(angle);
+    const double angle = held.x()[j], arm = c.arm(angle);
     double bore = oilOf(k), rod = bore;
     if (machine_.on_boom.air > 0.0) {
       const Chambers at = heldChambers(k, held, weight[j]);
@@ -41,7 +41,7 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held, const Eigen::Vector3d
 HammerOnBoom::Chambers HammerOnBoom::chambersAt(std::size_t k, double way, double leaked, const Hold& hold) const {
   const OilCylinder& c = boom_.cylinders[k];
   const int j = static_cast<int>(k);
-  const double angle = hold.state.x[j];
+  const double angle = hold.state.x()[j];
   const Chambers held = heldChambers(k, hold.state, hold.weight[j]);
   const ChamberOil oil(oilOf(k), machine_.on_boom.air);
   const double lost = leaked / c.bore_area, won = leaked / c.rod_area;  // in ways of the rod
@@ -57,9 +57,9 @@ double HammerOnBoom::push(std::size_t k, const Chambers& at) const {
 HammerOnBoom::Chambers HammerOnBoom::chambers(std::size_t k, const State& s, const Hold& hold) const {
   const OilCylinder& c = boom_.cylinders[k];
   const int j = static_cast<int>(k);
-  const double way = c.length(s.x[j]) - c.length(hold.state.x[j]), leaked = s.leaked[j];
+  const double way = c.length(s.x()[j]) - c.length(hold.state.x()[j]), leaked = s.leaked()[j];
   const Chambers tight = chambersAt(k, way, leaked, hold);
-  const double side = hold.weight[j] / c.arm(hold.state.x[j]) > 0.0 ? -1.0 : 1.0;  // side of the steady push
+  const double side = hold.weight[j] / c.arm(hold.state.x()[j]) > 0.0 ? -1.0 : 1.0;  // side of the steady push
   const double here = side * push(k, tight), play = side * machine_.on_boom.pin_play;
   if (!(here < 0.0) || play == 0.0) return tight;
   const double beyond = side * push(k, chambersAt(k, way - play, leaked, hold));
@@ -81,13 +81,13 @@ Eigen::Vector3d HammerOnBoom::leak(const State& s, const Hold& hold) const {
 
 /// BY the oil ON the joints [N m].
 Eigen::Vector3d HammerOnBoom::oil(const State& s, const Hold& hold) const {
-  const Coordinates off = s.x - hold.state.x, rate = s.v - hold.state.v;
+  const Coordinates off = s.x() - hold.state.x(), rate = s.v() - hold.state.v();
   const Eigen::Vector3d damped = damping_ * rate.head<3>();
   if (!machine_.on_boom.isPlain()) {
     Eigen::Vector3d torque;
     for (std::size_t k = 0; k < 3; ++k) {
       const int j = static_cast<int>(k);
-      torque[j] = boom_.cylinders[k].arm(s.x[j]) * push(k, chambers(k, s, hold)) - damped[j];
+      torque[j] = boom_.cylinders[k].arm(s.x()[j]) * push(k, chambers(k, s, hold)) - damped[j];
     }
     return torque;
   }
@@ -101,10 +101,10 @@ Eigen::Vector3d HammerOnBoom::seals(const State& s, const Eigen::Vector3d& oil) 
   if (!seal.rubs()) return torque;
   for (int k = 0; k < 3; ++k) {
     const OilCylinder& c = boom_.cylinders[static_cast<std::size_t>(k)];
-    const double arm = c.arm(s.x[k]), speed = arm * s.v[k];
+    const double arm = c.arm(s.x()[k]), speed = arm * s.v()[k];
     const double force =
         seal.constant * SealSettings::kReliefPressure * c.bore_area + seal.friction * std::abs(oil[k] / arm);
-    const double way = seal.presliding > 0.0 ? s.sheared[k] / seal.presliding
+    const double way = seal.presliding > 0.0 ? s.sheared()[k] / seal.presliding
                                              : seal.nearStandstill(speed) * std::tanh(speed / seal.smooth_speed);
     torque[k] = -arm * force * way;
   }
@@ -117,8 +117,8 @@ Eigen::Vector3d HammerOnBoom::shear(const State& s) const {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   if (!(seal.presliding > 0.0)) return rate;
   for (int k = 0; k < 3; ++k) {
-    const double speed = boom_.cylinders[static_cast<std::size_t>(k)].arm(s.x[k]) * s.v[k];
-    rate[k] = speed - std::abs(speed) * s.sheared[k] / (seal.presliding * seal.nearStandstill(speed));
+    const double speed = boom_.cylinders[static_cast<std::size_t>(k)].arm(s.x()[k]) * s.v()[k];
+    rate[k] = speed - std::abs(speed) * s.sheared()[k] / (seal.presliding * seal.nearStandstill(speed));
   }
   return rate;
 }
@@ -136,8 +136,8 @@ void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
     const OilCylinder& c = boom_.cylinders[k];
     const Chambers at =
         machine_.on_boom.isPlain() ? heldChambers(k, hold.state, hold.weight[j]) : chambers(k, now_, hold);
-    const double rest = torque[j] / c.arm(now_.x[j]) - push(k, at);
-    const double bore_share = c.boreShare(hold.state.x[j]), rod_share = c.rodShare(hold.state.x[j]);
+    const double rest = torque[j] / c.arm(now_.x()[j]) - push(k, at);
+    const double bore_share = c.boreShare(hold.state.x()[j]), rod_share = c.rodShare(hold.state.x()[j]);
     const double way = rest / (c.bore_area * bore_share + c.rod_area * rod_share);
     s.bore_pressure[k] = at.bore + bore_share * way;
     s.rod_pressure[k] = at.rod - rod_share * way;

@@ -27,7 +27,7 @@ HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
   for (std::size_t k = 0; k < turns(); ++k) {
     const int j = turnIndex(k);
     foot.lift[j] = along(-kI * (place - turnPlace(s, k)));
-    foot.speed += foot.lift[j] * s.v[j] - along(-kI * (held_place - turnPlace(held, k))) * held.v[j];
+    foot.speed += foot.lift[j] * s.v()[j] - along(-kI * (held_place - turnPlace(held, k))) * held.v()[j];
   }
   return foot;
 }
@@ -45,7 +45,7 @@ void HammerOnBoom::standOnRock() {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return;
   const Eigen::Vector3d lift = foot(hold_.state, hold_.state).lift.head<3>();
-  now_.x.head<3>() += rock.hold_down_force * lift.cwiseQuotient(hold_.stiffness);
+  now_.x().head<3>() += rock.hold_down_force * lift.cwiseQuotient(hold_.stiffness);
   const Eigen::Matrix3d M = massMatrix(heldBodies(hold_.state)).topLeftCorner<3, 3>();
   const double mass = 1.0 / lift.dot(M.ldlt().solve(lift));
   step_ = std::min(step_, kTwoPi * std::sqrt(mass / rock.stiffness) / kStepsPerSwing);
@@ -82,11 +82,11 @@ void HammerOnBoom::blow() {
   }
   const PlanePoint to_hull = std::conj(turnedBy(hullAngle(now_)));
   const PlanePoint striker = jointPlace(now_, 3) - machine_.hammer.striking_distance / to_hull;
-  Coordinates J = Coordinates::Zero(), v = now_.v, loop = J;  // of the striking point along the tool; no speed along
-                                                              // the loop is left by the linkage
+  Coordinates J = Coordinates::Zero(), v = now_.v(), loop = J;  // of the striking point along the tool; no speed along
+                                                                // the loop is left by the linkage
   for (std::size_t j = 0; j < turns(); ++j) J[turnIndex(j)] = (to_hull * -kI * (striker - turnPlace(now_, j))).imag();
   J[4] = machine_.hammer.striking_distance;
-  v[4] = u_before * now_.v[3];
+  v[4] = u_before * now_.v()[3];
   loop[3] = u_after, loop[4] = -1.0;
   const Eigen::LDLT<Inertia> inverse = M.ldlt();
   const Coordinates by_tool = inverse.solve(J), by_loop = inverse.solve(loop);
@@ -101,16 +101,21 @@ void HammerOnBoom::blow() {
   truth.crank_speed = v[3];
   truth.strike = {v[4], left[4],  -P * 0.5 * J.dot(v + left),
                   P,    after[3], 0.5 * (left.dot(M * left) - after.dot(M * after))};
-  truth.turn_period = now_.time - last_blow_;
-  truth.turn_peak_force_z = truth.turn_impulse_x = truth.turn_impulse_z = truth.last_lobe_impulse_z = kNaN;
-  truth.whole_turn = whole_turn_;
+  endTurn(truth);
   blows_.push_back(truth);
-  now_.v = after;
-  now_.v[4] = 0.0;
+  now_.v() = after;
+  now_.v()[4] = 0.0;
   now_.before_blow = false;
+  ++turn_;
+}
+
+/// Ends the revolution at a blow that begins now.
+void HammerOnBoom::endTurn(BlowTruth& blow) {
+  blow.turn_period = now_.time - last_blow_;
+  blow.turn_peak_force_z = blow.turn_impulse_x = blow.turn_impulse_z = kNaN;
+  blow.whole_turn = whole_turn_;
   last_blow_ = now_.time;
   whole_turn_ = true;
-  ++turn_;
 }
 
 }  // namespace hammer_loads::simulation

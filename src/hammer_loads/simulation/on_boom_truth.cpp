@@ -13,7 +13,7 @@ constexpr double kInstant = 2e-5;  // step of differences in time [s]
 
 HammerOnBoom::State HammerOnBoom::along(const State& s, const Coordinates& a, double dt) const {
   State to = s;
-  to.x += dt * s.v + 0.5 * dt * dt * a;
+  to.x() += dt * s.v() + 0.5 * dt * dt * a;
   return to;
 }
 
@@ -39,7 +39,7 @@ Load HammerOnBoom::loadOf(const Coordinates& a, const Moments& m, const Links& l
   for (std::size_t k = first; k < 4; ++k) {
     const PlanePoint acceleration = (later.body[k].place - 2.0 * now.body[k].place + sooner.body[k].place) / (h * h);
     const PlanePoint f = -now.body[k].mass * (acceleration + kI * machine_.gravity);
-    const double spin = now.body[k].turn.dot(a) + (later.body[k].turn - sooner.body[k].turn).dot(now_.v) / (2.0 * h);
+    const double spin = now.body[k].turn.dot(a) + (later.body[k].turn - sooner.body[k].turn).dot(now_.v()) / (2.0 * h);
     force += f;
     torque += momentOf(now.body[k].place - about, f) - now.body[k].inertia * spin;
   }
@@ -74,7 +74,7 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Mom
                pivot = k > cut.link && isBeyond(k - 1, to_joint + c.linkage.pivot), rod = isBeyond(k, c.rod);
     const bool guided = c.linkage.guide > 0.0;
     if (base == rod && (!guided || pivot == rod)) continue;
-    const double angle = now_.x[static_cast<int>(k)], push = t.hold[static_cast<int>(k)] / c.arm(angle);
+    const double angle = now_.x()[static_cast<int>(k)], push = t.hold[static_cast<int>(k)] / c.arm(angle);
     const PlanePoint before = turnedBy(k == 0 ? 0.0 : bentAngle(now_, k - 1));
     const OilCylinder::Pins pins = c.pins(angle);
     const auto add = [&](PlanePoint pin, PlanePoint share) {
@@ -91,12 +91,12 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Mom
 
 OnBoomSensors HammerOnBoom::sensors(const Hold& hold, const Coordinates& a) const {
   OnBoomSensors s;
-  s.angles = now_.x.head<3>(), s.rates = now_.v.head<3>();
+  s.angles = now_.x().head<3>(), s.rates = now_.v().head<3>();
   const PlanePoint later = imuPlace(along(now_, a, kInstant)), sooner = imuPlace(along(now_, a, -kInstant));
   const PlanePoint acceleration = (later - 2.0 * imuPlace(now_) + sooner) / (kInstant * kInstant);
   const double axes = hullAngle(now_) + machine_.on_boom.imu.pitch;
   const PlanePoint felt = (acceleration + kI * machine_.gravity) * std::conj(turnedBy(axes));
-  s.imu_x = felt.real(), s.imu_z = felt.imag(), s.imu_rate = hullTurning(now_.v);
+  s.imu_x = felt.real(), s.imu_z = felt.imag(), s.imu_rate = hullTurning(now_.v());
   readCylinders(hold, s);
   return s;
 }
@@ -112,12 +112,11 @@ OnBoomTruth HammerOnBoom::truth() const {
   const Coordinates a = acceleration(now_, hold);
   t.time = now_.time;
   t.turn = turn_;
-  t.angle = now_.before_blow ? now_.x[3] + 2.0 * kPi : now_.x[3];
+  t.angle = now_.before_blow ? now_.x()[3] + 2.0 * kPi : now_.x()[3];
   if (t.angle >= kTwoPi) t.angle = std::nextafter(kTwoPi, 0.0);
-  t.speed = t.motor_speed = now_.v[3];
+  t.speed = t.motor_speed = now_.v()[3];
   t.acceleration = a[3];
-  t.pressure = now_.pressure;
-  t.net_torque = netTorque(machine_.drive, now_.pressure, now_.v[3]);
+  t.pressure = now_.y[kPressure];
   t.hull_pitch = hullAngle(now_);
   const Moments moments = momentsAbout(a);
   t.load = loadOf(a, moments, boom_.links, 3, jointPlace(now_, 3), t.hull_pitch);
@@ -125,16 +124,16 @@ OnBoomTruth HammerOnBoom::truth() const {
   t.load.torque_y -= t.drive_reaction_y;
   if (elastic_) {
     const StruckTool::Answer answer = struck(now_);
-    const RodStretch rod = elastic_->links.rod({now_.x[3], now_.x[4]});
+    const RodStretch rod = elastic_->links.rod({now_.x()[3], now_.x()[4]});
     t.tool_force = answer.tool, t.retainer_force = answer.retainer;
-    t.rod_force = -elastic_->rod.tension(rod.stretch, rod.rate({now_.v[3], now_.v[4]}));
-    t.rocker_angle = now_.x[4], t.rocker_speed = now_.v[4];
+    t.rod_force = -elastic_->rod.tension(rod.stretch, rod.rate({now_.v()[3], now_.v()[4]}));
+    t.rocker_angle = now_.x()[4], t.rocker_speed = now_.v()[4];
     t.load.force_z += t.tool_force;
     t.load.torque_y +=
         momentOf((strikingPlace(now_) - jointPlace(now_, 3)) * std::conj(turnedBy(t.hull_pitch)), t.tool_force * kI);
   }
   static_cast<OnBoomSensors&>(t) = sensors(hold, a);
-  t.displacement = t.angles - hold.state.x.head<3>();
+  t.displacement = t.angles - hold.state.x().head<3>();
   t.hold = holding(now_, hold);
   t.rock = rockLoad(hold.state);
   for (std::size_t i = 0; i < t.cut.size(); ++i) t.cut[i] = cutLoad(t, a, moments, boom_.cuts[i]);

@@ -39,12 +39,9 @@ bool stampsAreInstants(const CrankSensorSettings& sensor) noexcept {
   return sensor.stamp_noise == 0.0 && sensor.driver.areExact() && sensor.stamp_step == 0.0 && sensor.burst <= 1;
 }
 
-/// Reading of the encoder by its own and the crank's angle, over many revolutions.
-struct Encoded {
-  double angle, speed;
-};
-
-Encoded encoded(const CrankSensorSettings& sensor, double angle, double speed) noexcept {
+/// Reading of the encoder before any filter.
+EncoderReading encoded(const CrankSensorSettings& sensor, const CrankTruth& truth) noexcept {
+  const double whole = kTwoPi * static_cast<double>(truth.turn), angle = whole + truth.angle + truth.twist;
   double seen = angle, slope = 1.0;
   for (int n = 1; n <= 2; ++n) {
     const Eccentricity& e = sensor.eccentricity[n - 1];
@@ -52,12 +49,7 @@ Encoded encoded(const CrankSensorSettings& sensor, double angle, double speed) n
     slope += n * e.amount * std::cos(n * angle + e.phase);
   }
   const double factor = sensor.direction * sensor.ratio;
-  return {sensor.zero + factor * seen, factor * slope * speed};
-}
-
-Encoded encodedAt(const CrankSensorSettings& sensor, const CrankTruth& truth) noexcept {
-  const double whole = kTwoPi * static_cast<double>(truth.turn);
-  return encoded(sensor, whole + truth.angle + truth.twist, truth.motor_speed);
+  return {sensor.zero + factor * seen, factor * slope * truth.motor_speed};
 }
 
 }  // namespace
@@ -103,13 +95,16 @@ CrankTruth SessionStream::truth() const {
   return std::visit([](const auto& machine) { return CrankTruth(machine.truth()); }, machine_);
 }
 
+void SessionStream::advanceMachine(double time) {
+  std::visit([time](auto& machine) { machine.advanceTo(time); }, machine_);
+}
+
 /// Reads the encoder as the controller does, up to `time`.
 void SessionStream::readTask(double time) {
   const double period = settings_.crank.task_period;
   for (double next; period > 0.0 && (next = static_cast<double>(tasks_) * period) <= time; ++tasks_) {
-    std::visit([&](auto& machine) { machine.advanceTo(next); }, machine_);
-    const Encoded now = encodedAt(settings_.crank, truth());
-    task_.push_back({now.angle, now.speed});
+    advanceMachine(next);
+    task_.push_back(encoded(settings_.crank, truth()));
     if (task_.size() > static_cast<std::size_t>(settings_.crank.task_mean)) task_.pop_front();
   }
 }
@@ -118,9 +113,9 @@ void SessionStream::moveTo(double time) {
   readTask(time);
   while ((angle_.isOn() || speed_.isOn() || hoses_[0].isOn()) && sensor_time_ < time) {
     sensor_time_ = std::min(time, sensor_time_ + kSensorStep);
-    std::visit([&](auto& machine) { machine.advanceTo(sensor_time_); }, machine_);
+    advanceMachine(sensor_time_);
     if (angle_.isOn() || speed_.isOn()) {
-      const Encoded now = encodedAt(settings_.crank, truth());
+      const EncoderReading now = encoded(settings_.crank, truth());
       angle_.follow(sensor_time_, now.angle);
       speed_.follow(sensor_time_, now.speed);
     }
@@ -131,7 +126,7 @@ void SessionStream::moveTo(double time) {
       hoses_[k + 3].follow(sensor_time_, felt.rod_pressure[k]);
     }
   }
-  std::visit([&](auto& machine) { machine.advanceTo(time); }, machine_);
+  advanceMachine(time);
 }
 
 void SessionStream::advanceTo(double time, Session& session) {
@@ -179,9 +174,9 @@ void SessionStream::take(Session& session) {
     taken.on_boom = machine->truth();
     taken.truth = *taken.on_boom;
   } else {
-    std::visit([&](const auto& any) { taken.truth = any.truth(); }, machine_);
+    taken.truth = truth();
   }
-  taken.reading = read(taken.truth, stamp_error_, speed_error_);
+  taken.reading = read(taken.truth);
   taken.twice = message_draws_.uniform() < sensor.duplicate_share;
   burst_.push_back(taken);
   if (static_cast<int>(burst_.size()) < sensor.burst) return;
@@ -198,13 +193,13 @@ void SessionStream::take(Session& session) {
 }
 
 /// Angle and speed that the sensor shows before it counts. A controller's mean replaces any low-pass.
-SessionStream::Shown SessionStream::shown(const CrankTruth& truth) noexcept {
+EncoderReading SessionStream::shown(const CrankTruth& truth) noexcept {
   const CrankSensorSettings& sensor = settings_.crank;
-  const Encoded now = encodedAt(sensor, truth);
-  Shown shown{angle_.isOn() ? angle_.output() : now.angle, now.speed};
+  EncoderReading shown = encoded(sensor, truth);
+  if (angle_.isOn()) shown.angle = angle_.output();
   if (!task_.empty()) {
     shown = {};
-    for (const Shown& one : task_) shown.angle += one.angle, shown.speed += one.speed;
+    for (const EncoderReading& one : task_) shown.angle += one.angle, shown.speed += one.speed;
     const auto readings = static_cast<double>(task_.size());
     shown.angle /= readings, shown.speed /= readings;
   }
@@ -216,11 +211,11 @@ SessionStream::Shown SessionStream::shown(const CrankTruth& truth) noexcept {
   return shown;
 }
 
-CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, double speed_error) noexcept {
+CrankReading SessionStream::read(const CrankTruth& truth) noexcept {
   const CrankSensorSettings& sensor = settings_.crank;
   CrankReading reading;
   const double driver = sensor.driver.areExact() ? 0.0 : sensor.driver.lateness(truth.time, driver_draws_);
-  reading.stamp = stampAt(truth.time + sensor.latency + driver + stamp_error);
+  reading.stamp = stampAt(truth.time + sensor.latency + driver + stamp_error_);
   if (sensor.stamp_step > 0.0) {
     const auto step = static_cast<std::int64_t>(std::llround(sensor.stamp_step * 1e9));
     reading.stamp -= reading.stamp % step;
@@ -228,17 +223,16 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
   if (sensor.stamps_ordered) reading.stamp = std::max(reading.stamp, last_stamp_ + 1);
   last_stamp_ = reading.stamp;
   const std::int64_t turn = sensor.unwound ? truth.turn : 0;
+  double speed = truth.speed;
   if (!isPlain(sensor) || truth.twist != 0.0) {
-    const Shown shown = this->shown(truth);
+    const EncoderReading shown = this->shown(truth);
     const bool slipped = truth.time >= sensor.slip.during.from && truth.time < sensor.slip.during.to;
     const double angle = shown.angle + (slipped ? sensor.slip.amount : 0.0);
     const double count = kTwoPi / std::max(sensor.counts, 1);
     const double seen = sensor.counts > 0 ? std::floor(angle / count) * count : angle;
     reading.angle = sensor.unwound ? seen : seen - kTwoPi * std::floor((seen + 1e-9) / kTwoPi);
-    if (sensor.speed) reading.speed = measuredSpeed(shown.speed, speed_error);
-    return reading;
-  }
-  if (sensor.counts > 0) {
+    speed = shown.speed;
+  } else if (sensor.counts > 0) {
     const double count = kTwoPi / sensor.counts;
     // The turn's last count is the encoder's last, however close the angle is to 2 pi.
     const std::int64_t passed =
@@ -247,12 +241,9 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
   } else {
     reading.angle = static_cast<double>(turn) * kTwoPi + truth.angle;
   }
-  if (sensor.speed) reading.speed = measuredSpeed(truth.speed, speed_error);
+  if (speed_.isOn()) speed = speed_.output();
+  if (sensor.speed) reading.speed = sensor.speed_scale * speed + speed_error_;
   return reading;
-}
-
-double SessionStream::measuredSpeed(double shown, double error) const noexcept {
-  return settings_.crank.speed_scale * (speed_.isOn() ? speed_.output() : shown) + error;
 }
 
 std::int64_t SessionStream::stampAt(double time) const noexcept {

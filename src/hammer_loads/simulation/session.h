@@ -45,6 +45,11 @@ class LowPass {
   double time_{}, input_{}, output_{};
 };
 
+/// Angle and speed that the encoder shows, over many turns.
+struct EncoderReading {
+  double angle{}, speed{};  ///< [rad], [rad/s]
+};
+
 /// One message on `crank`.
 struct CrankReading {
   std::int64_t stamp{};         ///< [ns]
@@ -101,10 +106,6 @@ class SessionStream {
     std::optional<OnBoomTruth> on_boom;
     bool twice{};
   };
-  /// Angle and speed that the encoder shows, over many turns.
-  struct Shown {
-    double angle{}, speed{};  ///< [rad], [rad/s]
-  };
   /// A sensor that is read at equal intervals.
   struct Ticks {
     double first{}, rate{};  ///< [s], [Hz]; 0: never
@@ -112,16 +113,16 @@ class SessionStream {
     double next() const noexcept;
   };
 
+  void advanceMachine(double time);
   void moveTo(double time);
   void readTask(double time);
-  Shown shown(const CrankTruth& truth) noexcept;
+  EncoderReading shown(const CrankTruth& truth) noexcept;
   CrankTruth truth() const;
   void planSample() noexcept;
   void takeCrank(Session& session);
   void take(Session& session);
-  CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) noexcept;
-  double measuredSpeed(double shown, double error) const noexcept;  ///< both arguments in [rad]
-  OnBoomSensors onBoomAt(double time);                              ///< sensors of a hull on its boom, moved there
+  CrankReading read(const CrankTruth& truth) noexcept;
+  OnBoomSensors onBoomAt(double time);  ///< sensors of a hull on its boom, moved there
   JointReading readJoints(double time);
   HullImuReading readImu(double time);
   PressureReading readPressures(double time);
@@ -133,12 +134,12 @@ class SessionStream {
   NormalNoise noise_;
   NormalNoise message_draws_, loss_draws_, joint_noise_, imu_noise_, pressure_noise_;
   NormalNoise bus_draws_, driver_draws_, boom_driver_draws_;
-  LowPass angle_, speed_;         ///< low-passes of the encoder
-  std::deque<Shown> task_;        ///< readings of the controller in its last mean
-  std::int64_t tasks_{};          ///< number of its readings so far
-  std::optional<double> held_;    ///< angle of an encoder with hysteresis [rad]
-  std::array<LowPass, 6> hoses_;  ///< low-passes of bore and rod sides
-  double sensor_time_{};          ///< up to which they have followed [s]
+  LowPass angle_, speed_;            ///< low-passes of the encoder
+  std::deque<EncoderReading> task_;  ///< readings of the controller in its last mean
+  std::int64_t tasks_{};             ///< number of its readings so far
+  std::optional<double> held_;       ///< angle of an encoder with hysteresis [rad]
+  std::array<LowPass, 6> hoses_;     ///< low-passes of bore and rod sides
+  double sensor_time_{};             ///< up to which they have followed [s]
   std::int64_t last_stamp_{}, last_joints_{}, last_imu_{}, last_pressures_{};
   std::vector<Taken> burst_;
   std::int64_t samples_{};

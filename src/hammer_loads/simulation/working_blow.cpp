@@ -76,7 +76,6 @@ void WorkingMachine::blow() {
   truth.turn_peak_force_z = current_.peak;
   truth.turn_impulse_x = now_.y[kImpulseX] - current_.impulse_x;
   truth.turn_impulse_z = now_.y[kImpulseZ] - current_.impulse_z;
-  truth.last_lobe_impulse_z = now_.y[kImpulseZ] - current_.lobe_impulse_z;
   truth.whole_turn = current_.whole;
   blows_.push_back(truth);
 }

@@ -48,17 +48,8 @@ WorkingMachine::WorkingMachine(const MachineSettings& settings)
   beginTurn(false);
 }
 
-double WorkingMachine::hullPitch(double time) const noexcept {
-  double pitch = 0.0;
-  for (std::size_t i = 1; i < settings_.boom.size(); ++i) pitch += positionOf(settings_.boom[i], time);
-  return pitch;
-}
-
 WorkingMachine::Outside WorkingMachine::outsideAt(double time) const noexcept {
-  const double pitch = hullPitch(time);
-  return {time,
-          {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)},
-          supplyFlow(settings_.drive, time)};
+  return {time, hullGravity(settings_, time), supplyFlow(settings_.drive, time)};
 }
 
 /// Motor less friction.
@@ -181,15 +172,9 @@ void WorkingMachine::advanceTo(double time) noexcept {
 
 /// Makes the next state the present one, still on its side of the blow.
 void WorkingMachine::accept(const State& next) {
-  const double before = rate_[kImpulseZ];
-  Vector rate_next = rate(next);
-  followForce(next, rate_next[kImpulseZ]);
-  if (before <= 0.0 && rate_next[kImpulseZ] > 0.0) {
-    const double part = (next.outside.time - now_.outside.time) * before / (before - rate_next[kImpulseZ]);
-    current_.lobe_impulse_z = now_.y[kImpulseZ] + 0.5 * before * part;
-  }
   now_ = next;
-  rate_ = rate_next;
+  rate_ = rate(now_);
+  followForce();
   if (now_.y[kSpeed] < 0.0) current_.whole = false;
   if (!now_.before_blow && now_.y[kOffset] > kPi) {
     now_.y[kOffset] -= 2.0 * kPi;
@@ -201,15 +186,16 @@ void WorkingMachine::accept(const State& next) {
   }
 }
 
-void WorkingMachine::followForce(const State& next, double force_z) noexcept {
+void WorkingMachine::followForce() noexcept {
   Turn& c = current_;
+  const double time = now_.outside.time, force_z = rate_[kImpulseZ];
   c.peak = std::max(c.peak, force_z);
   if (c.points == 2 && c.force[1] >= c.force[0] && c.force[1] > force_z)
-    c.peak = std::max(c.peak, parabolaPeak(c.time, c.force, next.outside.time, force_z));
-  if (c.points == 2 && next.outside.time == c.time[1]) return;
+    c.peak = std::max(c.peak, parabolaPeak(c.time, c.force, time, force_z));
+  if (c.points == 2 && time == c.time[1]) return;
   c.time[0] = c.time[1];
   c.force[0] = c.force[1];
-  c.time[1] = next.outside.time;
+  c.time[1] = time;
   c.force[1] = force_z;
   c.points = std::min(c.points + 1, 2);
 }
@@ -218,7 +204,7 @@ void WorkingMachine::beginTurn(bool whole) noexcept {
   current_ = Turn{};
   current_.start_time = now_.outside.time;
   current_.impulse_x = now_.y[kImpulseX];
-  current_.impulse_z = current_.lobe_impulse_z = now_.y[kImpulseZ];
+  current_.impulse_z = now_.y[kImpulseZ];
   current_.whole = whole;
   current_.peak = rate_[kImpulseZ];
   current_.time[1] = now_.outside.time;
@@ -236,9 +222,8 @@ CrankTruth WorkingMachine::truth() const noexcept {
   truth.motor_speed = flexible() ? now_.y[kMotorSpeed] : truth.speed;
   truth.mirrored = now_.mirrored;
   truth.acceleration = rate_[kSpeed];
-  truth.net_torque = netTorque(now_);
   truth.pressure = now_.y[kPressure];
-  truth.hull_pitch = hullPitch(now_.outside.time);
+  truth.hull_pitch = hullPitch(settings_, now_.outside.time);
   truth.load = links_.load(links_.at(now_.angle()), truth.speed, truth.acceleration, now_.outside.gravity);
   const double rotor = crank_side_inertia_ * truth.acceleration + motor_inertia_ * rate_[kMotorSpeed];
   truth.drive_reaction_y = -settings_.hammer.drive_reaction_ratio * rotor;

@@ -22,7 +22,6 @@ struct CrankTruth {
   double motor_speed{};       ///< [rad/s]
   bool mirrored{};            ///< the rocker passed the dead centre without a blow and has not returned
   double acceleration{};      ///< [rad/s2]
-  double net_torque{};        ///< motor less friction, on the shaft [N m]
   double pressure{};          ///< at the motor [Pa]
   double hull_pitch{};        ///< [rad]
   Load load;                  ///< BY the links, weight included
@@ -41,15 +40,14 @@ struct BlowTruth {
   double time{};         ///< since start [s]
   double crank_speed{};  ///< [rad/s]
   Strike strike;
-  double turn_period{};          ///< [s]
-  double turn_peak_force_z{};    ///< largest Fz of the turn [N]
-  double turn_impulse_x{};       ///< integral of Fx over the turn [N s]
-  double turn_impulse_z{};       ///< [N s]
-  double last_lobe_impulse_z{};  ///< integral of Fz from its last rise through zero to the blow [N s]
-  bool whole_turn{};             ///< true if it began with a blow and the crank never turned back
-  double contact{};              ///< time that all its touches lasted [s]; of an elastic machine alone, as what follows
-  double retainer_impulse{};     ///< along +z BY the hull's retainer ON the rocker [N s]
-  int touches{};                 ///< number of touches of tool and retainer
+  double turn_period{};        ///< [s]
+  double turn_peak_force_z{};  ///< largest Fz of the turn [N]
+  double turn_impulse_x{};     ///< integral of Fx over the turn [N s]
+  double turn_impulse_z{};     ///< [N s]
+  bool whole_turn{};           ///< true if it began with a blow and the crank never turned back
+  double contact{};            ///< time that all its touches lasted [s]; of an elastic machine alone, as what follows
+  double retainer_impulse{};   ///< along +z BY the hull's retainer ON the rocker [N s]
+  int touches{};               ///< number of touches of tool and retainer
 };
 
 /// Energy balance since the start [J]. It is tested:
@@ -80,13 +78,10 @@ class WorkingMachine {
 
   /// time >= now [s].
   void advanceTo(double time) noexcept;
-  double time() const noexcept { return now_.outside.time; }
   CrankTruth truth() const noexcept;
   EnergyAccount energy() const noexcept;
   /// Hands over the blows since the last call.
   std::vector<BlowTruth> takeBlows();
-  double hullPitch(double time) const noexcept;
-  const MachineSettings& settings() const noexcept { return settings_; }
 
  private:
   enum Index {
@@ -139,7 +134,7 @@ class WorkingMachine {
   void passDeadCentre();
   void blow();
   void drawBlow() noexcept;
-  void followForce(const State& next, double force_z) noexcept;
+  void followForce() noexcept;
   void beginTurn(bool whole) noexcept;
 
   MachineSettings settings_;
@@ -159,7 +154,6 @@ class WorkingMachine {
 
   struct Turn {
     double start_time{}, impulse_x{}, impulse_z{};  ///< impulses at its beginning
-    double lobe_impulse_z{};                        ///< impulse where Fz last rose through zero
     double peak{};
     double time[2]{}, force[2]{};  ///< the two last points, for the parabola
     int points{};

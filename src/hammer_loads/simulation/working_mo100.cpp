@@ -57,6 +57,17 @@ double velocityOf(const JointMotion& motion, double time) noexcept {
   return motion.amplitude * rate * std::cos(rate * time + motion.phase);
 }
 
+double hullPitch(const MachineSettings& settings, double time) noexcept {
+  double pitch = 0.0;
+  for (std::size_t i = 1; i < settings.boom.size(); ++i) pitch += positionOf(settings.boom[i], time);
+  return pitch;
+}
+
+Gravity hullGravity(const MachineSettings& settings, double time) noexcept {
+  const double pitch = hullPitch(settings, time);
+  return {settings.gravity * std::sin(pitch), -settings.gravity * std::cos(pitch)};
+}
+
 MachineSettings workingMo100() {
   MachineSettings s;
   s.hammer = mo100();
