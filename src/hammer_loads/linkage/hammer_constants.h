@@ -25,7 +25,7 @@ struct HammerConstant {
     kLearned,  ///< no column: the crank's filter estimates it better
     kFollows,  ///< no column: it follows from other constants
   } enters;
-  enum class Sign { kAny, kNotNegative, kPositive } sign;  ///< of a possible hammer's
+  enum class Sign { kAny, kNotNegative, kPositive } sign;  ///< sign that a possible hammer has
   bool optional{};  ///< a hammer file may leave it out; then the default of HammerParameters counts
 };
 
