@@ -81,15 +81,9 @@ TEST(BoomCalibration, CorrectsWrongNominalMasses) {
 }
 
 /// Errors of the static torques at a pose over their stated deviations.
-Pose3 torqueErrors(const BoomModel& model, const BoomFit& fit, const JointVector& pose, const Pose3& truth) {
+Eigen::Vector3d torqueErrors(const BoomModel& model, const BoomFit& fit, const JointVector& pose, const Pose3& truth) {
   const auto torques = [&](const Eigen::VectorXd& x) { return weightTorques(model, x, {pose}); };
-  const Eigen::VectorXd found = torques(fit.x), stds = stdsOf(fit, torques);
-  Pose3 errors{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto e = static_cast<Eigen::Index>(k);
-    errors[k] = (found[e] - truth[k]) / stds[e];
-  }
-  return errors;
+  return (torques(fit.x) - Eigen::Map<const Eigen::Vector3d>(truth.data())).cwiseQuotient(stdsOf(fit, torques));
 }
 
 /// Sensors with zeros, offsets and gains of their own, at single poses: within two deviations.
@@ -104,8 +98,8 @@ TEST(BoomCalibration, KnowsHowWellItKnows) {
     EXPECT_TRUE(fit.converged);
     for (int n = 0; n < 4; ++n) {
       const Pose3 q = anyPose(random), truth = machine.staticTorque(q);
-      for (const double error : torqueErrors(model, fit, readAt(machine, q), truth))
-        ++weights, weights_within += std::abs(error) < 2.0;
+      const Eigen::Vector3d errors = torqueErrors(model, fit, readAt(machine, q), truth);
+      weights += 3, weights_within += static_cast<int>((errors.array().abs() < 2.0).count());
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto of = [&](BoomUnknown kind) { return model.valueOf(fit.x, kind, k); };
@@ -275,7 +269,8 @@ std::vector<double> errorsFromDays(std::size_t days, std::mt19937& random) {
   std::vector<double> errors;
   for (int n = 0; n < 4; ++n) {
     const Pose3 q = anyPose(random), truth = usual.staticTorque(q);
-    for (const double error : torqueErrors(model, fit, readAt(machine, q), truth)) errors.push_back(error);
+    const Eigen::Vector3d found = torqueErrors(model, fit, readAt(machine, q), truth);
+    errors.insert(errors.end(), found.data(), found.data() + 3);
   }
   return errors;
 }

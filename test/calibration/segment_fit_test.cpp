@@ -40,7 +40,7 @@ TEST(SegmentFit, RightHandSidesAreTheCostsSlopes) {
   const std::vector<BlowSegment> segments = cutAtBlows(trackOf(test::recorded(s), 1.0), 0.0);
   ASSERT_GT(segments.size(), 3U);
   Globals globals;
-  globals << 0.01, 0.01, -0.02, 0.005, 0.003, std::log(0.55), 5.0, 0.1, 0.1, -0.05, 0.2;
+  globals << 0.01, 0.01, -0.02, 0.005, 0.003, std::log(0.55), 5.0, 0.1;
   const Noise noise{0.02, true, 0.0, 2.0, 74.0, 295.0};  // wide: no residual is cut off, no deviation moves
   SegmentFit fit(segments[2], globals);
   const NormalEquations e = fit.linearise(model, globals, noise);
