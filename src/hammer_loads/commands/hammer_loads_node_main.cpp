@@ -29,17 +29,6 @@ Parameters (private; SI units, each explained in its file in the package's direc
   -h, --help  print this    --version  print the version
 )";
 
-/// Text in lines of at most this many columns.
-std::string wrapped(const std::vector<std::string>& words) {
-  constexpr std::size_t kColumns = 104;
-  std::string text, line = " ";
-  for (const std::string& word : words) {
-    if (line.size() + 1 + word.size() > kColumns) text += line + "\n", line = " ";
-    line += " " + word;
-  }
-  return text + line + "\n";
-}
-
 std::string usage() {
   std::string text = kBegin;
   for (const hammer_loads::InputName& input : hammer_loads::kInputs) {
@@ -51,14 +40,12 @@ std::string usage() {
       "Topics out (private: below the node's name)\n";
   hammer_loads::HammerOutputs outputs;
   outputs.boom_wrench.emplace_back("boom_wrench/LINK");
-  std::vector<std::string> names;
-  outputs.forEach([&names](const auto& output) {
+  outputs.forEach([&text](const auto& output) {
     using hammer_loads::Delivery;
     const bool latched = output.delivery() == Delivery::kLatched || output.delivery() == Delivery::kLast;
-    names.push_back("~" + output.name() + (latched ? " (latched)" : ""));
+    text += "  ~" + output.name() + (latched ? " (latched)\n" : "\n");
   });
-  names.push_back("/diagnostics");
-  return text + wrapped(names) + kEnd;
+  return text + "  /diagnostics\n" + kEnd;
 }
 
 }  // namespace

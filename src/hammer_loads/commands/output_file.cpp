@@ -91,25 +91,22 @@ void OutputFile::release() {
 }
 
 Checked<OutputFile> OutputFile::make(const OutputRequest& request) {
-  Checked<OutputFile> result;
-  const auto refuse = [&](const std::string& reason) {
-    result.problems.push_back((request.name.empty() ? "output" : request.name) + ": " + reason);
-    return std::move(result);
+  const auto refusal = [&](const std::string& why) {
+    return Checked<OutputFile>{{}, {(request.name.empty() ? "output" : request.name) + ": " + why}, {}};
   };
   std::error_code error;
   const fs::file_type type = fs::symlink_status(request.name, error).type();
-  if (const std::string problem = problemOf(request, type); !problem.empty()) return refuse(problem);
+  if (const std::string problem = problemOf(request, type); !problem.empty()) return refusal(problem);
   OutputFile file(request.name, type == fs::file_type::regular);
   const int descriptor = open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     const int why = errno;
-    const std::string reason = (why == EEXIST ? file.path() + ": " : "") + std::strerror(why);
+    const std::string place = why == EEXIST ? file.path() + ": " : "";
     file.release();  // the file there belongs to another program
-    return refuse("cannot be written: " + reason);
+    return refusal("cannot be written: " + place + std::strerror(why));
   }
   close(descriptor);
-  result.value.emplace(std::move(file));
-  return result;
+  return {std::move(file), {}, {}};
 }
 
 std::string OutputFile::fill(const std::string& text) const {
@@ -127,9 +124,11 @@ std::string OutputFile::sync() const {
 
 std::string OutputFile::publish() {
   if (std::string problem = sync(); !problem.empty()) return problem;
-  const int error = !replaces_                                        ? renameToNew(*part_, name_)
-                    : std::rename(part_->c_str(), name_.c_str()) == 0 ? 0
-                                                                      : errno;
+  int error = 0;
+  if (!replaces_)
+    error = renameToNew(*part_, name_);
+  else if (std::rename(part_->c_str(), name_.c_str()) != 0)
+    error = errno;
   if (error == EEXIST) return name_ + ": has appeared meanwhile, is not replaced";
   if (error != 0) return name_ + ": the file cannot be given this name: " + std::strerror(error);
   release();

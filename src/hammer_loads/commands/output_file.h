@@ -32,6 +32,7 @@ class OutputFile {
   OutputFile& operator=(OutputFile&&) = delete;
   ~OutputFile();
 
+  const std::string& name() const { return name_; }
   /// To open for writing.
   const std::string& path() const { return *part_; }
   /// Writes all of its content. Returns the reason of a failure, one line; else empty.

@@ -79,25 +79,14 @@ std::string usageProblem(const Arguments& given) {
   return {};
 }
 
-/// A file to write, and where its name in the job stands.
-struct Output {
-  std::string name;
-  std::string& path;
-  std::function<std::string(const std::string&)> keep;
-};
-
-std::vector<Output> outputsOf(const Arguments& given, BagJob& job) {
-  std::vector<Output> outputs;
+/// Reason why an existing bag must stay; empty: it is an output and none of the job's inputs.
+std::string whyOutputMustStay(const std::string& name, const BagJob& job) {
   std::vector<std::string> topics;
   for (const InputName& input : kInputs) {
-    const std::string& name = job.topics.*input.topic;
-    topics.push_back(name.empty() ? input.recorded : name);
+    const std::string& topic = job.topics.*input.topic;
+    topics.push_back(topic.empty() ? input.recorded : topic);
   }
-  if (!given.tables.empty()) outputs.push_back({given.tables, job.tables, whyTablesMustStay});
-  if (!given.no_bag)
-    outputs.push_back(
-        {given.bags.back(), job.output, [topics](const std::string& name) { return whyBagMustStay(name, topics); }});
-  return outputs;
+  return whyBagMustStay(name, topics);
 }
 
 /// Problems; runs that are not counted again are warnings.
@@ -111,14 +100,19 @@ std::vector<std::string> writeLedger(life::LedgerBatch& ledger, BagReport& repor
 
 /// Takes the files, processes, gives them their names. Returns the problems, one line each.
 std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport& report) {
-  const std::vector<Output> outputs = outputsOf(given, job);
   std::vector<OutputFile> files;
-  for (const Output& output : outputs) {
-    Checked<OutputFile> file = OutputFile::make({output.name, job.inputs, given.force, output.keep});
-    if (!file.value) return file.problems;
-    output.path = file.value->path();
+  std::vector<std::string> problems;
+  const auto take = [&](const std::string& name, std::string& path, const auto& why_it_must_stay) {
+    Checked<OutputFile> file = OutputFile::make({name, job.inputs, given.force, why_it_must_stay});
+    problems = file.problems;
+    if (!file.value) return;
+    path = file.value->path();
     files.push_back(*std::move(file.value));
-  }
+  };
+  if (!given.tables.empty()) take(given.tables, job.tables, whyTablesMustStay);
+  if (!given.no_bag && problems.empty())
+    take(given.bags.back(), job.output, [&job](const std::string& name) { return whyOutputMustStay(name, job); });
+  if (!problems.empty()) return problems;
   std::optional<life::LedgerBatch> ledger;
   if (!given.ledger.empty()) {
     ledger.emplace(given.ledger, given.replace_run);
@@ -127,10 +121,10 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
     job.pieces = &*ledger;
   }
   ProgressBar bar;
-  std::vector<std::string> problems = processBag(job, std::ref(bar), report);
+  problems = processBag(job, std::ref(bar), report);
   for (std::string& problem : problems) {
-    for (const Output& output : outputs)
-      if (problem.rfind(output.path + ":", 0) == 0) problem.replace(0, output.path.size(), output.name);
+    for (const OutputFile& file : files)
+      if (problem.rfind(file.path() + ":", 0) == 0) problem.replace(0, file.path().size(), file.name());
   }
   if (ledger && problems.empty()) problems = writeLedger(*ledger, report);
   for (const OutputFile& file : files) {

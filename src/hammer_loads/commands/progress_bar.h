@@ -19,29 +19,23 @@ inline std::string timeText(double seconds) {
   return format("%ld:%02ld", whole / 60, whole % 60);
 }
 
-/// Line of the bar with the remaining time, extrapolated from the elapsed one; not for the first 2 %, which are little
-/// information.
-inline std::string progressLine(double part, double seconds_so_far) {
-  const int percent = static_cast<int>(100.0 * part);
-  const std::string line =
-      format("[%-50.*s] %3d %%", percent / 2, "##################################################", percent);
-  if (percent < 2) return line;
-  if (percent >= 100) return line + "  " + timeText(seconds_so_far);
-  return line + "  " + timeText(seconds_so_far * (1.0 - part) / part) + " left";
-}
-
-/// Drawn on a terminal only: once per percent, and once a second while a percent takes longer.
+/// Drawn on a terminal only: once per percent, and once a second while a percent takes longer. The remaining time is
+/// extrapolated from the elapsed one; not for the first 2 %, which are little information.
 class ProgressBar {
  public:
   void operator()(double part) {
     const int percent = static_cast<int>(100.0 * part);
-    if (!terminal_ || last_ >= 100) return;
     const Clock::time_point now = Clock::now();
-    if (percent == last_ && now - drawn_ < std::chrono::seconds(1)) return;
+    if (!terminal_ || last_ >= 100 || (percent == last_ && now - drawn_ < std::chrono::seconds(1))) return;
     last_ = percent;
     drawn_ = now;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    std::fprintf(stderr, "\r%s\033[K%s", progressLine(part, seconds).c_str(), percent >= 100 ? "\n" : "");
+    std::string time;
+    if (percent >= 2) time = "  " + timeText(seconds * (1.0 - part) / part) + " left";
+    if (percent >= 100) time = "  " + timeText(seconds);
+    std::fprintf(stderr, "\r[%-50.*s] %3d %%%s\033[K%s", percent / 2,
+                 "##################################################", percent, time.c_str(),
+                 percent >= 100 ? "\n" : "");
   }
 
  private:

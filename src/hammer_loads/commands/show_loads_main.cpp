@@ -15,6 +15,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hammer_loads/ros/run_node.h"
@@ -64,8 +65,7 @@ class LoadDisplay {
  private:
   struct Shown {
     ros::Publisher publisher;
-    geometry_msgs::WrenchStamped largest;
-    bool fresh{};
+    std::optional<geometry_msgs::WrenchStamped> largest;  ///< since the last picture
   };
 
   void onRunInfo(const RunInfo& info) {
@@ -104,16 +104,16 @@ class LoadDisplay {
     const auto found = shown_.find(frame);
     if (found == shown_.end() || !std::isfinite(sizeOf(load.force)) || !std::isfinite(sizeOf(load.torque))) return;
     Shown& shown = found->second;
-    if (shown.fresh && sizeOf(load.force) <= sizeOf(shown.largest.wrench.force)) return;
-    shown.largest.header.stamp = stamp;
-    shown.largest.header.frame_id = frame;
-    shown.largest.wrench = load;
-    shown.fresh = true;
+    if (shown.largest && sizeOf(load.force) <= sizeOf(shown.largest->wrench.force)) return;
+    shown.largest.emplace();
+    shown.largest->header.stamp = stamp;
+    shown.largest->header.frame_id = frame;
+    shown.largest->wrench = load;
   }
   void picture() {
     for (auto& [frame, shown] : shown_) {
-      if (shown.fresh) shown.publisher.publish(shown.largest);
-      shown.fresh = false;
+      if (shown.largest) shown.publisher.publish(*shown.largest);
+      shown.largest.reset();
     }
     if (!root_.empty()) showText();
   }
