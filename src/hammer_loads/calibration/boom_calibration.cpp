@@ -218,18 +218,15 @@ class Finder {
       }
       result_.estimates.push_back(e);
     }
-    for (std::size_t k = 0; k < fit.noise.size(); ++k) fillMoments(model, fit, k);
-  }
-
-  void fillMoments(const BoomModel& model, const BoomFit& fit, std::size_t cylinder) {
-    const std::string& name = model.given().chain().link(model.linkOf(cylinder)).name;
-    const int joint = model.given().cylinders()[cylinder].joint();
-    const Eigen::VectorXd deviation = stdsOf(fit, [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-      const std::optional<Boom> boom = model.boomAt(x);
-      return boom ? firstMoment(*boom, joint, model.linkOf(cylinder)) : Eigen::Vector2d(kNaN, kNaN);
-    });
-    if (WeighedLink* link = findLink(result_.found.chain.weighed, name))
-      link->moment_x_std = deviation[0], link->moment_z_std = deviation[1];
+    for (std::size_t k = 0; k < fit.noise.size(); ++k) {
+      const int joint = model.given().cylinders()[k].joint(), link = model.linkOf(k);
+      const Eigen::VectorXd deviation = stdsOf(fit, [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+        const std::optional<Boom> boom = model.boomAt(x);
+        return boom ? firstMoment(*boom, joint, link) : Eigen::Vector2d(kNaN, kNaN);
+      });
+      if (WeighedLink* weighed = findLink(result_.found.chain.weighed, model.given().chain().link(link).name))
+        weighed->moment_x_std = deviation[0], weighed->moment_z_std = deviation[1];
+    }
   }
 
   void fillCorrelations(const BoomModel& model, const BoomFit& fit) {

@@ -86,18 +86,17 @@ std::optional<BoomPoint> pointAt(const BoomRecording& recording, double time, do
   return point;
 }
 
-void appendTrace(const Trace& next, double later, Trace& trace) {
-  for (const double time : next.time) trace.time.push_back(time + later);
-  trace.value.insert(trace.value.end(), next.value.begin(), next.value.end());
-}
-
 }  // namespace
 
 void append(const BoomRecording& next, double later, BoomRecording& recording) {
-  for (std::size_t j = 0; j < recording.joint.size(); ++j) appendTrace(next.joint[j], later, recording.joint[j]);
+  const auto add = [later](const Trace& from, Trace& to) {
+    for (const double time : from.time) to.time.push_back(time + later);
+    to.value.insert(to.value.end(), from.value.begin(), from.value.end());
+  };
+  for (std::size_t j = 0; j < recording.joint.size(); ++j) add(next.joint[j], recording.joint[j]);
   for (std::size_t k = 0; k < recording.pressure.size(); ++k)
     for (std::size_t chamber = 0; chamber < 2; ++chamber)
-      appendTrace(next.pressure[k][chamber], later, recording.pressure[k][chamber]);
+      add(next.pressure[k][chamber], recording.pressure[k][chamber]);
   for (const double time : next.working) recording.working.push_back(time + later);
 }
 

@@ -1,7 +1,7 @@
-#include "hammer_loads/calibration/boom_rows.h"
-
 #include <cmath>
 #include <optional>
+
+#include "hammer_loads/calibration/boom_fit.h"
 
 namespace hammer_loads::calibration {
 namespace {
