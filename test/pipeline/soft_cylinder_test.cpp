@@ -50,7 +50,6 @@ FoundOil findOil(const simulation::MachineSettings& machine, const std::string& 
       found.others += std::string(warning.key) + "; ";
     }
   }
-  std::printf("%s: %s\n  %s\n", found.named.c_str(), found.errors.text().c_str(), found.others.c_str());
   return found;
 }
 
