@@ -100,6 +100,14 @@ RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, doub
   return blow;
 }
 
+HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
+  const ToolImpulse tool = toolImpulse(rocker, speed_before, speed_after);
+  const double change = speed_after - speed_before;
+  const double per_speed_z = tool.z / change, per_speed_x = tool.x / change;
+  return {-(per_speed_z + rocker.reduced_rod_mass * rocker.rod_joint.x) / rocker.mass,
+          (per_speed_x - rocker.reduced_rod_mass * rocker.rod_joint.z) / rocker.mass};
+}
+
 RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept {
   const Level links = level == Level::kLinkage ? level : Level::kRocker;
   const BlowInertia inertia = blowInertia(mechanism, links, crank.drive_inertia);

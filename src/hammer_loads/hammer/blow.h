@@ -70,6 +70,11 @@ StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept;
 /// and keeps friction in (10), where nothing slides (model.md 5, 7).
 RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
 
+/// Centre of mass for which the support gets no impulse [m], by the speeds before and after [rad/s]; with f z_K = 0
+/// they do not matter. Deviates: P1 (12), (13) print brackets and a sign wrong and hold for R = 0; (18) is the special
+/// case f = 0, z_K = 0, m_n = 0.
+HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
+
 /// Blow of a crank that passes it forward at a speed w > 0 [rad/s]: the crank keeps its speed, the rocker's jumps from
 /// u(2 pi -) w to u(0 +) w (model.md 1).
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept;

@@ -218,11 +218,11 @@ bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double 
   const ConstantErrors& errors = filter.constantErrors();
   if (rod && (*rod || errors.zeroIsShown())) return *rod;
   if (!errors.zeroIsShown() && crank.position.isMirrored()) return true;
-  // On the wrong side the wrench is off by its whole jump: the gate of an angle that noise makes uncertain is kRare.
-  const double of_readings = filter.readingShowsSide() ? angle_std : gate::kRare / gate::kUsual * angle_std;
-  const double deviation = deviationFromBlow(filter, rod ? errors.zeroDeviation() : of_readings);
-  if (errors.zeroIsShown() && errors.zeroDeviation() < ConstantErrors::kCalibratedZero)
-    return isBesideBlow(crank, deviation);
+  const double of_zero = errors.zeroDeviation();
+  const double deviation = deviationFromBlow(filter, rod ? of_zero : std::max(angle_std, of_zero));
+  // On the wrong side the wrench is off by its whole jump.
+  if (errors.zeroIsShown() && of_zero < ConstantErrors::kCalibratedZero)
+    return isBesideBlow(crank, deviation, gate::kRare);
   return std::abs(crank.position.angle.offset) < gate::kUsual * deviation && std::abs(crank.speed) > kStands;
 }
 

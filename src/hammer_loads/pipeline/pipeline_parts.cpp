@@ -91,8 +91,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   addCovariance(result_.beside, result_.deviation);
   const CrankFilter& tracker = crank_.tracker();
   // An encoder's edge shows the side of the blow as far as the zero is known.
-  const double of_angle =
-      tracker.readingShowsSide() ? tracker.constantErrors().zeroDeviation() : result_.deviation.angle;
+  const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
   const std::optional<bool> beside_rods = gives ? std::make_optional(elastic_.isBesideBlow()) : std::nullopt;
   result_.beside_blow = isBesideBlow(tracker, result_.crank, of_angle, beside_rods);
   result_.uncertain = !isKnown();
