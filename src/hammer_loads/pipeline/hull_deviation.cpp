@@ -206,9 +206,9 @@ double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept {
   return std::hypot(angle_std, std::hypot(errors.zeroLooks(), hidden));
 }
 
-bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noexcept {
+bool isBesideBlow(const CrankEstimate& crank, double distance) noexcept {
   const CrankPosition& at = crank.position;
-  return std::abs(at.angle.offset) < gate * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
+  return std::abs(at.angle.offset) < distance && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
 }
 
 /// Before the zero is shown a slow crank near the blow may have met the tool, or bounce on it. An elastic rod's filter
@@ -218,12 +218,12 @@ bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double 
   const ConstantErrors& errors = filter.constantErrors();
   if (rod && (*rod || errors.zeroIsShown())) return *rod;
   if (!errors.zeroIsShown() && crank.position.isMirrored()) return true;
-  const double of_zero = errors.zeroDeviation();
-  const double deviation = deviationFromBlow(filter, rod ? of_zero : std::max(angle_std, of_zero));
-  // On the wrong side the wrench is off by its whole jump.
+  const double of_zero = errors.zeroDeviation(), of_angle = rod ? of_zero : std::max(angle_std, of_zero);
+  const double distance = gate::kUsual * deviationFromBlow(filter, of_angle);
+  // On the wrong side the wrench is off by its whole jump: the gate of angle and zero is kRare.
   if (errors.zeroIsShown() && of_zero < ConstantErrors::kCalibratedZero)
-    return isBesideBlow(crank, deviation, gate::kRare);
-  return std::abs(crank.position.angle.offset) < gate::kUsual * deviation && std::abs(crank.speed) > kStands;
+    return isBesideBlow(crank, std::max(gate::kRare * of_angle, distance));
+  return std::abs(crank.position.angle.offset) < distance && std::abs(crank.speed) > kStands;
 }
 
 }  // namespace hammer_loads

@@ -92,13 +92,13 @@ double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept;
 
 /// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
 /// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored
-/// branch nowhere. deviation: of the crank from the blow [rad]; NaN: not known. gate: so many of them.
-bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noexcept;
+/// branch nowhere. distance: of the crank from the blow that is too close [rad]; NaN: not known.
+bool isBesideBlow(const CrankEstimate& crank, double distance) noexcept;
 /// Returns true if the crank is too close to the blow for its side to be known, with the uncertainty of the zero
-/// included: within three standard deviations, on the wrong side the wrench is off by its whole jump. angle_std:
-/// standard deviation of the angle [rad], 0 where the encoder's count shows the side as far as the zero is known. rod:
-/// answer of the elastic rod's filter; empty: the rod is rigid. Before the zero is shown the mirrored branch counts as
-/// close, since a wrong zero imitates a blow without a tool.
+/// included: within three standard deviations of angle and zero, and within two where the readings show an error of the
+/// zero or an elastic rod. angle_std: standard deviation of the angle [rad], 0 where the encoder's count shows the side
+/// as far as the zero is known. rod: answer of the elastic rod's filter; empty: the rod is rigid. Before the zero is
+/// shown the mirrored branch counts as close, since a wrong zero imitates a blow without a tool.
 bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
                   std::optional<bool> rod) noexcept;
 

@@ -156,7 +156,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
 bool LifeFollower::moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const double deviation = deviationFromBlow(pipeline_->crank().tracker(), pipeline_->result().deviation.angle);
-  if (!isBesideBlow(crank, deviation, kKnown)) return true;
+  if (!isBesideBlow(crank, kKnown * deviation)) return true;
   if (place.passage == nullptr) return false;
   const bool earlier = place.passage->forward == (place.side == Side::kBeforeBlow);
   place = {place.time + (earlier ? -1.0 : 1.0) * kKnown * deviation / std::abs(crank.speed)};
