@@ -1,7 +1,6 @@
 #include "hammer_loads/bench/elastic_table.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/bench/session_run.h"

@@ -9,7 +9,6 @@
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
-#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::accuracy {

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/known_count.h"
 
 namespace hammer_loads {

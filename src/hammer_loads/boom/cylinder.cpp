@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "hammer_loads/boom/figure_limits.h"
 #include "hammer_loads/util/constants.h"

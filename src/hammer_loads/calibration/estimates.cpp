@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "hammer_loads/calibration/rod_check.h"
 #include "hammer_loads/estimation/gates.h"

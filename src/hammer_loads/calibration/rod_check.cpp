@@ -4,7 +4,6 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/linkage/blow_inertia.h"
-#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::calibration {

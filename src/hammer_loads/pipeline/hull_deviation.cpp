@@ -6,6 +6,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/covariance_root.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/pipeline/crank_follower.h"
 
 namespace hammer_loads {

@@ -6,7 +6,6 @@
 
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/crank/crank_estimate.h"
-#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/hull_motion_filter.h"
 
@@ -95,10 +94,10 @@ double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept;
 /// branch nowhere. distance: of the crank from the blow that is too close [rad]; NaN: not known.
 bool isBesideBlow(const CrankEstimate& crank, double distance) noexcept;
 /// Returns true if the crank is too close to the blow for its side to be known, with the uncertainty of the zero
-/// included: within three standard deviations of angle and zero, and within two where the readings show an error of the
-/// zero or an elastic rod. angle_std: standard deviation of the angle [rad], 0 where the encoder's count shows the side
-/// as far as the zero is known. rod: answer of the elastic rod's filter; empty: the rod is rigid. Before the zero is
-/// shown the mirrored branch counts as close, since a wrong zero imitates a blow without a tool.
+/// included: within three standard deviations of angle and zero, or two of deviationFromBlow(). angle_std: standard
+/// deviation of the angle [rad], 0 where the encoder's count shows the side as far as the zero is known. rod: answer of
+/// the elastic rod's filter; empty: the rod is rigid. Before the zero is shown the mirrored branch counts as close,
+/// since a wrong zero imitates a blow without a tool.
 bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
                   std::optional<bool> rod) noexcept;
 

@@ -3,7 +3,6 @@
 #include <hammer_loads/LoadCycles.h>
 #include <hammer_loads/TurnLoads.h>
 
-#include <algorithm>
 #include <iterator>
 #include <sstream>
 #include <utility>

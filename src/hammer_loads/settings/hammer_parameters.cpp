@@ -5,7 +5,6 @@
 #include "hammer_loads/linkage/machine_columns.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/readers.h"
-#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
