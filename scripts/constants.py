@@ -6,6 +6,7 @@ A comment beside a constant states its class; without one it is tuned.
   tuned      an estimate depends on it
   prior      states an unknown before any reading shows it, its mean, deviation, walk or bounds: // Prior: kName
   limit      beyond it a reading or a file is refused, far from all that a machine has: // Limit: kName
+  warning    whether a warning is given depends on it, and no estimate: // Warning: kName
   numerical  a step, tolerance or rounding of the arithmetic, on which no result depends: // Numerical: kName
 A dimension at compile time and a factor 0.5, 1 or 2 of other constants do not count.
 """
@@ -22,7 +23,7 @@ _STATEMENT = re.compile(
     r"^[ ]*(?:static |inline )*constexpr (?:const )?(double|int|std::size_t|std::u?int64_t|Doubt|SwingLimits) "
     r"(k[A-Z]\w*[^;()]*?(?:\([^;]*?\)[^;()]*?)*);", re.M)
 _DEFAULT = re.compile(r"^[ ]+(?:double|int|std::size_t) ([a-z][a-z0-9_]*[a-z0-9])\{([^{};\n]+)\};", re.M)
-_CLASS = re.compile(r"// (Limit|Prior|Numerical): ((?:\w+(?:,\s+(?://+ )?)?)+)")
+_CLASS = re.compile(r"// (Limit|Prior|Numerical|Warning): ((?:\w+(?:,\s+(?://+ )?)?)+)")
 _SIZE = r"\w<[^<>;\n]*\b{0}\b|\w\[[^];\n]*\b{0}\b[^];\n]*\]\S* ?[;{{]|constexpr[^;\n]*=[^;\n]*\b{0}\b"
 _MATHEMATICS = {0.5, 1.0, 2.0}
 

@@ -13,6 +13,7 @@ constexpr double kRounded = 1e-12;  // relative size of a column that rounding m
 /// First bending of a link with what it carries, the joints held [rad/s]: anything from 10 to 30 Hz, by the root mean
 /// square of what it then gives, 1/kBending^2.
 constexpr double kBending = 16.0 * kTwoPi;
+// Prior: kBending
 constexpr double kOfRefreshAngle = 4;  // moves of joints that make 0.5 % of a deviation
 // Numerical: kOfRefreshAngle
 

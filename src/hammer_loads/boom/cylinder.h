@@ -42,7 +42,7 @@ struct CylinderParameters {
   /// (doc/boom_calibration.md).
   static constexpr double kFrictionForceDeviation = 0.015, kFrictionDeviation = 0.03;
   static constexpr double kStiffnessDeviation = 0.1;  ///< default for air and hoses of one machine's cylinders [-]
-  // Prior: kFrictionDeviation, kStiffnessDeviation
+  // Prior: kFrictionForceDeviation, kFrictionDeviation, kStiffnessDeviation
 };
 
 /// Length and leverage at a joint angle.
@@ -75,6 +75,7 @@ class Cylinder {
   /// Arms below this share of the shortest fixed side (joint to either anchor; of a linkage: joint to the coupler's
   /// pin, or the guide link) are a zero moment arm: the force would be 50 times the torque over that side.
   static constexpr double kZeroMomentArmRatio = 0.02;
+  // Limit: kZeroMomentArmRatio
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, a linkage that
   /// does not close, and a geometry that needs the cylinder shorter than closed or longer than open within the joint's

@@ -31,6 +31,7 @@ struct Seals {
 /// [rad/s].
 inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, double driven) noexcept {
   constexpr double kYielding = 3e-5;  // of a rod [m]
+  // Prior: kYielding
   const CylinderParameters& p = cylinder.parameters();
   const double size = std::abs(arm), force = std::abs(oil_torque / arm);
   return {size * (p.friction_force + p.friction * force),

@@ -19,6 +19,7 @@ constexpr double kWrongByPressures = 0.3;  // by them alone
 constexpr double kDoubt =
     0.6;  // number of deviations of an expected lead; the deviations are large, see ConstantErrors
 constexpr double kWrongLead = 0.3;  // relative error of the crank's lead, which may be a sensor's
+// Prior: kOilWithDelay, kWrongPart, kWrongByPressures, kWrongLead
 
 constexpr double kLeastStep = 0.25;  // part of the crank's step, just after the delay was identified
 // Numerical: kLeastStep

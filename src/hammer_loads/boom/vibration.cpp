@@ -10,7 +10,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSmall = 0.1;      // [rad]
+constexpr double kSmall = 0.1;  // [rad]
+// Limit: kSmall
 constexpr double kOilStep = 0.003;  // change of the log stiffness after which the modes are computed again
 // Numerical: kOilStep
 constexpr double kMostOil = ModeIdentifier::kMostOil;

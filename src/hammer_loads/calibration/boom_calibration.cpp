@@ -5,6 +5,7 @@
 
 #include "hammer_loads/calibration/recording_check.h"
 #include "hammer_loads/calibration/sensor_check.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
@@ -13,7 +14,8 @@ namespace {
 
 constexpr std::size_t kLeastRows = 60;  // per cylinder: 12 s of motion, both ways
 constexpr std::size_t kMostPoses = 40;  // at which static torques are judged
-constexpr double kSurprise = 3.0;       // standard deviations
+// Limit: kLeastRows
+// Numerical: kMostPoses
 
 double rms(const std::vector<double>& values) {
   double square = 0.0;
@@ -233,7 +235,7 @@ class Finder {
     std::vector<std::string> names;
     for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
       names.push_back(model.nameOf(static_cast<std::size_t>(i)));
-      if (const double off = std::abs(fit.x[i]); off > kSurprise)
+      if (const double off = std::abs(fit.x[i]); off > gate::kRare)
         result_.remarks.push_back(format("%s is %.1f deviations off what was given", names.back().c_str(), off));
     }
     addCorrelations(fit.covariance, names, result_);
@@ -247,6 +249,7 @@ class Finder {
     if (hung == weights_.end() || !any_free) return;
     std::vector<TipWeight> asked = weights_;
     constexpr double kAnything = 3.0;  // times what hangs there
+    // Prior: kAnything
     for (TipWeight& w : asked)
       if (w.mass > 0.0) w.deviation = kAnything * w.mass;
     const BoomModel model(basis_, asked);

@@ -42,6 +42,7 @@ struct CylinderFit {
   bool holds() const { return !(held_out > std::max(kHeldOutOverLeft * left, kHeldOutOverForce * force)); }
 
   static constexpr double kHeldOutOverLeft = 2.0, kHeldOutOverForce = 0.04;
+  // Limit: kHeldOutOverLeft, kHeldOutOverForce, kLimit
 };
 
 /// One row as a picture shows it.

@@ -5,11 +5,12 @@
 #include <set>
 
 #include "hammer_loads/calibration/positive_system.h"
+#include "hammer_loads/estimation/gates.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kFullWeight = 3.0;  // standard deviations of what is left
+constexpr double kFullWeight = gate::kRare;  // standard deviations of what is left
 constexpr int kMostRounds = 40;
 constexpr double kSettled = 1e-3;  // in standard deviations
 // Numerical: kMostRounds, kSettled

@@ -2,12 +2,12 @@
 #include <optional>
 
 #include "hammer_loads/calibration/boom_fit.h"
+#include "hammer_loads/estimation/gates.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
 constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
-constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
 constexpr double kStep = 0.05;           // step of differences, in standard deviations before the recording
 // Numerical: kStep
 
@@ -17,7 +17,7 @@ bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point)
   const double arm = std::abs(boom.cylinderPosition(cylinder).arm);
   const double rate = std::abs(point.motion.velocity[joint]);
   const double least = rate - point.half_width * std::abs(point.motion.acceleration[joint]);
-  return arm * least > kLeastRodSpeed && rate > kSurelyMoves * point.rate_std[joint];
+  return arm * least > kLeastRodSpeed && rate > gate::kRare * point.rate_std[joint];
 }
 
 /// The forces of all cylinders depend on it.

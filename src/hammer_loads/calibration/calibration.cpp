@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::size_t kLeastBlows = 12;
 constexpr std::size_t kRoughBlows = 40;  // blows of the first fit
+// Limit: kLeastBlows
+// Warning: kUsuallyNeeded
 constexpr double kUsuallyNeeded = 60.0;  // blows
 constexpr int kCurveParts = 72;
 // Numerical: kCurveParts

@@ -18,6 +18,8 @@ constexpr double kHalfSegment = 3.05;           // [rad] on either side of the b
 constexpr double kLeastSpeed = 3.0;             // [rad/s] at the blow: a slower one is no working turn
 constexpr std::size_t kLeastPoints = 5;         // on either side of the blow
 constexpr double kLargestStep = 0.35 * kTwoPi;  // [rad] between samples
+// Numerical: kRounding, kStride
+// Limit: kLeastSpeed, kLeastPoints, kLargestStep
 
 /// Largest number of which both are multiples (Euclid, with nearest remainders).
 double commonPart(double a, double b) {

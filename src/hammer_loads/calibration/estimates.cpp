@@ -15,7 +15,8 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kHides = 3.0;   // times the deviation without the hammer's constants: worth a word
+constexpr double kHides = 3.0;  // times the deviation without the hammer's constants: worth a word
+// Warning: kHides
 constexpr double kSeen = 0.7;    // part of a constant's deviation that is left, below which it is written
 constexpr double kUnsaid = 1.2;  // ratio of a variance to that by separate deviations: two of them cover 93 % then
 
@@ -64,6 +65,7 @@ constexpr double kEccentricity1Limit = 0.4 * kDegree;
 constexpr double kEccentricity2Limit = 0.2 * kDegree;
 constexpr double kInertiaLimit = 0.08;  // relative
 constexpr double kTimingLimit = 0.2;    // relative
+// Limit: kZeroLimit, kEccentricity1Limit, kEccentricity2Limit, kInertiaLimit, kTimingLimit
 
 /// Constant, or level, whose uncertainty makes most of that of a shared parameter; empty: the noise does.
 std::string hiddenBy(const Found& found, Eigen::Index parameter) {
@@ -258,6 +260,7 @@ void addRemarks(double curve_square, Calibration& result) {
 /// Largest effect of rods of 2e8 to 1e10 N/m with joint clearance up to 0.5 mm on the zero, the eccentricity and the
 /// drive's inertia (relative).
 constexpr double kOfZero = 3.0 * kDegree, kOfEccentricity = 1.5 * kDegree, kOfInertia = 0.3;
+// Prior: kOfZero, kOfEccentricity, kOfInertia
 
 /// Marks the keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
 /// ratio: encoder turns per crank turn.

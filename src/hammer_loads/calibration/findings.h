@@ -35,6 +35,7 @@ struct Findings {
   std::vector<std::string> remarks;
 };
 
+// Warning: kStrongCorrelation
 constexpr double kStrongCorrelation = 0.9;
 
 /// Adds the strong correlations of unknowns with these names.

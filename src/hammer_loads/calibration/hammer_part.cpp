@@ -16,7 +16,8 @@ namespace {
 constexpr int kReplicas = 4;            // replicas of the recording, in pairs whose errors have opposite signs
 constexpr double kMostUncertain = 5.0;  // variance over that before the recording
 constexpr double kBiasDoubt = 0.5;      // part of the bias that is left after its removal
-constexpr double kMounting = 0.0175;    // standard deviation of each part of an encoder's eccentricity [rad]: 1 deg
+// Prior: kBiasDoubt
+constexpr double kMounting = 0.0175;  // standard deviation of each part of an encoder's eccentricity [rad]: 1 deg
 // Prior: kMounting
 
 constexpr const char* kNames[kGlobals] = {"zero",

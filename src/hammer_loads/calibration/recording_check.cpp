@@ -6,24 +6,26 @@
 
 #include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/calibration/sensor_check.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/format.h"
 #include "hammer_loads/util/median.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kContradicts = 4.0;   // standard deviations
-constexpr double kSuspectNoise = 8.0;  // ratio of a sensor's noise to that in the other recordings
-constexpr double kSuspectIsOff = 2.0;  // standard deviations, where the sensor's noise is suspect
-constexpr double kLeastAngle = 0.01;   // [rad]: twice the deviation of a zero; less is no fault
-constexpr double kLeastReach = 0.05;   // [rad]: the scale of a joint that rests does not show
-constexpr double kMostAngle = 0.2;     // [rad]: what seems larger is the model's own error
-constexpr double kFlawStd = 0.1;       // [rad]: standard, of a flaw before the recording; a larger one meets limits
+constexpr double kContradicts = gate::kVeryRare;
+constexpr double kSuspectNoise = 8.0;           // ratio of a sensor's noise to that in the other recordings
+constexpr double kSuspectIsOff = gate::kUsual;  // where the sensor's noise is suspect
+constexpr double kLeastAngle = 0.01;            // [rad]: twice the deviation of a zero; less is no fault
+constexpr double kLeastReach = 0.05;            // [rad]: the scale of a joint that rests does not show
+constexpr double kMostAngle = 0.2;              // [rad]: what seems larger is the model's own error
+constexpr double kFlawStd = 0.1;      // [rad]: standard, of a flaw before the recording; a larger one meets limits
 constexpr double kFrictionStd = 0.3;  // standard, of a recording's friction, relative to that of all: warmth of the oil
 constexpr double kAngleStep = 1e-3;   // [rad]: step of differences
 // Prior: kFlawStd, kFrictionStd
 // Numerical: kAngleStep
 constexpr std::size_t kFewestRows = 5;  // of a cylinder in a recording
+// Warning: kSuspectNoise, kLeastAngle, kLeastReach, kMostAngle, kFewestRows
 
 /// Spread of all values but one about their median, as a standard deviation: a faulty recording shifts all others
 /// alike.

@@ -76,6 +76,7 @@ std::vector<std::pair<std::string, std::string>> notFoundOf(const Calibration& c
 /// Advice for the keys that were not found, else the use of the file.
 std::string nextStepOf(const Calibration& c) {
   constexpr double kLargeResidual = 1.3;  // limit stated in doc/your_machine.md
+  // Warning: kLargeResidual
   if (c.rod_gives)
     return "more such work does not help: turn the crank by hand, without blows, until the rocker rests on its tool "
            "with crank and rod in line; "

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/functions.h"
 
 namespace hammer_loads::calibration {
@@ -22,7 +23,7 @@ struct Seen {
 };
 
 /// Residual beyond which a sample counts less (Huber) [deviations].
-constexpr double kHuber = 3.0;
+constexpr double kHuber = gate::kRare;
 
 /// Huber's weight of a residual in deviations, and its cost.
 double weightOf(double r) { return std::abs(r) <= kHuber ? 1.0 : kHuber / std::abs(r); }

@@ -22,6 +22,7 @@ constexpr double kBesideLeap = 0.3;  // [s]
 constexpr std::ptrdiff_t kLeastBeside = 5;
 constexpr double kStays = 0.5;          // [s]
 constexpr double kNoiseOverStep = 2.0;  // ratio of noise to the step of the readings above which they never repeat
+// Warning: kQuietNoise, kLoudNoise, kLeap, kLeapOverNoise, kLeapStays, kBesideLeap, kStays, kNoiseOverStep
 
 /// Standard deviation of a joint's rate where it is quietest: of the sensor's noise, motion adds to it elsewhere.
 double quietNoise(const BoomPoints& recording, int joint) {
@@ -122,6 +123,7 @@ double noiseOverStep(const Trace& trace) {
 constexpr double kFits = 0.5;    // part of the force, rms: errors of nominal masses, friction and zeros are below it
 constexpr double kBetter = 0.5;  // another reading of it is off by less than this part
 constexpr double kBeyondLimit = 0.3;  // [rad]
+// Warning: kFits, kBetter, kBeyondLimit
 
 constexpr std::pair<const char*, double> kUnits[]{
     {"Pa", 1.0}, {"bar", 1e5}, {"psi", 6894.757}, {"kPa", 1e3}, {"MPa", 1e6}};

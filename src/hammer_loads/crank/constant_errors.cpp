@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/estimation/look_back.h"
@@ -15,13 +14,8 @@ constexpr int kFirstTurns = 4;   // the drive inertia is learned first
 constexpr int kTurnsToKnow = 6;  // nothing is concluded before
 constexpr double kUnmodelledCounts =
     0.5;  // apparent error of a clean machine by an encoder's coarseness: 0.2 to 0.4 deg with 1024 counts
+// Prior: kUnmodelledCounts
 constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well, before a warning
-constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a supply that follows the crank's
-                                               // speed looks more like b, at 50 Hz twice as much, and
-                                               // the torque's walk holds more of what is not seen
-
-constexpr double kNotSeen = 0.6;  // of the zero's prior
-constexpr double kGiven = 0.01;   // standard deviation of a zero at most [rad], at constant speed
 
 }  // namespace
 
@@ -62,19 +56,16 @@ void ConstantErrors::considerPriors() noexcept {
 }
 
 void ConstantErrors::learn(double innovation, double variance, const Row& by_error) noexcept {
-  ++samples_;
   const double weight = fit_.learn(innovation, variance, by_error.head<kTable>());
   beside_ += (weight * by_error.head<kPlace>().transpose()).lazyProduct(by_error.tail<kMachineColumns>());
 }
 
 void ConstantErrors::endTurn(double growth, double count) noexcept {
-  const int samples = std::exchange(samples_, 0);
   ++turns_;
-  const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
   Matrix covariance = Matrix::Zero();
   covariance.topLeftCorner<kPlace, kPlace>() = fit_.covarianceOfFirst<kPlace>();
   const auto ofSensor = [&](int i) {  // variance of what is seen, as if the hammer were right
-    return square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + growth * covariance(i, i);
+    return square(kUnknowns[static_cast<std::size_t>(i)].unmodelled) + growth * covariance(i, i);
   };
   zero_looks_ = covariance.row(kZero).dot(fit_.score());
   zero_is_seen_ = exceeds(zero_looks_, ofSensor(kZero), gate::kUsual);
@@ -101,12 +92,9 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
     certain[i] = excess > 0.0 ? std::copysign(std::sqrt(excess), estimate_[i]) : 0.0;
     if (excess > 0.0) share = std::max(share, excess / square(estimate_[i]));
   }
-  moment_ = 1.0 / square(unmodelled) * growth * covariance + certain * certain.transpose();
+  moment_ = growth * covariance + certain * certain.transpose();
   // A certain error counts in full; an uncertain one adds little.
   moment_.diagonal() += share * share * doubt;
-  // A crank at constant speed gives no information on its zero, for which the given deviation is used.
-  if (growth * covariance(kZero, kZero) > square(kNotSeen * prior_[kZero]))
-    moment_(kZero, kZero) = square(std::min(kGiven, zero_given_));
   moment_(kZero, kZero) += stepped_ + square(zeroNotLinear());
   if (!zeroIsShown()) moment_(kZero, kZero) = std::max(moment_(kZero, kZero), square(zero_given_));
   considerPriors();

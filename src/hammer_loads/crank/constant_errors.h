@@ -175,6 +175,7 @@ class ConstantErrors {
   static constexpr double kCalibratedZero = 0.02;  ///< [rad]: a zero of a smaller standard deviation needs no proof
   /// Standard deviation of estimate() by an elastic connecting rod, which imitates an error of the zero [rad].
   static constexpr double kRodHides = 0.01;
+  // Prior: kUnknownZero, kRodHides, kNotLinear
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< errors of the table alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
@@ -269,8 +270,8 @@ class ConstantErrors {
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
   double zero_looks_{};  ///< [rad]
   bool zero_is_seen_{}, zero_is_doubted_{};
-  double stepped_{};         ///< variance of the zero's steps [rad2]
-  int turns_{}, samples_{};  ///< samples: of this turn
+  double stepped_{};  ///< variance of the zero's steps [rad2]
+  int turns_{};
 };
 
 }  // namespace hammer_loads

@@ -12,8 +12,6 @@ namespace {
 constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
 // Prior: kLeastFactor, kMostFactor
-constexpr double kMostDoubt = 1.0;     // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
-constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
 
 /// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].
 void doubtSpeedChange(double variance, double w, double since, double dt, CrankBelief& b) noexcept {
@@ -99,9 +97,7 @@ void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
   draw(kFactor, square(prior.deviation), prior.by_error);
 }
 
-BlowPrior CrankBelief::priorOf(const BlowPrior& drawn) const noexcept {
-  return tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
-}
+BlowPrior CrankBelief::priorOf(const BlowPrior& drawn) const noexcept { return tool_met ? BlowPrior{1.0, 0.0} : drawn; }
 
 void CrankBelief::widen(double by) noexcept {
   if (!(by > 1.0)) return;
@@ -198,7 +194,7 @@ bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt)
   const double before = state.speed / factor, since = std::max(0.5 * dt, state.position.angle.offset / state.speed);
   const double squared = row == kSpeed ? square(before) : square(before) * (square(since) + square(dt) / 12.0);
   const double variance = (square(innovation) - total) / squared;
-  if (!(variance > 0.0 && variance < square(kMostDoubt))) return false;
+  if (!(variance > 0.0)) return false;
   covariance(kFactor, kFactor) += variance;
   struck_early = struck_early && square(factor - 1.0) > variance;  // else what was taken for the tool was noise
   doubtSpeedChange(variance, before, since, dt, *this);

@@ -20,6 +20,7 @@ constexpr double kNoiseStep = 2e-3;  ///< [s] over which the process noise is sp
 // Numerical: kNoiseStep
 /// Largest change of the inertia's logarithm by one sample: beyond it the linearisation is invalid.
 constexpr double kMostInertiaChange = 0.3;
+// Numerical: kMostInertiaChange
 
 /// Random walks of the variables that are not measured, and the law of the torque.
 struct CrankWalks {
@@ -131,6 +132,7 @@ class BlowHistory {
   static constexpr double kFirstCounts = 0.1, kLength = 10.0 + kFirstCounts;
   static constexpr double kLeast = 0.01;  // deviation
   static constexpr double kMost = 0.3;
+  // Prior: kLeast, kMost
   BlowPrior first_;
   RunningMean<> mean_, variance_;
   RunningMean<ConstantErrors::Row> by_error_;

@@ -35,7 +35,9 @@ struct SupplyLaw {
 class LearnedSupply {
  public:
   /// unit: largest stiffness [N m/rad], > 0.
-  explicit LearnedSupply(double unit) noexcept : usual_(kTurns, square(unit), 1.0) { law_.unit = unit; }
+  explicit LearnedSupply(double unit) noexcept : usual_(look_back::kTurnsToKnow, square(unit), 1.0) {
+    law_.unit = unit;
+  }
   const SupplyLaw& law() const noexcept { return law_; }
   /// Notes that the time before is not known.
   void restart() noexcept {
@@ -64,7 +66,6 @@ class LearnedSupply {
   }
 
  private:
-  static constexpr double kTurns = 3.0;
   RunningMean<> usual_, half_turn_;
   SupplyLaw law_;
   CrankPosition from_;
@@ -101,7 +102,7 @@ class SupplyRoughness {
 // A path is cut into smooth pieces that end at the blow.
 constexpr double kMaxStepAngle = 0.04;  ///< largest crank angle in one piece [rad]
 constexpr int kMaxSteps = 4096;         ///< bounds the work for absurd speeds; steps get longer beyond it
-// Numerical: kMaxSteps
+// Numerical: kMaxStepAngle, kMaxSteps, kMostCreepingPasses
 /// [rad/s]: a slower crank is moved by friction and stopped by the tool; nothing jumps there.
 constexpr double kSlowCrank = 5.0;
 /// [rad/s]: a crank that creeps over the blow has no defined instant of passing it.
@@ -182,13 +183,12 @@ struct ShaftState {
   double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
 };
 
-constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: it would be higher than long
+constexpr double kNearTool = 0.06;  ///< [rad] from the dead centre
 constexpr double kStepsToTool = 1.5;
 
 /// Returns true if the tool may be met within a step of length dt [s].
 inline bool isNearTool(const ShaftState& state, double dt) noexcept {
-  return std::abs(state.position.angle.offset) <
-         std::clamp(kStepsToTool * std::abs(state.speed) * dt, kNearTool, kHighestTool);
+  return std::abs(state.position.angle.offset) < std::max(kStepsToTool * std::abs(state.speed) * dt, kNearTool);
 }
 
 /// w' = (tau + weight - Jc r alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).

@@ -20,8 +20,9 @@ constexpr double kLeastInertia = 0.1;    // of the first guess: no drawing is fu
 constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held at constant speed looks that heavy
 constexpr double kRelearn = 0.05;        // relative deviation of the inertia after what it cannot explain
 constexpr double kMostTorque = 3.0;      // times its first deviation: more is what a bad sample left behind
-// Prior: kMostTorque
+// Prior: kRelearn, kMostTorque
 constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: more is a diverged filter
+// Limit: kSoundSpeeds
 // Prior: kLeastInertia, kMostInertia
 constexpr int kOneSided = 3;              // innovations in a row beyond 5 deviations: no jitter of stamps
 constexpr int kOneSidedLost = 10;         // the same where readings made no sense: they do again, elsewhere

@@ -168,6 +168,7 @@ class CrankFilter {
   static constexpr double kLearnSpeed = kSlowCrank;
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kHeld = 10.0;                 ///< times the first guess: no drive is as heavy
+  // Limit: kHeld
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kSteps = 20.0;  ///< in their mean
   // Numerical: kSteps
@@ -206,8 +207,8 @@ class CrankFilter {
   void followLostTime(SampleStep& to) noexcept;
   void predictTo(SampleStep& to, double dt) noexcept;
   double timeLost(double dt, const Innovation& innovation) const noexcept;
-  bool mayBeRod(const Innovation& innovation) const noexcept;
-  bool mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept;
+  bool mayBeRod() const noexcept;
+  bool mayHaveSlipped(const WeighedSample& sample) const noexcept;
   EncoderSlip::Step followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept;
   Tracking ignore(const CrankBelief& last, const Innovation& innovation) noexcept;
   bool correct(const CrankBelief& last, double dt, bool struck, const Innovation& innovation,

@@ -68,6 +68,8 @@ class CrankSensor {
 constexpr double kFinestCount = kTwoPi / 65536.0;
 /// Tolerance of a multiple, as part of a count: sensors in single precision round by 4e-4 of 2 pi/4096.
 constexpr double kCountTolerance = 1e-3;
+// Numerical: kCountTolerance
+// Limit: kFinestCount
 
 /// An encoder counts down to the last whole count, so a reading means the middle of its count. The count is read off
 /// the readings: the largest whole part of a turn of which all their differences are multiples. Until there are enough
@@ -199,6 +201,7 @@ class EncoderSlip {
   /// [rad]: an innovation that no working machine makes between two samples; the sensor is another one, and the
   /// estimate restarts.
   static constexpr double kMost = 0.5;
+  // Limit: kMost
 
   /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
   /// in a step of usual length; longer: in what this one lasts beyond that [rad]. possible: place and samples before

@@ -14,7 +14,6 @@ constexpr double kSpeedTurns = 30.0;  // of lag and scale: some 6 s at work
 constexpr double kMostScale = 0.5;
 constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
 constexpr double kNotableScale = 0.01;  // likewise
-constexpr double kLeastSquare = 1e-4;   // of a residual, over that expected: no reading is a hundred times better
 constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
 constexpr double kMostOfOne = 0.999;    // of a correlation
 // Prior: kMostScale
@@ -70,7 +69,7 @@ void SpeedTrust::endTurn() noexcept {
   const Eigen::Vector2d by_turn = same_.bottomLeftCorner<2, 1>();
   const Eigen::Vector2d fit = (prior + of_turn).inverse() * by_turn;
   const Row best(1.0, -fit[0], -fit[1]);
-  const double sum = std::max(best.dot(same_ * best), kLeastSquare * count_);
+  const double sum = best.dot(same_ * best);
   const double rho = std::clamp(best.dot(next_ * best) / sum, 0.0, kMostOfOne);
   const double counts = (1.0 - rho) / (1.0 + rho) * (count_ - kFitted) / sum;  // of a row, over one of unit variance
   square_ = same_(0, 0) / count_;

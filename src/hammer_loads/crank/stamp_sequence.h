@@ -50,7 +50,7 @@ class ControllerTask {
     const double step = 1e-9 * static_cast<double>(stamp - std::exchange(last_, stamp));
     if (!(std::abs(step) < kLongest)) return false;
     const double mean = step_.mean(), most = kMost * mean;
-    step_.add(step_.count() > kFew ? mean + std::clamp(step - mean, -most, most) : step);
+    step_.add(step_.count() > 0.0 ? mean + std::clamp(step - mean, -most, most) : step);
     return true;
   }
   void findGrid(std::int64_t stamp, double off) noexcept {
@@ -74,7 +74,6 @@ class ControllerTask {
   static constexpr double kRecognised = 0.5;  ///< by chance once in exp(100)
   static constexpr double kDivides = 0.1;     ///< share of a period up to which an interval counts as whole periods
   static constexpr double kMost = 0.5;        ///< share of the mean interval by which one may differ from it
-  static constexpr double kFew = 10.0;        ///< intervals
   static constexpr double kLongest = 0.1;     ///< [s]
   static constexpr double kOften = 0.2, kStuck = 0.98;
 

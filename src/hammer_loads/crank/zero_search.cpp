@@ -5,25 +5,26 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr int kMeanOfTurns = 5;
 constexpr int kEvery = 8;                 // turns between evaluations, once the first ones are done
 constexpr double kSameTurn = 0.2;         // relative change of a turn's time: otherwise the machine starts or stops
-constexpr double kLongestStep = 0.1;      // [s]
 constexpr double kInertiaKnown = 0.5;     // standard deviation of the logarithm of Jc
 constexpr double kStiffnessKnown = 30.0;  // standard deviation of K [N m/rad]
 constexpr double kLeastEnergy = 1.0;      // [J]
 constexpr double kLongestMove = 0.1;      // [rad] of the zero in one step of the fit
-constexpr double kExplained = 0.05;       // part of the times' squares that the best fit may leave
-constexpr double kStated = 0.06;          // largest standard deviation of a zero that is stated [rad]
-constexpr double kStepGain = 0.02;        // of the mean step
+// Numerical: kLeastEnergy, kLongestMove
+constexpr double kStated = 0.06;    // largest standard deviation of a zero that is stated [rad]
+constexpr double kStepGain = 0.02;  // of the mean step
 constexpr int kFineSteps = 5;
 constexpr int kCandidates = 12;  // places of the blow whose fit is improved
+// Prior: kInertiaKnown, kStiffnessKnown
+// Limit: kStated
 enum : Eigen::Index { kInertia, kEnergy, kTorque, kStiffness, kZero, kStart };
 
 }  // namespace
@@ -37,7 +38,7 @@ void ZeroSearch::restart() noexcept {
 
 void ZeroSearch::add(double angle, double step, const HullMotion& hull) noexcept {
   const double turned = samples_ > 0 ? CrankAngle::wrapToPi(angle - last_.back().angle) : 0.0;
-  if (!(step > 0.0) || step > kLongestStep || turned < -0.5 * kWidth * kPlaces / 8.0) samples_ = 0;
+  if (!(step > 0.0) || step > look_back::kHalfTurn || turned < -0.5 * kWidth * kPlaces / 8.0) samples_ = 0;
   if (samples_ == 0) {
     samples_ = 1, passed_ = 0;
     place_time_.reset();
@@ -94,7 +95,7 @@ void ZeroSearch::endTurn() noexcept {
   for (const double time : turn_) all += time;
   if (turns_ > 0 && std::abs(all - turn_time_) > kSameTurn * all) turns_ = 0, due_ = kTurnsToKnow;
   ++turns_;
-  const double weight = 1.0 / std::min(turns_, kMeanOfTurns);
+  const double weight = 1.0 / std::min(turns_, look_back::kTurnsToKnow);
   turn_time_ = turns_ == 1 ? all : turn_time_ + weight * (all - turn_time_);
   for (std::size_t i = 0; i < kPlaces; ++i)
     times_[i] = turns_ == 1 ? turn_[i] : times_[i] + weight * (turn_[i] - times_[i]);
@@ -198,19 +199,12 @@ ZeroSearch::Fit ZeroSearch::step(int blow, const Table& table, const Vector& x, 
   return fit;
 }
 
-/// Standard deviation [rad]; infinite where the fit does not explain the times, or where these are of an even speed.
-double ZeroSearch::deviationOfZero(const Fit& fit, int blow) const noexcept {
-  double all = 0.0, elapsed = 0.0, uneven = 0.0;
-  for (int k = kFrom; k < to_; ++k) all += time(blow, k);
-  for (int k = kFrom; k < to_; ++k) {
-    elapsed += time(blow, k);
-    uneven += square(elapsed - all * (k + 1 - kFrom) / (to_ - kFrom));
-  }
+/// Standard deviation [rad]; infinite where the fit has none.
+double ZeroSearch::deviationOfZero(const Fit& fit) const noexcept {
   Vector unit = Vector::Zero();
   unit[kZero] = 1.0;
   const double variance = fit.information.ldlt().solve(unit)[kZero];
-  const bool explains = fit.squares < kExplained * uneven && variance > 0.0 && fit.unknowns.allFinite();
-  return explains ? std::sqrt(variance) : kInfinity;
+  return variance > 0.0 && fit.unknowns.allFinite() ? std::sqrt(variance) : kInfinity;
 }
 
 void ZeroSearch::evaluate() noexcept {
@@ -248,7 +242,7 @@ void ZeroSearch::evaluate() noexcept {
     best = step(blow, tableAt(x[kZero]), x, true);
     if (n < kFineSteps) x = best.unknowns;
   }
-  const double deviation = deviationOfZero(best, blow);
+  const double deviation = deviationOfZero(best);
   if (deviation < kStated) found_ = Found{CrankAngle::wrapToPi(blow * kWidth + x[kZero]), deviation};
 }
 

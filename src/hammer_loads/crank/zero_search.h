@@ -85,7 +85,7 @@ class ZeroSearch {
   void forEachStretch(int blow, const Table& table, const Use& use) const noexcept;
   Vector guess(int blow, const Table& table) const noexcept;
   Fit step(int blow, const Table& table, const Vector& unknowns, bool with_zero) const noexcept;
-  double deviationOfZero(const Fit& fit, int blow) const noexcept;
+  double deviationOfZero(const Fit& fit) const noexcept;
 
   ShaftModel model_;
   double drive_inertia_;

@@ -11,9 +11,8 @@ constexpr double kFiveTurns = 1.0;              ///< [s]: what was there in each
 constexpr double kTenTurns = 2.0 * kFiveTurns;  ///< [s]: a mean in which one turn more or less does not show
 
 // Boom and hull vibrate at 2 to 40 Hz.
-constexpr double kHeld = 0.01;            ///< [s]: a reading holds
-constexpr double kLine = 0.02;            ///< [s]: a line through the last readings goes on
-constexpr double kLongestReading = 0.05;  ///< [s]: that one counts for, over a gap as well
+constexpr double kHeld = 0.01;  ///< [s]: a reading holds
+constexpr double kLine = 0.02;  ///< [s]: a line through the last readings goes on
 
 // A variance by n values is known to sqrt(2/n).
 constexpr double kReadings = 200.0;       ///< to a tenth

@@ -33,13 +33,12 @@ class TimingNoise {
     const double visible = std::max(kVisible, variance_);
     if (!(squared_speed * visible > total - squared_speed * variance())) return;  // too slow to show it
     if (samples_++ == 0) information_ = lever * lever;
-    const double gain =
-        std::max(kGain, 1.0 / (samples_ + (step > kSparse && step < kSparsest ? kFirstOfSparse : kFirstCounts)));
+    const double gain = std::max(kGain, 1.0 / (samples_ + (step > kSparse ? kFirstOfSparse : kFirstCounts)));
     information_ += gain * (lever * lever - information_);
     const double clipped =
         std::min(0.5 * change * change / total, square(samples_ < kLearning ? gate::kUsual : gate::kRare));
     const double before = variance_;
-    variance_ = std::clamp(variance_ + gain * (clipped - 1.0) * lever / information_, 0.0, kLargest * kLargest);
+    variance_ = std::max(0.0, variance_ + gain * (clipped - 1.0) * lever / information_);
     // Samples show the less of a stamp the more it jitters.
     information_ /= square(1.0 + std::sqrt(information_) * (variance_ - before));
   }
@@ -57,10 +56,8 @@ class TimingNoise {
   static constexpr double kFirstCounts = 50.0;  // samples that the first guess stands for
   static constexpr double kFirstOfSparse =
       10.0;  // samples of the first guess at sparse samples, as the filter at 100 Hz would restart until then
-  static constexpr double kSparse = 0.008;    // [s]
-  static constexpr double kSparsest = 0.015;  // [s]: at 50 Hz too few samples see a clean sensor's jitter
-  static constexpr double kVisible = 9e-8;    // [s2]: a sample that could not see 0.3 ms is not asked
-  static constexpr double kLargest = 0.02;    // [s]: more is no jitter
+  static constexpr double kSparse = 0.008;  // [s]
+  static constexpr double kVisible = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};

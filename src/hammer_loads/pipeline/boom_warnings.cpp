@@ -15,6 +15,7 @@ namespace {
 
 /// Delay of stamps from which on a warning is given; it may be mistaken for softer oil [s].
 constexpr double kLateStamp = 8e-4;
+// Warning: kLateStamp, kKnown, kPart, kOfNoCylinder
 
 /// Apparent delay of pressures by damping that is not the oil's [s]: that of the damping in excess of the boom file's,
 /// or of all damping if it is implausible, and the deviation of the delay.

@@ -29,6 +29,8 @@ constexpr double kSlowPart = 0.8, kFastPart = 1.2;  // of the mean rate: a crank
 constexpr double kLikeRevolution = 1.25;            // factor
 constexpr double kSameLength = 0.2;                 // relative change from one revolution to the next
 constexpr double kLeastCounts = 100.0;              // counts per revolution
+// Limit: kTolerance, kLeastStretch, kStretch, kLongestStep, kRepeats, kMoves, kEnough, kWindow, kMeanRate, kSlowPart,
+// kFastPart, kLikeRevolution, kSameLength, kLeastCounts, kBack
 
 /// Unit that a cycle's length in the angle's own unit, times the gain, shows. Nothing: it is none of them.
 std::optional<CrankUnit> unitOfRevolution(double length) noexcept {

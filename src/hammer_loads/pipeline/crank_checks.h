@@ -104,6 +104,7 @@ class CrankTrust {
   /// zero 30 deg off on a machine with an elastic rod, or on a machine without a tool, nine of ten are not.
   static constexpr int kUnpublished = 2;
   static constexpr double kRunUp = 1.0;  ///< [rad]: more than the noise of readings, less than the motion at a blow
+  // Limit: kRunUp
   /// Judges the direction of rotation. A stopping hammer that falls back on its tool turns backward by less than half a
   /// turn, since the rocker cannot pass the dead centre backward.
   void followTurning(double turned) noexcept {
@@ -188,6 +189,7 @@ class UnitCheck {
 
  private:
   static constexpr int kSuspicious = 2;  ///< votes more for another unit than against
+  // Limit: kSuspicious
 
   void begin(double angle) noexcept;
   void compareWithSpeed(double step, double predicted) noexcept;

@@ -46,6 +46,7 @@ class CylinderPressures {
 
  private:
   static constexpr double kLeastJump = 5e6;  // [Pa]: a fifth of the working pressure
+  // Limit: kLeastJump
 
   struct Reading {
     StampNs stamp{};

@@ -17,8 +17,6 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 // Numerical: kWalks, kWalksOfIntegral
-constexpr double kBlowPart = 0.3;                // relative error of a blow's impulse until the crank has turned on
-constexpr double kNoisiest = 3.0;                // times the first guess: a unit whose noise at rest was not seen
 constexpr double kFarOff = square(gate::kRare);  // in variances: limit of the contribution of a reading
 constexpr double kComplianceWalk = 0.01;         // part of the first guess's deviation in a second: a pose that changes
 // Prior: kComplianceWalk
@@ -67,7 +65,7 @@ DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settin
     Candidate& c = candidates_[i];
     c.walk = settings.reads == Reads::kItself ? kWalks[i] : kWalksOfIntegral[i];
     c.x.setZero(), c.P.setZero();
-    c.variance = square(settings.noise), c.quiet = square(kNoisiest * settings.noise);
+    c.variance = square(settings.noise), c.quiet = c.variance;
     c.P.diagonal().tail<9>() = prior_ / c.variance;
   }
   best_ = kCandidates / 2;
@@ -122,7 +120,6 @@ void DrivenSignal::begin(double reading, const Eigen::Vector3d& load) noexcept {
 void DrivenSignal::carry(const Step& step, double slope_step, double walk, double unit, State& x,
                          Covariance& P) const noexcept {
   const double h = step.length, hh = h * h, q = walk * h;
-  const double struck = square(kBlowPart * step.blow.dot(x.segment<3>(kCompliance)));
   x.head<3>() = carried(x.transpose(), step, slope_step).transpose();
   const Eigen::Matrix<double, kStates, 3> PF = carried(P, step, h);
   P.leftCols<3>() = PF;
@@ -132,7 +129,6 @@ void DrivenSignal::carry(const Step& step, double slope_step, double walk, doubl
   P(kIntegral, kIntegral) += q * hh * hh / 20.0, P(kSmooth, kSmooth) += q * hh / 3.0, P(kSlope, kSlope) += q;
   const auto both = [&](int i, int j, double value) { P(i, j) += value, P(j, i) += value; };
   both(kIntegral, kSmooth, q * hh * h / 8.0), both(kIntegral, kSlope, q * hh / 6.0), both(kSmooth, kSlope, q * h / 2.0);
-  P(kIntegral, kIntegral) += struck / unit;
   P.diagonal().tail<9>() += h * square(kComplianceWalk) / unit * prior_;
 }
 

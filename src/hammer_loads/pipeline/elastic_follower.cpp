@@ -14,14 +14,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kFrom = -0.30,
-                 kFromLatest = -0.05;            // beginning of the elastic model [rad]: some 15 ms before the blow
+constexpr double kFrom = -0.30;                  // beginning of the elastic model [rad]
 constexpr double kTo = 2.2, kRungOutTime = 0.3;  // [rad], [s] after the blow: by then no rod vibrates
 // Numerical: kTo, kRungOutTime
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // for logarithms of likelihoods, per blow
 constexpr std::int64_t kOthersTurn = 4;                 // [blows]
 // Numerical: kOthersTurn
-constexpr double kContact = 5e-4, kContactsShare = 0.01;  // [s]; of a restitution: what that makes of it
+constexpr double kContact = 5e-4;  // [s]
 
 /// After a blow with a small restitution the rod brakes the crank to less than kSlowCrank. A rocker that was never
 /// struck is contradicted long before.
@@ -41,9 +40,9 @@ ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
 
 bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept {
   const CrankPosition& at = crank.estimate().position;
-  return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && at.angle.offset < kFromLatest &&
-         crank.estimate().speed > kSlowCrank && filter.hasSpeed() && filter.driveInertia() > 0.0 &&
-         filter.isPlausible() && !filter.isDoubtful() && filter.readingDeviation() < RodEvidence::kCoarsest;
+  return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && crank.estimate().speed > kSlowCrank &&
+         filter.hasSpeed() && filter.driveInertia() > 0.0 && filter.isPlausible() && !filter.isDoubtful() &&
+         filter.readingDeviation() < RodEvidence::kCoarsest;
 }
 
 const char* ElasticFollower::whyNotUsed() const noexcept {
@@ -141,7 +140,7 @@ ElasticFollower::Impulse ElasticFollower::impulse(const DriveReaction& drive, do
   if (!blow || begin.angle.side == end.angle.side) return result;
   const LoadImpulse jump = lost(blow->before, blow->after);
   result.motion = {result.motion.all + -1.0 * jump.all, result.motion.drive_y - jump.drive_y};
-  const double restitution = std::hypot(filter().deviation(RodFilter::kRestitution), kContactsShare);
+  const double restitution = filter().deviation(RodFilter::kRestitution);
   result.doubt = wrenchOf(restitution / (1.0 + filter().motion().restitution) * vectorOf(jump.all).cwiseAbs());
   return result;
 }
@@ -169,8 +168,7 @@ std::optional<CrankBlow> ElasticFollower::blow() const noexcept {
   blow.speed = strikingSpeed();
   blow.speed_std = filter().deviation(RodFilter::kSpeed);
   blow.factor = inertia.factor(m.restitution);
-  blow.factor_std =
-      std::hypot(filter().deviation(RodFilter::kRestitution), kContactsShare) / inertia.restitutionPerFactor();
+  blow.factor_std = filter().deviation(RodFilter::kRestitution) / inertia.restitutionPerFactor();
   return blow;
 }
 

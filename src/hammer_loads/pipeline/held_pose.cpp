@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kMemory = look_back::kSomeTurns;  // time constant of each filter
 constexpr double kLost = 0.5;                      // jump of an angle that winds or came back [rad]
-constexpr double kStill = 0.03;                    // [rad]: deviation after a gap that vibration alone explains
-constexpr double kFast = 0.05;                     // [rad/s]: its acceleration hides the vibration
+// Limit: kLost
+constexpr double kFast = 0.05;    // [rad/s]: its acceleration hides the vibration
 constexpr double kSettles = 2.5;  // [s]: time for which the filters show a fast motion as an acceleration
 
 }  // namespace
@@ -25,7 +25,7 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   since_blow_ += step;
   const bool is_first = first_.size() != measured.position.size(), gap = !(step < kMemory);
   if (gap && !is_first && !isDriven()) goOn(step);
-  const bool lost = is_first || !((measured.position - first_).cwiseAbs().maxCoeff() < (gap ? kStill : kLost));
+  const bool lost = is_first || !((measured.position - first_).cwiseAbs().maxCoeff() < kLost);
   if (lost) {
     first_ = slow_ = slowest_ = last_ = measured.position;
     unrest_ = look_back::kFiveTurns;

@@ -114,6 +114,7 @@ class HullImu {
   // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for vibrating steel too.
   static constexpr double kLeastForceJump = 200.0;  // [m/s2]
   static constexpr double kLeastRateJump = 3.0;     // [rad/s]
+  // Limit: kLeastForceJump, kLeastRateJump
 
   /// In axes of hammer_hull.
   struct Sample {

@@ -15,6 +15,7 @@ namespace {
 constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
 constexpr double kSwings =
     2.0;  // ratio to the immediate response to a load: a hull on oil, whose modes are excited by blows
+// Prior: kSwings
 // Standard deviation of a constant offset of such a unit, which the filter cannot identify.
 constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
 // Prior: kForceOffset, kRateOffset

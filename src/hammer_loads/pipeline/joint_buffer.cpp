@@ -12,6 +12,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLeastJump = 0.1, kFastest = 3.0;  // [rad, m], [rad/s, m/s]: of a boom's joints, three times as fast
+// Limit: kLeastJump, kFastest
 
 }  // namespace
 

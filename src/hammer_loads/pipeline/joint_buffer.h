@@ -71,6 +71,7 @@ class JointBuffer {
   };
   /// Some 0.6 s at 100 Hz: how far a crank sample may lie behind the joint states.
   static constexpr std::uint64_t kKept = 64;
+  // Numerical: kKept
   struct Track {
     std::array<State, kKept> states;
     std::uint64_t count{};           ///< number of states since the beginning; the newest is count - 1

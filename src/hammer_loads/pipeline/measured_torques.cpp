@@ -13,7 +13,8 @@ namespace {
 constexpr double kLaw = 0.3;  // error of the law of friction, of its size: seals yield before they slide
 // Prior: kLaw
 constexpr double kSlowJoint = 0.005;  // rate near standstill [rad/s]
-constexpr double kLag = 0.4;          // part of the oscillation per root of the surprise: 5 to 20 ms cost 0.3 to 1.4
+// Numerical: kSlowJoint
+constexpr double kLag = 0.4;  // part of the oscillation per root of the surprise: 5 to 20 ms cost 0.3 to 1.4
 
 /// Friction of seals between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {

@@ -47,6 +47,7 @@ class MisuseFollower {
   static constexpr double kPatience = 15.0;  // [s]
   /// The hull has moved: two deviations of a tip 6 m away by joint sensors of 0.1 deg.
   static constexpr double kMoved = 0.02;  // [m]
+  // Warning: kPatience, kMoved
 
   /// Takes the position of the hull's origin at a sample [m], in any fixed frame.
   void hullAt(const Eigen::Vector3d& place) noexcept {

@@ -21,7 +21,8 @@ constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
 constexpr Doubt kTorque{0.004, 0.02, 0.002};  // parts of the torque that the cylinder's relief valve allows
 constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at the mean of their places
 // Prior: kTorque
-constexpr double kMoved = 0.02;     // [rad]: a jump
+constexpr double kMoved = 0.02;  // [rad]: a jump
+// Limit: kMoved
 constexpr double kOfSample = 0.75;  // part of the step between samples, within which a reading belongs to one
 
 void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {

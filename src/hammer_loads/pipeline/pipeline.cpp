@@ -15,17 +15,14 @@ namespace {
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
-constexpr double kPeakLasts = 60.0;                           // [s]
 constexpr double kUncertain = 5.0;  // times withhold_above: half of the peak, beyond it a load says nothing
-constexpr double kInertiaOff =
-    0.9;  // logarithm of the drive inertia over the given one, which a wrong zero changes more
-constexpr double kLeastPeak = 0.1;  // of that at constant speed: a hammer that idles is judged as one that works
+// Limit: kMostForce, kMostForceUnproven, kMostSpeedUnproven, kUncertain
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
 
 /// Largest component of the force over a turn [N].
 double peakAtConstantSpeed(const Mechanism& mechanism, Level level, double speed) noexcept {
-  constexpr int kPoints = 72;
+  constexpr int kPoints = 72;  // Numerical: kPoints
   const HullModel model(mechanism, level == Level::kPulse ? Level::kRocker : level);
   double force = 0.0;
   for (int i = 0; i < kPoints; ++i) {
@@ -122,7 +119,6 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   hull_.vibrates(result_.boom != nullptr ? &*boom_ : nullptr);
   fill(links, drive, rod);
   sampler_.sample(links, result_, result_.outputs);
-  followPeak();
   if (crank_.step().known()) hull_.carry(result_.wrench, crank_.step().length());
   turn_.published(result_);
   ++counts_.accepted;
@@ -216,27 +212,16 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
 
 /// No force of a crank at work is as large as the peak at constant speed: with a larger standard deviation a sample
 /// carries no information. A crank held at constant speed shows little of itself: its samples are known where no
-/// force's standard deviation is above five times withhold_above of the peak of the last minute, within the bounds of a
-/// turn at constant speed.
+/// force's standard deviation is above five times withhold_above of the peak at constant speed.
 bool Pipeline::isKnown() const noexcept {
   // A blow without a tool is doubtful while the readings contradict the model.
   if (result_.crank.position.isMirrored() && result_.consistency > CrankTrust::kMost) return false;
-  const double inertia = crank_.tracker().driveInertia(), given = mechanism_.parameters().drive_inertia;
-  if (!crank_.tracker().constantErrors().zeroIsShown() && inertia > 0.0 &&
-      std::abs(std::log(inertia / given)) > kInertiaOff)
-    return false;
+  const double inertia = crank_.tracker().driveInertia();
   // An unknown force of the rod gives no information on the crank.
   const Eigen::Vector3d squares = vectorOf(result_.deviation.wrench).cwiseAbs2() - result_.unknown.rowwise().sum();
   const double largest = squares.head<2>().maxCoeff();
   if (inertia > 0.0) return !(largest > square(peak_at_speed_));  // of a crank at work
-  const double most = std::max(1.0, speedScale()) * peak_at_speed_;
-  const double peak = turn_.peakForce() > 0.0 ? std::clamp(seen_peak_, kLeastPeak * most, most) : most;
-  return largest <= square(kUncertain * settings_.withhold_above * peak);
-}
-
-void Pipeline::followPeak() noexcept {
-  if (crank_.step().known()) seen_peak_ *= std::max(0.0, 1.0 - crank_.step().length() / kPeakLasts);
-  seen_peak_ = std::max({seen_peak_, std::abs(result_.wrench.force_x), std::abs(result_.wrench.force_z)});
+  return largest <= square(kUncertain * settings_.withhold_above * std::max(1.0, speedScale()) * peak_at_speed_);
 }
 
 /// revised: the pending blow is kept; whether it was one is decided later.

@@ -90,7 +90,6 @@ class Pipeline {
   double speedScale() const noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
   bool isKnown() const noexcept;
-  void followPeak() noexcept;
   void followTrust(CrankFollower::Taken taken) noexcept;
   void hullMovedAtBlow() noexcept;
   double stampNoise() const noexcept;
@@ -118,7 +117,6 @@ class Pipeline {
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
   double nominal_force_;  ///< peak of Fz at turn_rate_Hz and constant speed [N]; see isPlausible()
-  double seen_peak_{};    ///< largest force seen, see isKnown() [N]
   double peak_at_speed_;  ///< largest component of the force there [N]
   bool settled_{};        ///< the last sample's estimate is accurate enough to be published, independent of CrankTrust
   bool boom_follows_{};   ///< the boom has had every step since the last restart

@@ -10,11 +10,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kBegins = 2.0 * kSlowCrank;  // [rad/s]: a crank that has hardly begun to turn
-constexpr double kBounces = 200.0;            // [rad/s2] of a slow crank whose rocker bounces on the tool
 
-constexpr double kAtWork = 0.3;      // part of the nominal speed at which blows are struck
 constexpr double kLeadOfZero = 0.6;  // part of the zero's time at the blow that acts on the vibration
-constexpr double kLateImu = 5e-3;    // [s]: beside pressures, older readings of the IMU make the torques worse
 
 }  // namespace
 
@@ -52,8 +49,7 @@ Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
   const double inertia = std::max(p.drive_inertia, crank_.tracker().driveInertia());
   if (std::abs(motion.speed) < kBegins) {
     const double weight = p.rocker_mass * std::hypot(hull.gravity.x, hull.gravity.z);
-    const double torque = std::hypot(weight * p.rocker_com_distance, inertia * kBounces);
-    covariance.diagonal() = Eigen::Vector3d(weight, weight, torque).cwiseAbs2();
+    covariance.diagonal() = Eigen::Vector3d(weight, weight, weight * p.rocker_com_distance).cwiseAbs2();
   }
   covariance(2, 2) += square(settings_.initial_inertia_std * inertia * motion.acceleration);
   if (errors.zeroIsShown()) return covariance;  // given so well that it is linear
@@ -121,9 +117,9 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   const WrenchSpread spread =
       wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
-  const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
-  const double most_age = boom_->pressuresCount() ? kLateImu : look_back::kLine;
-  const std::optional<StampedImuReading> imu = hull_.newImuReading(result_.stamp, boom_->imuStampsJitter(), most_age);
+  const bool at_work = std::abs(crank.speed) > kSlowCrank;
+  const std::optional<StampedImuReading> imu =
+      hull_.newImuReading(result_.stamp, boom_->imuStampsJitter(), look_back::kLine);
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
   result_.boom = &boom_->sample(
       {result_.stamp, motion, spread, constantErrors(result_.load_columns), hammerErrors(result_.load_columns), imu,

@@ -47,6 +47,7 @@ class JumpGuard {
 
  private:
   static constexpr double kFactor = 12.0, kShare = 0.01;
+  // Limit: kFactor, kShare
 
   double least_;
   double square_{};  ///< mean of the jumps' squares

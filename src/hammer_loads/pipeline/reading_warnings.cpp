@@ -40,6 +40,7 @@ void warnOfSpeeds(const SpeedTrust& speeds, const AngleLag& taken_off, std::vect
 
 /// Text for an IMU whose mounting or unit differs from the parameters. weight: of the hull by the joint angles.
 std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
+  // Warning: kAlike, kOftenMissed, kMostPitch
   constexpr double kAlike = 1.2;  // factor between weights: what blows add to a mean of 2 s is less
   if (trust.turnsTooFast())
     return format(

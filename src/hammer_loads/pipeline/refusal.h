@@ -62,6 +62,7 @@ struct SampleCounts {
   /// only: a tenth of them is enough.
   bool contradictSince(const SampleCounts& before) const noexcept {
     constexpr std::uint64_t kUnitTells = 10;
+    // Limit: kUnitTells
     const std::uint64_t good = accepted - before.accepted;
     return contradicting() - before.contradicting() > good ||
            kUnitTells * (inOtherUnit() - before.inOtherUnit()) > good;

@@ -27,7 +27,7 @@ class ImuTrust {
     varies_ = varies_ || (!same && mean_.count() > 0.0);
     force_ = force, rate_ = rate;
     if (!(step > 0.0)) return;
-    const double lasts = std::min(step, look_back::kLongestReading);
+    const double lasts = std::min(step, look_back::kHalfTurn);
     same_for_ = same ? std::min(same_for_ + lasts, kFrozen) : 0.0;
     mean_.add(force, lasts);
     const Eigen::Vector3d off = force - mean();
@@ -38,8 +38,7 @@ class ImuTrust {
   /// Judges after a reading; weight: by the joint angles, in the plane of the hull. A single damaged angle affects only
   /// a part of the mean.
   void judge(const Gravity& weight, double step) noexcept {
-    if (step > 0.0)
-      off_.add({force_.x() + weight.x, force_.z() + weight.z}, std::min(step, look_back::kLongestReading));
+    if (step > 0.0) off_.add({force_.x() + weight.x, force_.z() + weight.z}, std::min(step, look_back::kHalfTurn));
     if (off_.count() < look_back::kSomeTurns) return;
     off_weight_.follow(off_.mean().norm() / std::hypot(weight.x, weight.z));
     is_lost_ = isFrozen() || turnsTooFast() || off_weight_.isEngaged();
@@ -60,8 +59,9 @@ class ImuTrust {
   double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]
 
  private:
-  static constexpr double kMostPart = 0.5;             // part of the weight
-  static constexpr double kMostRate = 3.0;             // [rad/s]
+  static constexpr double kMostPart = 0.5;  // part of the weight
+  static constexpr double kMostRate = 3.0;  // [rad/s]
+  // Limit: kMostPart, kMostRate, kAcross, kTurning
   static constexpr double kFrozen = look_back::kTurn;  // duration of one unchanged reading
 
   RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()},
@@ -86,7 +86,7 @@ class PressureTrust {
   void follow(const Wrench& beyond, const Wrench& weight, double arm, double step) noexcept {
     if (!(step > 0.0) || !std::isfinite(beyond.force.x() + beyond.force.z() + beyond.torque.y())) return;
     mean_.add({beyond.force.x(), beyond.force.z(), beyond.torque.y() - arm * beyond.force.z()},
-              std::min(step, look_back::kLongestReading));
+              std::min(step, look_back::kHalfTurn));
     if (mean_.count() < look_back::kSomeTurns) return;
     const double size = std::abs(along()) + std::sqrt(square(weight.force.x()) + square(weight.force.z()));
     const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
@@ -115,6 +115,7 @@ class PressureTrust {
                           kTurning = 0.3;           // parts of the sum of load along the tool and weight; with its arm
   static constexpr double kLongestHose = 8e-3;      ///< time constant [s]
   static constexpr double kUntilTriedAgain = 60.0;  ///< [s]
+  // Limit: kLongestHose, kUntilTriedAgain
 
   double turning() const noexcept { return mean_.mean()[2]; }
 

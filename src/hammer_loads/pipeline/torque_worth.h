@@ -43,6 +43,7 @@ class TorqueWorth {
 
  private:
   static constexpr double kUseless = 0.6;
+  // Limit: kUseless
   static constexpr double kSmall = 0.1;  ///< part of the largest joint's torque: a smaller one gives no verdict
 
   static bool isRecent(StampNs turn, StampNs stamp) noexcept { return seconds(stamp - turn) < look_back::kFiveTurns; }

@@ -14,6 +14,7 @@ namespace {
 constexpr double kRingPart = 5e-4;  // [s] between points of a turn where a rod vibrates; its peak is by a parabola
 // Numerical: kRingPart
 constexpr double kBlind = 3e-3;  // [s], measured on swinging hulls: until then a torque passes for part of the blow
+// Prior: kBlind
 
 }  // namespace
 

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kLongestDecay = 10.0;  // [s]
 constexpr double kMostRate = 1.0;       // [rad/s]: no operator swings a boom as fast, no rock throws it so
+// Limit: kLongestDecay, kMostRate
 
 }  // namespace
 

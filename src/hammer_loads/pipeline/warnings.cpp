@@ -73,6 +73,7 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
 void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double speed_at_work,
                   std::vector<Warning>& warnings) {
   constexpr double kJitter = 1e-4;  // [s]: from there on the wrench is some 0.2 % worse
+  // Warning: kJitter
   if (crank.stamps().isSteady())
     warnings.push_back({"stamps",
                         format("crank stamps repeat or change places (jitter %.2g ms): equal intervals are assumed "
@@ -98,6 +99,7 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
 /// smaller by 0.2 to 3 deg (rods of 2e8 to 1e10 N/m, joint clearance to 0.5 mm, 200 Hz to 1 kHz); larger errors are
 /// withheld. The encoder looks eccentric by 1 deg.
 constexpr double kRodLooksEccentric = 1.5 * kDegree;
+// Warning: kRodLooksEccentric
 
 /// Part of an amount that such a rod does not explain.
 double beyondRod(const Unknown& unknown, double amount) {
@@ -220,6 +222,7 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
 /// Warns of a sensor error to which the filter's innovations point.
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
+  // Warning: kLearned
   const CrankFilter& filter = pipeline.crank().tracker();
   const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
   if (pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
