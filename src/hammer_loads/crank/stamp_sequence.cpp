@@ -11,20 +11,19 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMemorySamples = 4096.0;  // samples
-constexpr double kScatterSamples = 300.0;  // over which scatter is learned, but no fewer than kWarm runs
-constexpr int kWarm = 20;                  // runs from which on the line is good enough to judge by
-constexpr int kUnsure = 300;               // stamps that show a miscount before them, however they jitter
-constexpr int kFewest = 3;                 // runs from which on a loss shows
-constexpr int kTries = 4;                  // resets of a line for a loss: jitter looks alike
-constexpr int kFirst = 4;                  // runs until there is a line
-constexpr int kKnown = 6;                  // runs until regular bursts show themselves
-constexpr double kAlone = 1.02;            // samples in the mean: stamps do not repeat
-constexpr double kBurst = 2.0;             // samples in the mean
-constexpr double kRegular = 0.1;           // scatter of bursts over the time between them
-constexpr double kClip = gate::kVeryRare;  // root mean squares: a stamp further off counts as that far off
-constexpr double kExact = 0.01;            // of the interval: stamps without scatter have this much
-// Numerical: kExact
+constexpr double kMemorySamples = 4096.0;   // samples
+constexpr double kScatterSamples = 300.0;   // over which scatter is learned, but no fewer than kWarm runs
+constexpr int kWarm = 20;                   // runs from which on the line is good enough to judge by
+constexpr int kUnsure = 300;                // stamps that show a miscount before them, however they jitter
+constexpr int kFewest = 3;                  // runs from which on a loss shows
+constexpr int kTries = 4;                   // resets of a line for a loss: jitter looks alike
+constexpr int kFirst = 4;                   // runs until there is a line
+constexpr int kKnown = 6;                   // runs until regular bursts show themselves
+constexpr double kAlone = 1.02;             // samples in the mean: stamps do not repeat
+constexpr double kBurst = 2.0;              // samples in the mean
+constexpr double kRegular = 0.1;            // scatter of bursts over the time between them
+constexpr double kClip = gate::kVeryRare;   // root mean squares: a stamp further off counts as that far off
+constexpr double kExact = 0.01;             // of the interval: stamps without scatter have this much
 constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for certain
 constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
 constexpr double kOneStamp = 0.3;           // of it that a single stamp contributes: drivers are late now and then
@@ -36,9 +35,10 @@ constexpr double kGrown = 2.0;          // scatter about the line over that of w
 
 // Limits of the sequence.
 constexpr double kMany = 5.0;              // irregular stamps of a thousand: not a single late message
+constexpr double kHeldUp = 0.1;            // of the interval: a message that waited behind a late one
 constexpr double kSingle = 1.5;            // likewise
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
-// Numerical: kLeastStep
+// Numerical: kExact, kLeastStep
 
 }  // namespace
 
@@ -251,8 +251,9 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   }
   const std::int64_t fitted = fit_.add(header);
   const bool irregular = header <= newest_;
+  const bool held_up = header > fitted && static_cast<double>(header - newest_) < kHeldUp * fit_.interval();
   irregular_ += irregular;
-  irregularity_ += (irregular ? 1.0 : 0.0) - irregularity_ / look_back::kManyReadings;
+  irregularity_ += (irregular || held_up ? 1.0 : 0.0) - irregularity_ / look_back::kManyReadings;
   header_ = header;
   newest_ = std::max(newest_, header);
   if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;

@@ -12,6 +12,7 @@ namespace {
 constexpr double kBegins = 2.0 * kSlowCrank;  // [rad/s]: a crank that has hardly begun to turn
 
 constexpr double kLeadOfZero = 0.6;  // part of the zero's time at the blow that acts on the vibration
+constexpr double kLateImu = 5e-3;    // [s]: beside pressures, older readings of the IMU make the torques worse
 
 }  // namespace
 
@@ -118,8 +119,8 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
   const WrenchSpread spread =
       wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
   const bool at_work = std::abs(crank.speed) > kSlowCrank;
-  const std::optional<StampedImuReading> imu =
-      hull_.newImuReading(result_.stamp, boom_->imuStampsJitter(), look_back::kLine);
+  const double most_age = boom_->pressuresCount() ? kLateImu : look_back::kLine;
+  const std::optional<StampedImuReading> imu = hull_.newImuReading(result_.stamp, boom_->imuStampsJitter(), most_age);
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
   result_.boom = &boom_->sample(
       {result_.stamp, motion, spread, constantErrors(result_.load_columns), hammerErrors(result_.load_columns), imu,
