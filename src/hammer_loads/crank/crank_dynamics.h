@@ -183,12 +183,13 @@ struct ShaftState {
   double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
 };
 
-constexpr double kNearTool = 0.06;  ///< [rad] from the dead centre
+constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: it would be higher than long
 constexpr double kStepsToTool = 1.5;
 
 /// Returns true if the tool may be met within a step of length dt [s].
 inline bool isNearTool(const ShaftState& state, double dt) noexcept {
-  return std::abs(state.position.angle.offset) < std::max(kStepsToTool * std::abs(state.speed) * dt, kNearTool);
+  return std::abs(state.position.angle.offset) <
+         std::clamp(kStepsToTool * std::abs(state.speed) * dt, kNearTool, kHighestTool);
 }
 
 /// w' = (tau + weight - Jc r alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).

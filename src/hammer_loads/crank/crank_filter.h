@@ -207,8 +207,8 @@ class CrankFilter {
   void followLostTime(SampleStep& to) noexcept;
   void predictTo(SampleStep& to, double dt) noexcept;
   double timeLost(double dt, const Innovation& innovation) const noexcept;
-  bool mayBeRod() const noexcept;
-  bool mayHaveSlipped(const WeighedSample& sample) const noexcept;
+  bool mayBeRod(const Innovation& innovation) const noexcept;
+  bool mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept;
   EncoderSlip::Step followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept;
   Tracking ignore(const CrankBelief& last, const Innovation& innovation) noexcept;
   bool correct(const CrankBelief& last, double dt, bool struck, const Innovation& innovation,

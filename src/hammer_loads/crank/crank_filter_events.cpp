@@ -26,6 +26,8 @@ constexpr double kSpeedNoiseGain = 1.0 / look_back::kReadings;
 constexpr double kLeastSpeedNoise = 0.3;  // of the first guess
 constexpr double kNotSlip = 0.04;         // [rad] from the blow: there the tool stops and throws the crank
 constexpr double kBeganOfLate = 0.5;      // beginnings of late: some 1.4 s after a single one
+constexpr double kStrikeBegins = 0.6;     // [rad] before the blow: a rod that gives is calm until there
+constexpr double kRodMoves = 0.017;       // [rad] of a reading at most, there: worn pins, a rod that was learned
 
 }  // namespace
 
@@ -312,24 +314,25 @@ void CrankFilter::followLostTime(SampleStep& to) noexcept {
 double CrankFilter::timeLost(double dt, const Innovation& innovation) const noexcept {
   const double speed = now_.encoderSpeed();
   const double interval = clock_.interval;
-  if (!(interval > 0.0) || std::abs(speed) < kLearnSpeed || mayBeRod()) return 0.0;
+  if (!(interval > 0.0) || std::abs(speed) < kLearnSpeed || mayBeRod(innovation)) return 0.0;
   const double intervals = innovation.value / (speed * interval), whole = std::nearbyint(intervals);
   const bool counted_before = whole < 0.0 && dt + whole * interval > 0.5 * interval;
   if (!(whole > 0.0 || counted_before) || std::abs(innovation.value) > EncoderSlip::kMost) return 0.0;
   return whole * interval;
 }
 
-/// Returns true if an elastic rod may have caused an innovation, as it vibrates after the blow.
-bool CrankFilter::mayBeRod() const noexcept {
-  return !HAMMER_LOADS_ABLATE(rod_excuse) && rod_evidence_.gives() &&
-         now_.state.position.angle.side == Side::kAfterBlow;
+/// Returns true if an elastic rod may have caused the innovation: any but a large step of a crank that has calmed down.
+bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
+  const CrankAngle& at = now_.state.position.angle;
+  const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
+  return !HAMMER_LOADS_ABLATE(rod_excuse) && rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
 }
 
 /// (5) Whether a step of the reading would differ from the crank's own and from what a rod that rings moves.
-bool CrankFilter::mayHaveSlipped(const WeighedSample& sample) const noexcept {
+bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
-  return !HAMMER_LOADS_ABLATE(slip) && lost_time_ == 0.0 && !mayBeRod() && at_work && !mirrored_ &&
+  return !HAMMER_LOADS_ABLATE(slip) && lost_time_ == 0.0 && !mayBeRod(innovation) && at_work && !mirrored_ &&
          !hypothesis_.isOpen() && nearest > kNotSlip;
 }
 
@@ -339,7 +342,7 @@ EncoderSlip::Step CrankFilter::followSlip(double dt, const Innovation& innovatio
   const double by_torque = square(dt) * settings_.initial_torque_std / now_.state.drive_inertia;
   const double speed = now_.encoderSpeed(), usual = usual_step_.mean();
   const EncoderSlip::Step step = slip_.follow(innovation.value, growth() * innovation.total, by_torque, speed * usual,
-                                              speed * (dt - usual), mayHaveSlipped(sample));
+                                              speed * (dt - usual), mayHaveSlipped(sample, innovation));
   if (step != EncoderSlip::Step::kSlipped) return step;
   encoder_.slip(slip_.last());
   errors_.stepZero(square(slip_.deviation()));

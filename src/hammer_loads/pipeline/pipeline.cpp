@@ -16,6 +16,8 @@ namespace {
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
 constexpr double kUncertain = 5.0;  // times withhold_above: half of the peak, beyond it a load says nothing
+constexpr double kInertiaOff =
+    0.9;  // logarithm of the drive inertia over the given one, which a wrong zero changes more
 // Limit: kMostForce, kMostForceUnproven, kMostSpeedUnproven, kUncertain
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
@@ -216,7 +218,10 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
 bool Pipeline::isKnown() const noexcept {
   // A blow without a tool is doubtful while the readings contradict the model.
   if (result_.crank.position.isMirrored() && result_.consistency > CrankTrust::kMost) return false;
-  const double inertia = crank_.tracker().driveInertia();
+  const double inertia = crank_.tracker().driveInertia(), given = mechanism_.parameters().drive_inertia;
+  if (!crank_.tracker().constantErrors().zeroIsShown() && inertia > 0.0 &&
+      std::abs(std::log(inertia / given)) > kInertiaOff)
+    return false;
   // An unknown force of the rod gives no information on the crank.
   const Eigen::Vector3d squares = vectorOf(result_.deviation.wrench).cwiseAbs2() - result_.unknown.rowwise().sum();
   const double largest = squares.head<2>().maxCoeff();
