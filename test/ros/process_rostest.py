@@ -202,7 +202,8 @@ class ProcessTest(unittest.TestCase):
         subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
         crank = rospy.Publisher('/%s/crank' % name, JointState, queue_size=sent)
         self.assertTrue(eventually(lambda: crank.get_num_connections() and counts))
-        core = {min(os.sched_getaffinity(0))}  # The node's threads share it; the one that works yields to the one that reads.
+        # The node's threads share one core; the one that works yields to the one that reads.
+        core = {min(os.sched_getaffinity(0))}
         for thread in os.listdir('/proc/%d/task' % node.process.pid):
             os.sched_setaffinity(int(thread), core)
         os.setpriority(os.PRIO_PROCESS, node.process.pid, 19)
