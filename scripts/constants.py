@@ -6,7 +6,7 @@ A comment beside a constant states its class; without one it is tuned.
   tuned      an estimate depends on it
   prior      states an unknown before any reading shows it, its mean, deviation, walk or bounds: // Prior: kName
   limit      beyond it a reading or a file is refused, far from all that a machine has: // Limit: kName
-  warning    whether a warning is given depends on it, and no estimate: // Warning: kName
+  warning    only whether a warning is given depends on it: // Warning: kName
   numerical  a step, tolerance or rounding of the arithmetic, on which no result depends: // Numerical: kName
 A dimension at compile time and a factor 0.5, 1 or 2 of other constants do not count.
 """

@@ -38,7 +38,7 @@ class BucketLinkage {
  public:
   /// Guide and coupler must stay this far from being in line within the joint's limits: 5 deg [rad].
   static constexpr double kLeastTransmission = 0.087;
-  // Limit: kLeastTransmission
+  // Limit: kLeastTransmission (FigureLimits.OfTransmissionAngles)
 
   /// Pins from the joint's axis [m]: base of the cylinder and guide pivot in the axes of the link before, driven pin
   /// where it is at zero. sense: 1 where the joint turns about +y, -1 about -y.

@@ -42,7 +42,7 @@ struct CylinderFit {
   bool holds() const { return !(held_out > std::max(kHeldOutOverLeft * left, kHeldOutOverForce * force)); }
 
   static constexpr double kHeldOutOverLeft = 2.0, kHeldOutOverForce = 0.04;
-  // Limit: kHeldOutOverLeft, kHeldOutOverForce, kLimit
+  // Limit: kHeldOutOverLeft, kHeldOutOverForce
 };
 
 /// One row as a picture shows it.
@@ -58,6 +58,7 @@ struct BoomCalibration : Findings {
   /// Limit of the relative deviation of a joint's static torque. Above it the joint is undetermined and nothing is
   /// written, since the values belong together.
   static constexpr double kLimit = 0.03;
+  // Limit: kLimit
 
   std::vector<std::string> names;  ///< names of the recordings
   double seconds{};

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kLeastBlows = 12;
 constexpr std::size_t kRoughBlows = 40;  // blows of the first fit
 // Limit: kLeastBlows
-// Warning: kUsuallyNeeded
 constexpr double kUsuallyNeeded = 60.0;  // blows
+// Warning: kUsuallyNeeded
 constexpr int kCurveParts = 72;
 // Numerical: kCurveParts
 constexpr double kUnknownAngleNoise = 5e-4;  // first guess for a sensor without counts [rad]

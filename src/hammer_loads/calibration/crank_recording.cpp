@@ -18,7 +18,7 @@ constexpr double kHalfSegment = 3.05;           // [rad] on either side of the b
 constexpr double kLeastSpeed = 3.0;             // [rad/s] at the blow: a slower one is no working turn
 constexpr std::size_t kLeastPoints = 5;         // on either side of the blow
 constexpr double kLargestStep = 0.35 * kTwoPi;  // [rad] between samples
-// Numerical: kRounding, kStride
+// Numerical: kRounding
 // Limit: kLeastSpeed, kLeastPoints, kLargestStep
 
 /// Largest number of which both are multiples (Euclid, with nearest remainders).
@@ -67,6 +67,7 @@ std::vector<RecordedSample> usefulOf(const std::vector<RecordedSample>& samples)
 double meanPeriod(const std::vector<RecordedSample>& samples) {
   std::vector<double> means;
   constexpr std::size_t kStride = 40;
+  // Numerical: kStride
   for (std::size_t i = kStride; i < samples.size(); i += kStride / 4)
     means.push_back((samples[i].time - samples[i - kStride].time) / static_cast<double>(kStride));
   return medianOf(means);

@@ -35,8 +35,8 @@ struct Findings {
   std::vector<std::string> remarks;
 };
 
-// Warning: kStrongCorrelation
 constexpr double kStrongCorrelation = 0.9;
+// Warning: kStrongCorrelation
 
 /// Adds the strong correlations of unknowns with these names.
 inline void addCorrelations(const Eigen::MatrixXd& covariance, const std::vector<std::string>& names,

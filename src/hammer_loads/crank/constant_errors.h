@@ -175,7 +175,7 @@ class ConstantErrors {
   static constexpr double kCalibratedZero = 0.02;  ///< [rad]: a zero of a smaller standard deviation needs no proof
   /// Standard deviation of estimate() by an elastic connecting rod, which imitates an error of the zero [rad].
   static constexpr double kRodHides = 0.01;
-  // Prior: kUnknownZero, kRodHides, kNotLinear
+  // Prior: kUnknownZero, kRodHides
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< errors of the table alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
@@ -251,6 +251,7 @@ class ConstantErrors {
 
  private:
   static constexpr double kNotLinear = 17.0;  ///< [1/rad]: 0.3 deg of 1 deg
+  // Prior: kNotLinear
   static constexpr auto kIndices = std::make_integer_sequence<std::size_t, kUnknowns.size()>{};
   /// Unrolled, so that what does not enter costs nothing.
   template <typename Function, std::size_t... i>

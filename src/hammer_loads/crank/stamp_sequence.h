@@ -26,8 +26,7 @@ namespace hammer_loads {
 /// readings is constant.
 class ControllerTask {
  public:
-  /// Adds a reading with its stamp [ns]. off: innovation of its angle over the speed [s]; 0 where the stamps do not
-  /// jitter.
+  /// Adds a reading with its stamp [ns]. off: innovation of its angle over the speed [s]; 0 at low speed.
   void add(std::int64_t stamp, double off) noexcept {
     repeats_.add(0.0);
     if (takeStep(stamp) && off != 0.0) findGrid(stamp, off);

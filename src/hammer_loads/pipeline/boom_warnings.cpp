@@ -15,7 +15,7 @@ namespace {
 
 /// Delay of stamps from which on a warning is given; it may be mistaken for softer oil [s].
 constexpr double kLateStamp = 8e-4;
-// Warning: kLateStamp, kKnown, kPart, kOfNoCylinder
+// Warning: kLateStamp
 
 /// Apparent delay of pressures by damping that is not the oil's [s]: that of the damping in excess of the boom file's,
 /// or of all damping if it is implausible, and the deviation of the delay.
@@ -33,6 +33,7 @@ double lagOfDamping(const Boom& boom, int odd) {
 /// Delay of a sensor's own clock by the boom's modes. explained: apparent delay by other causes [s].
 bool isOff(const ModeIdentifier& identifier, Clock clock, double explained = 0.0) {
   constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
+  // Warning: kKnown, kPart
   const double delay = identifier.delay(clock);
   return std::abs(delay) > kLateStamp && !(delay > 0.0 && delay < explained) &&
          identifier.delayDeviation(clock) < kKnown + kPart * std::abs(delay);
@@ -107,6 +108,7 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
 /// Warns of pressures that are not used.
 void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warning>& warnings) {
   constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of what air has
+  // Warning: kOfNoCylinder
   if (trust.isLate()) {
     warnings.push_back({"pressure stamps",
                         "cylinder_pressures: not used, stamps are about " + laterOrEarlier(trust.lateBy()) +

@@ -30,7 +30,7 @@ constexpr double kLikeRevolution = 1.25;            // factor
 constexpr double kSameLength = 0.2;                 // relative change from one revolution to the next
 constexpr double kLeastCounts = 100.0;              // counts per revolution
 // Limit: kTolerance, kLeastStretch, kStretch, kLongestStep, kRepeats, kMoves, kEnough, kWindow, kMeanRate, kSlowPart,
-// kFastPart, kLikeRevolution, kSameLength, kLeastCounts, kBack
+// kFastPart, kLikeRevolution, kSameLength, kLeastCounts
 
 /// Unit that a cycle's length in the angle's own unit, times the gain, shows. Nothing: it is none of them.
 std::optional<CrankUnit> unitOfRevolution(double length) noexcept {
@@ -115,6 +115,7 @@ void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexce
   if (!last_angle_ || !(dt > 0.0) || dt > kLongestStep) return begin(angle);
   const double step = angle - *last_angle_;
   constexpr double kBack = 3.0;  // times the step before: the angle is wrapped there
+  // Limit: kBack
   const bool wraps = step * last_step_ < 0.0 && std::abs(step) > kBack * std::abs(last_step_);
   const bool was_still = last_step_ == 0.0 && step != 0.0;
   if (!wraps) last_step_ = step;

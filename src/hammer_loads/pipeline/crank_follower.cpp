@@ -20,8 +20,8 @@ bool isEarlier(const CrankStep::Passage& passage, Side side) noexcept {
 constexpr int kSettlingSamples = 5;  // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = gate::kRare;       // deviations of the predicted error
 constexpr double kFrozenCounts = 5;                      // a crank that turned further gives another angle
-constexpr double kSurelyPasses = 1.3;                    // counts, by a speed that may be a fifth too large
 constexpr double kSameLateness = 0.3;                    // of the lateness
+constexpr double kSurelyPasses = 1.3;                    // counts, by a speed that may be a fifth too large
 constexpr double kFrozenDeviations = gate::kImpossible;  // deviations of a sensor's noise
 // Limit: kFrozenCounts
 
@@ -219,7 +219,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
 void CrankFollower::followStamp() noexcept {
   const double late = sequence_.lateness(), off = tracker_->instantOff();
   if (late > 0.0 && std::abs(off + late) < kSameLateness * late) sequence_.countLate();
-  if (turns()) task_.add(stamp_, tracker_->instantOff());
+  if (turns()) task_.add(stamp_, off);
 }
 
 /// Standard deviation of the common shift of all stamps [s]. A reading by a controller's task is half a period old on

@@ -34,7 +34,6 @@ class DrivenSignal {
   struct Step {
     double length{};           ///< [s]
     Eigen::Vector3d impulse;   ///< impulse of the load, blows included
-    Eigen::Vector3d blow;      ///< impulse of the blows alone
     Eigen::Vector3d velocity;  ///< change of the hull's velocity by vibration: x, z, turning
     Eigen::Vector3d way;       ///< the integral of that from 0
   };

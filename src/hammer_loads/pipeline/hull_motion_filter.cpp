@@ -146,8 +146,7 @@ void HullMotionFilter::forEachStep(StampNs to, const Signals& signals, const Eac
     const Eigen::Vector3d impulse = now.impulse - before.impulse;
     const Eigen::Vector3d lasting = now.lasting - before.lasting - h * before.impulse;
     const auto [x, z, turns] = signals(h, impulse, lasting);
-    each(DrivenSignal::Step{
-        h, impulse, now.blows - before.blows, {x.velocity, z.velocity, turns.velocity}, {x.way, z.way, turns.way}});
+    each(DrivenSignal::Step{h, impulse, {x.velocity, z.velocity, turns.velocity}, {x.way, z.way, turns.way}});
     before = now, from = next;
   }
 }

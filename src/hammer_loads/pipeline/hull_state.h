@@ -126,8 +126,8 @@ class UnmeasuredHull {
   static constexpr double kGyration = 0.4;        ///< [m] about D
   /// Motion over that of a free hull where the boom's frequency is near that of the blows: of the acceleration; of the
   /// velocity, of which the first harmonic is a larger part.
-  // Prior: kUsualMass, kUsualDeviation, kGyration, kResonance, kSpeedResonance
   static constexpr double kResonance = 2.0, kSpeedResonance = 3.0;
+  // Prior: kUsualMass, kUsualDeviation, kGyration, kResonance, kSpeedResonance
 
   double mass_;               ///< [kg]
   double resonance_;          ///< with the mass's own deviation

@@ -40,8 +40,8 @@ void warnOfSpeeds(const SpeedTrust& speeds, const AngleLag& taken_off, std::vect
 
 /// Text for an IMU whose mounting or unit differs from the parameters. weight: of the hull by the joint angles.
 std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
-  // Warning: kAlike, kOftenMissed, kMostPitch
   constexpr double kAlike = 1.2;  // factor between weights: what blows add to a mean of 2 s is less
+  // Warning: kAlike
   if (trust.turnsTooFast())
     return format(
         "it turns by %.3g rad/s rms, more than a hull does (in degrees per second %.2g rad/s). Publish rad/s.",
@@ -61,6 +61,7 @@ std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
 /// samples: crank samples that were accepted.
 void warnOfImu(const HullState& hull, std::uint64_t samples, std::vector<Warning>& warnings) {
   constexpr double kOftenMissed = 0.1;
+  // Warning: kOftenMissed
   const ImuTrust& trust = hull.imuTrust();
   const double missed = static_cast<double>(hull.imuCounts().missed) / static_cast<double>(samples);
   if (hull.imuCounts().accepted == 0) {
@@ -112,6 +113,7 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
          "no angle of " + joined(unheard) + " (pitch_joints): weight by hull_pitch_rad. Check joint_states.", true,
          true});
   constexpr double kMostPitch = 1.2;  // [rad]: a hammer that works strikes downward
+  // Warning: kMostPitch
   const double pitch = hull.pitch().pitch();
   if (hull.pitch().known() && std::abs(pitch) > kMostPitch && counts.blows > 0 && !hull.anglesLookLikeDegrees())
     warnings.push_back({"pitch",

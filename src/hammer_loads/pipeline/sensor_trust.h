@@ -61,7 +61,7 @@ class ImuTrust {
  private:
   static constexpr double kMostPart = 0.5;  // part of the weight
   static constexpr double kMostRate = 3.0;  // [rad/s]
-  // Limit: kMostPart, kMostRate, kAcross, kTurning
+  // Limit: kMostPart, kMostRate
   static constexpr double kFrozen = look_back::kTurn;  // duration of one unchanged reading
 
   RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()},
@@ -115,7 +115,7 @@ class PressureTrust {
                           kTurning = 0.3;           // parts of the sum of load along the tool and weight; with its arm
   static constexpr double kLongestHose = 8e-3;      ///< time constant [s]
   static constexpr double kUntilTriedAgain = 60.0;  ///< [s]
-  // Limit: kLongestHose, kUntilTriedAgain
+  // Limit: kAcross, kTurning, kLongestHose, kUntilTriedAgain
 
   double turning() const noexcept { return mean_.mean()[2]; }
 

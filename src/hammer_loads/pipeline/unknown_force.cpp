@@ -17,8 +17,8 @@ constexpr double kOfDamping = 0.4;      // part of the moment, per unit of the d
 constexpr double kLasts = 0.1;          // [s]
 constexpr double kFrictionPins = 2.0;   // at both ends of the rocker
 constexpr double kHeld = 0.02;          // [s] for which friction has changed what the rod does
-// Prior: kContacts, kContactsLever, kHidden, kOfDamping, kLasts,
-// kFrictionPins, kHeld
+// Prior: kContacts, kContactsLever, kHidden, kOfDamping, kLasts, kFrictionPins, kHeld
+// (WornMachine.IsCoveredWithFrictionAndClearance)
 constexpr double kLeastLever = 0.01;  // part of l3: below it the rod's force does not follow from its moment
 // Numerical: kLeastLever
 

@@ -12,7 +12,7 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
   if (known() && std::abs(start - end_) > 1) forget();
   double passed = 0.0;
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  Instant begin = known() ? after(back(0)) : Instant{none, none, none, none};
+  Instant begin = known() ? after(back(0)) : Instant{none, none, none};
   const Eigen::Vector3d first = vectorOf(beside_from), change = vectorOf(beside_to) - first;
   for (std::size_t i = 0; i < step.count; ++i) {
     const SmoothPiece& given = step.pieces[i];
@@ -29,7 +29,6 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
              per_time * (to - from + bump),
              -2.0 * per_time * per_time * bump,
              begin.impulse,
-             begin.blows,
              begin.lasting,
              given.ends_in_blow ? vectorOf(given.blow) : none};
     begin = after(piece);
@@ -43,13 +42,13 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
 WrenchPath::Instant WrenchPath::within(const Piece& p, double t) noexcept {
   const double tt = t * t;
   return {p.from + t * p.slope + 0.5 * tt * p.bend, p.impulse + t * p.from + 0.5 * tt * p.slope + tt * t / 6.0 * p.bend,
-          p.blows, p.lasting + t * p.impulse + 0.5 * tt * p.from + tt * t / 6.0 * p.slope + tt * tt / 24.0 * p.bend};
+          p.lasting + t * p.impulse + 0.5 * tt * p.from + tt * t / 6.0 * p.slope + tt * tt / 24.0 * p.bend};
 }
 
 /// With the blow at its end.
 WrenchPath::Instant WrenchPath::after(const Piece& p) noexcept {
   Instant end = within(p, p.duration);
-  end.impulse += p.blow, end.blows += p.blow;
+  end.impulse += p.blow;
   return end;
 }
 

@@ -45,8 +45,8 @@ class WrenchPath {
   };
   struct Instant {
     Eigen::Vector3d load;
-    Eigen::Vector3d impulse, blows;  ///< from the first step on: all, and that of the blows alone
-    Eigen::Vector3d lasting;         ///< the impulse's integral as above [N s2, N s2, N m s2]
+    Eigen::Vector3d impulse;  ///< from the first step on, blows included
+    Eigen::Vector3d lasting;  ///< the impulse's integral as above [N s2, N s2, N m s2]
   };
 
   void forget() noexcept { count_ = 0, blow_.reset(); }
@@ -70,10 +70,10 @@ class WrenchPath {
   };
   struct Piece {
     StampNs start{};
-    double duration{};                        ///< [s]
-    Eigen::Vector3d from, slope, bend;        ///< load from + slope t + bend t^2/2
-    Eigen::Vector3d impulse, blows, lasting;  ///< at the start
-    Eigen::Vector3d blow;                     ///< impulse at the end
+    double duration{};                  ///< [s]
+    Eigen::Vector3d from, slope, bend;  ///< load from + slope t + bend t^2/2
+    Eigen::Vector3d impulse, lasting;   ///< at the start
+    Eigen::Vector3d blow;               ///< impulse at the end
   };
   static constexpr std::size_t kKept = 256;  ///< a quarter of a second of samples at 1 kHz
 
