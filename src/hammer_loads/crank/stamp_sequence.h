@@ -15,6 +15,7 @@
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
 
@@ -53,23 +54,28 @@ class ControllerTask {
     return true;
   }
   void findGrid(std::int64_t stamp, double off) noexcept {
-    double length = kRecognised;
+    double length = square(kRecognised);
     grid_ = 0.0;
     readings_ = std::min(readings_ + 1.0, look_back::kReadings);
+    const double turns = (1e-9 * static_cast<double>(stamp % kCommon) + off) / (1e-9 * kCommon);
+    const std::complex<double> z = std::polar(1.0, kTwoPi * turns), z3 = z * z * z, z4 = z * z3, z12 = z4 * z4 * z4,
+                               z15 = z12 * z3, z16 = z12 * z4, z20 = z16 * z4, z24 = z12 * z12, z30 = z15 * z15,
+                               z40 = z20 * z20, z60 = z30 * z30;
+    const Turns of_periods{z60 * z60, z40 * z40, z60, z24 * z24, z40, z30, z24, z20, z16, z15, z12};
     for (std::size_t i = 0; i < kPeriods.size(); ++i) {
+      taken_[i] += (of_periods[i] - taken_[i]) / readings_;
+      if (!(std::norm(taken_[i]) > length) || readings_ < look_back::kReadings) continue;
       const double period = 1e-3 * static_cast<double>(kPeriods[i]);
-      const double turns = (1e-9 * static_cast<double>(stamp % (kPeriods[i] * kMillisecond)) + off) / period;
-      taken_[i] += (std::polar(1.0, kTwoPi * turns) - taken_[i]) / readings_;
-      const bool divides = std::abs(std::remainder(step_.mean() / period, 1.0)) < kDivides;
-      if (divides || !(std::abs(taken_[i]) > length) || readings_ < look_back::kReadings) continue;
-      length = std::abs(taken_[i]);
+      if (std::abs(std::remainder(step_.mean() / period, 1.0)) < kDivides) continue;
+      length = std::norm(taken_[i]);
       grid_ = period;
     }
   }
 
-  // Numerical: kMillisecond, kTolerance
-  static constexpr std::int64_t kMillisecond = 1000000;                                          ///< [ns]
-  static constexpr std::array<std::int64_t, 11> kPeriods{2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20};  ///< [ms]
+  // Numerical: kCommon, kTolerance
+  static constexpr std::array<int, 11> kPeriods{2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20};  ///< [ms]
+  static constexpr std::int64_t kCommon = 240000000;  ///< multiple of all periods [ns]: its turns' powers are theirs
+  using Turns = std::array<std::complex<double>, kPeriods.size()>;  ///< exp(2 pi i instant/period) of each
   static constexpr double kRecognised = 0.5;  ///< by chance once in exp(100)
   static constexpr double kDivides = 0.1;     ///< share of a period up to which an interval counts as whole periods
   static constexpr double kMost = 0.5;        ///< share of the mean interval by which one may differ from it
@@ -77,7 +83,7 @@ class ControllerTask {
   static constexpr double kOften = 0.2, kStuck = 0.98;
 
   RunningMean<> step_{look_back::kReadings}, repeats_{look_back::kReadings};
-  std::array<std::complex<double>, kPeriods.size()> taken_{};  ///< mean of exp(2 pi i instant/period)
+  Turns taken_{};  ///< their means
   double readings_{};                                          ///< in it
   double grid_{};                                              ///< period of the grid [s]; 0: none
   std::int64_t last_{};                                        ///< stamp [ns]
