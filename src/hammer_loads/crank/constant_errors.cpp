@@ -57,7 +57,7 @@ void ConstantErrors::considerPriors() noexcept {
 
 void ConstantErrors::learn(double innovation, double variance, const Row& by_error) noexcept {
   const double weight = fit_.learn(innovation, variance, by_error.head<kTable>());
-  beside_ += (weight * by_error.head<kPlace>().transpose()).lazyProduct(by_error.tail<kMachineColumns>());
+  beside_ += (weight * by_error.head<kPlace>().transpose()).lazyProduct(by_error.middleCols<kMachineColumns>(kTable));
 }
 
 void ConstantErrors::endTurn(double growth, double count) noexcept {

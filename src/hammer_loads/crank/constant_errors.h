@@ -167,7 +167,8 @@ constexpr int indexOfUnknown(const char* name) {
 /// supply's error is therefore estimated as if the sensor's mounting were right, since the two can hardly be separated.
 class ConstantErrors {
  public:
-  static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();
+  /// kSize: rounded up to an even number, so that the compiler computes two columns at a time; the last one may be zero.
+  static constexpr int kTable = kUnknowns.size(), kSize = (kTable + kMachineColumns + 1) / 2 * 2, kPlace = countSeen();
   static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
                        kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
                        kSpeedScale = indexOfUnknown("speed scale");
@@ -240,13 +241,16 @@ class ConstantErrors {
   double zeroDeviation() const noexcept;
   /// Second moment of b by the innovations: contribution of an uncorrected b to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }
-  /// L with L L^T = moment(): its columns are errors that are independent of each other.
+  /// L with L L^T = moment(): its columns are errors that are independent of each other. Beyond the sensor's place it
+  /// is diagonal.
   const Matrix& root() const noexcept { return root_; }
   /// Derivatives by the constants become columns of independent errors of one standard deviation each.
   template <int numbers>
   static void toColumns(const Matrix& root, ByConstants<numbers, kSize>& by) noexcept {
-    const ByConstants<numbers, kTable> of_table = by.template leftCols<kTable>().lazyProduct(root);
-    by.template leftCols<kTable>() = of_table;
+    const ByConstants<numbers, kPlace> of_place =
+        by.template leftCols<kPlace>().lazyProduct(root.topLeftCorner<kPlace, kPlace>());
+    by.template leftCols<kPlace>() = of_place;
+    for (int i = kPlace; i < kTable; ++i) by.col(i) *= root(i, i);
   }
 
  private:

@@ -137,8 +137,11 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     by_constant.row(kTorque) += torque_by_constant;
     if (columns) {
       const double drive = state.torque - state.drive_inertia * load.hull_acceleration;
-      addWithin<kAngle, kSpeed>(columns->ofSpeed(model, state, state.drive_inertia, load, drive, h, step.blows > 0), h,
-                                by_constant);
+      const ColumnStep::Columns of_speed =
+          columns->ofSpeed(model, state, state.drive_inertia, load, drive, h, step.blows > 0);
+      constexpr int kFirst = ConstantErrors::kTable;
+      by_constant.row(kSpeed).middleCols<kMachineColumns>(kFirst) += of_speed;
+      by_constant.row(kAngle).middleCols<kMachineColumns>(kFirst) += 0.5 * h * of_speed;  // it comes evenly
     }
     addNoise(kAngle, kAngle, speed * h * h / 3.0);
     addNoise(kSpeed, kSpeed, speed + torque * square(b * h) / 3.0);
@@ -219,7 +222,7 @@ void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double 
                      CrankUncertainty& result) noexcept {
   if (model.isExact()) return;
   const MachineColumns::OnShaft on_shaft = model.columns(belief.state.position.angle);
-  result.by_constant.row(CrankUncertainty::kAcceleration).tail<kMachineColumns>() +=
+  result.by_constant.row(CrankUncertainty::kAcceleration).middleCols<kMachineColumns>(ConstantErrors::kTable) +=
       inverse_inertia *
       (on_shaft.row(2) - square(belief.state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));
 }

@@ -162,8 +162,8 @@ class ShaftModel {
   }
   MachineColumns::OnShaft columns(CrankAngle angle) const noexcept {
     if (isExact()) return MachineColumns::OnShaft::Zero();
-    return table_ && !isBeyond(angle.side, angle.offset) ? onShaft(*table_, angle, hull_.gravity)
-                                                         : columns_->onShaft(angle, hull_.gravity);
+    return table_ && ShaftTable::covers(angle) ? onShaft(*table_, angle, hull_.gravity)
+                                               : columns_->onShaft(angle, hull_.gravity);
   }
 
  private:
@@ -275,12 +275,5 @@ class ColumnStep {
   MachineColumns::OnShaft start_;
   double offset_, m_, weight_;  ///< at the step's start: angle [rad], M [kg m2], the links' weight on the crank [N m]
 };
-
-/// of_speed: what has come of the speed within a step of dt [s], evenly; by_constant: a belief's.
-template <Eigen::Index angle, Eigen::Index speed, typename Effect>
-void addWithin(const ColumnStep::Columns& of_speed, double dt, Effect& by_constant) noexcept {
-  by_constant.row(speed).template tail<kMachineColumns>() += of_speed;
-  by_constant.row(angle).template tail<kMachineColumns>() += 0.5 * dt * of_speed;
-}
 
 }  // namespace hammer_loads

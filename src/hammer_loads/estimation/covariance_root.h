@@ -28,10 +28,14 @@ Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, siz
   return root;
 }
 
-/// The way back: of errors that are independent of each other, a column each. Symmetric to the last bit.
-template <int size>
-Eigen::Matrix<double, size, size> covarianceOf(const Eigen::Matrix<double, size, size>& errors) noexcept {
-  return errors.lazyProduct(errors.transpose());
+/// Covariance of some numbers, a row each, by errors that are independent of each other, a column each. Symmetric to
+/// the last bit.
+template <typename Errors>
+auto covarianceOf(const Eigen::MatrixBase<Errors>& errors) noexcept {
+  Eigen::Matrix<double, Errors::RowsAtCompileTime, Errors::RowsAtCompileTime> covariance;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    for (Eigen::Index k = 0; k <= i; ++k) covariance(i, k) = covariance(k, i) = errors.row(i).dot(errors.row(k));
+  return covariance;
 }
 
 }  // namespace hammer_loads
