@@ -91,8 +91,7 @@ void WrenchColumns::tabulate() {
 WrenchColumns::Matrix WrenchColumns::wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
                                             const HullMotion& hull) const noexcept {
   if (isExact()) return Matrix::Zero();
-  if (!table_ || hull.turns() || isBeyond(at.angle.side, at.angle.offset))
-    return evaluate(drive_inertia, at, crank, hull);
+  if (!table_ || hull.turns() || !Table::covers(at.angle)) return evaluate(drive_inertia, at, crank, hull);
   const Table::Point point = table_->at(at.angle);
   return crank.speed * crank.speed * point.topRows<3>() + crank.acceleration * point.middleRows<3>(3) +
          hull.gravity.x * point.middleRows<3>(6) + hull.gravity.z * point.bottomRows<3>();

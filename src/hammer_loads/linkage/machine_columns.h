@@ -97,23 +97,29 @@ class ColumnTable {
   /// at(angle): the columns there.
   template <typename At>
   explicit ColumnTable(const At& at) {
-    for (int i = 0; i <= kPoints; ++i) {
+    for (int i = -kBeyond; i <= kPoints; ++i) {
       before_.push_back(at(CrankAngle{-kWidth * i, Side::kBeforeBlow}));
       after_.push_back(at(CrankAngle{kWidth * i, Side::kAfterBlow}));
     }
   }
-  /// angle: not mirrored. Beyond half a turn it extrapolates; an angle that is not a number has no columns.
+  /// Returns false for an angle of the mirrored branch that is further beyond the blow.
+  static bool covers(CrankAngle angle) noexcept { return fromBlow(angle) >= -kBeyond; }
+  /// angle: one that it covers. Beyond half a turn it extrapolates; an angle that is not a number has no columns.
   Point at(CrankAngle angle) const noexcept {
-    const double place = std::abs(angle.offset) / kWidth;
-    const int i = static_cast<int>(std::min(kPoints - 1.0, place));  // kPoints - 1 where place is not a number
+    const double place = fromBlow(angle) + kBeyond;
+    const int i = static_cast<int>(std::min(kBeyond + kPoints - 1.0, place));  // the last where it is not a number
     const Point* from = (angle.side == Side::kBeforeBlow ? before_ : after_).data() + i;
     return from[0] + (place - i) * (from[1] - from[0]);
   }
 
  private:
-  static constexpr int kPoints = 256;  ///< parts of half a turn
+  static constexpr int kPoints = 256;          ///< parts of half a turn
+  static constexpr int kBeyond = kPoints / 2;  ///< of them on the mirrored branch
   static constexpr double kWidth = 0.5 * kTwoPi / kPoints;
-  std::vector<Point> before_, after_;  ///< from the blow on
+  static double fromBlow(CrankAngle angle) noexcept {
+    return (angle.side == Side::kBeforeBlow ? -angle.offset : angle.offset) / kWidth;
+  }
+  std::vector<Point> before_, after_;  ///< from the mirrored branch through the blow on
 };
 /// Rows of MachineColumns::OnShaft, its weight for a gravity along x and along z.
 using ShaftTable = ColumnTable<4>;
@@ -153,7 +159,7 @@ class MachineColumns {
   std::vector<Part> parts_;
 };
 
-/// MachineColumns::onShaft() from a table; angle: not mirrored.
+/// MachineColumns::onShaft() from a table, which covers the angle.
 inline MachineColumns::OnShaft onShaft(const ShaftTable& table, CrankAngle angle, Gravity gravity) noexcept {
   const ShaftTable::Point at = table.at(angle);
   MachineColumns::OnShaft columns = at.topRows<3>();
