@@ -132,7 +132,7 @@ TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsFlagged) {
     if (offset > 0.5) doubted_later = std::max(doubted_later, pipeline.crank().tracker().otherBranch());
     if (offset > 0.1) continue;
     square_error += square(r.wrench.force_x - session.truth[i].load.force_x);
-    square_said += square(r.deviation.wrench.force_x);
+    square_said += square(r.deviation.wrench().force_x);
   }
   EXPECT_GT(square_error, 1e8) << "blank blows";
   EXPECT_GT(square_said, 0.05 * square_error);

@@ -79,7 +79,7 @@ FarFromBlow farFromBlow(const simulation::MachineSettings& machine) {
     if (truth.time < 3.0 || std::abs(CrankAngle::wrapToPi(truth.angle)) < 1.05) return;
     if (result.refusal) return static_cast<void>(++counted.withheld);
     ++counted.published;
-    const HullWrench &force = result.wrench, &deviation = result.deviation.wrench;
+    const HullWrench &force = result.wrench, &deviation = result.deviation.wrench();
     const double x = std::abs(force.force_x - truth.load.force_x), z = std::abs(force.force_z - truth.load.force_z);
     counted.wrong += std::max(x, z) > std::max(2000.0, 4.0 * std::max(deviation.force_x, deviation.force_z));
   });

@@ -93,7 +93,7 @@ TEST(ElasticOutputs, TakeTheRodAsASpringBetweenSamplesToo) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       if (truth[i].touches()) continue;
       const Eigen::Vector3d error = vectorOf(outputs[i].wrench) - loadOf(truth[i]);
-      const Eigen::Vector3d said = vectorOf(outputs[i].deviation.wrench);
+      const Eigen::Vector3d said = vectorOf(outputs[i].deviation.wrench());
       for (std::size_t k = 0; k < 3; ++k)
         errors[k].add(error[static_cast<Eigen::Index>(k)], said[static_cast<Eigen::Index>(k)]);
       right.add(truth[i].load.force_z, 0.0);
@@ -151,7 +151,7 @@ TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
       const simulation::CrankTruth& truth = session.truth[sample++];
       const double since = accuracy::sinceBlow(session.blows, time);
       if (time < 4.0 || !result.isPublished() || since < 0.003 || since > 0.030) return;
-      speed.add(result.links.rocker_speed - truth.rocker_speed, 0.0);
+      speed.add(result.linkState().rocker_speed - truth.rocker_speed, 0.0);
     });
     return speed.result().rms;
   };

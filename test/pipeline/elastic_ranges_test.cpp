@@ -74,8 +74,9 @@ TEST(ElasticRanges, ALoadInFrontOfABlowIsMoreCertainThanThoseBehindIt) {
     player.playTo(9.0, [&](double time, const SampleResult& result) {
       follower.follow();
       if (result.isPublished())
-        samples.emplace_back(result.stamp,
-                             life::LoadError::of(result.deviation.wrench.force_x, result.deviation.common.force_x).own);
+        samples.emplace_back(
+            result.stamp,
+            life::LoadError::of(result.deviation.wrench().force_x, result.deviation.common().force_x).own);
       for (std::size_t i = 0; i < result.turn_ends && time > 5.0; ++i) {
         const life::TurnLoads* loads = follower.turnLoads(result.ends[i]);
         const auto behind = std::lower_bound(samples.begin(), samples.end(), std::pair(result.ends[i].stamp, 0.0));

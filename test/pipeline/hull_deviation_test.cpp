@@ -23,7 +23,7 @@ const Eigen::Vector3d kElsewhere{0.3, -0.4, 1.0};  ///< moment about a point (0.
 
 /// Standard deviation of that moment by the deviations and correlations of a wrench.
 double deviationElsewhere(const HullDeviation& deviation) {
-  const Eigen::Vector3d by = kElsewhere.cwiseProduct(vectorOf(deviation.wrench)), r = deviation.correlation;
+  const Eigen::Vector3d by = kElsewhere.cwiseProduct(vectorOf(deviation.wrench())), r = deviation.correlation();
   return std::sqrt(by.squaredNorm() + 2.0 * (r[0] * by[0] * by[1] + r[1] * by[0] * by[2] + r[2] * by[1] * by[2]));
 }
 
@@ -43,7 +43,7 @@ Coverage coverage(const MachineSettings& machine) {
       error.head<3>() -=
           Eigen::Array3d(truth.load.force_x, truth.load.force_z, truth.load.torque_y + truth.drive_reaction_y);
       error[3] = kElsewhere.dot(error.head<3>().matrix());
-      sigma << vectorOf(output.deviation.wrench), deviationElsewhere(output.deviation);
+      sigma << vectorOf(output.deviation.wrench()), deviationElsewhere(output.deviation);
       inside += (error.abs() <= 2.0 * sigma).cast<double>();
       ++count;
     }
@@ -96,12 +96,12 @@ TEST(Deviations, EqualThoseOfManyDrawsForAKnownCovariance) {
   }
   const Eigen::Matrix3d covariance = squares / kDraws - sum * sum.transpose() / kDraws / kDraws;
   const Eigen::Vector3d expected = covariance.diagonal().cwiseSqrt();
-  EXPECT_NEAR(deviation.wrench.force_x, expected[0], 0.02 * expected[0]);  // 0.35 % by the draws, the rest curvature
-  EXPECT_NEAR(deviation.wrench.force_z, expected[1], 0.02 * expected[1]);
-  EXPECT_NEAR(deviation.wrench.torque_y, expected[2], 0.02 * expected[2]);
-  EXPECT_NEAR(deviation.correlation[0], covariance(0, 1) / (expected[0] * expected[1]), 0.02);
-  EXPECT_NEAR(deviation.correlation[1], covariance(0, 2) / (expected[0] * expected[2]), 0.02);
-  EXPECT_NEAR(deviation.correlation[2], covariance(1, 2) / (expected[1] * expected[2]), 0.02);
+  EXPECT_NEAR(deviation.wrench().force_x, expected[0], 0.02 * expected[0]);  // 0.35 % by the draws, the rest curvature
+  EXPECT_NEAR(deviation.wrench().force_z, expected[1], 0.02 * expected[1]);
+  EXPECT_NEAR(deviation.wrench().torque_y, expected[2], 0.02 * expected[2]);
+  EXPECT_NEAR(deviation.correlation()[0], covariance(0, 1) / (expected[0] * expected[1]), 0.02);
+  EXPECT_NEAR(deviation.correlation()[1], covariance(0, 2) / (expected[0] * expected[2]), 0.02);
+  EXPECT_NEAR(deviation.correlation()[2], covariance(1, 2) / (expected[1] * expected[2]), 0.02);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise,
   player.playTo(to, [&](double time, const SampleResult& result) {
     const simulation::OnBoomTruth& t = session.on_boom[i++];
     if (time < from || result.refusal || result.outputs.empty()) return;
-    const HullWrench &w = result.outputs.front().wrench, &d = result.outputs.front().deviation.wrench;
+    const HullWrench &w = result.outputs.front().wrench, &d = result.outputs.front().deviation.wrench();
     const double miss[3] = {w.force_x - t.load.force_x, w.force_z - t.load.force_z,
                             w.torque_y - t.load.torque_y - t.drive_reaction_y};
     const double deviation[3] = {d.force_x, d.force_z, d.torque_y};

@@ -26,7 +26,7 @@ struct Everything {
   double& sum;
   void operator()(double, const SampleResult& loads) const {
     for (const WrenchOutput& output : loads.outputs) {
-      sum += output.deviation.wrench.force_z;
+      sum += output.deviation.wrench().force_z;
       if (!pipeline.boom() || !pipeline.boom()->known()) continue;
       for (int link = 1; link < 5; ++link) sum += pipeline.boom()->wrenchAtLink(link, output.wrench).torque.y();
     }

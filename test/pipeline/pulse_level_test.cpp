@@ -26,7 +26,7 @@ std::vector<Sample> publishedAt(Level level) {
     const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     const double time = 1e-9 * static_cast<double>(reading.stamp - session.crank.front().stamp);
     if (!result.isPublished() || time < 3.0 || time > 8.0) continue;
-    samples.push_back({result.stamp, vectorOf(result.wrench), vectorOf(result.deviation.wrench)});
+    samples.push_back({result.stamp, vectorOf(result.wrench), vectorOf(result.deviation.wrench())});
   }
   return samples;
 }

@@ -245,7 +245,7 @@ TEST(RodRing, OccursWithoutAToolAsWell) {
     Found& found = struck ? after : blank;
     const double off = result.wrench.force_z - truth.load.force_z;
     ++found.samples, found.error += square(off);
-    found.covered += std::abs(off) < 2.0 * result.deviation.wrench.force_z;
+    found.covered += std::abs(off) < 2.0 * result.deviation.wrench().force_z;
   }
   for (const Found& found : {blank, after}) {
     SCOPED_TRACE(found.samples);
@@ -268,8 +268,8 @@ TEST(RodRing, BeginsBeforeTheBlow) {
     const double offset = CrankAngle::wrapToPi(truth.angle);
     if (truth.time < 4.0 || !r.isPublished() || !(offset > -0.15 && offset < 0.0)) continue;
     const double off = r.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y;
-    ++samples, error += square(off), said += square(r.deviation.wrench.torque_y);
-    covered += std::abs(off) < 2.0 * r.deviation.wrench.torque_y;
+    ++samples, error += square(off), said += square(r.deviation.wrench().torque_y);
+    covered += std::abs(off) < 2.0 * r.deviation.wrench().torque_y;
   }
   ASSERT_GT(samples, 150);
   EXPECT_GT(std::sqrt(error / samples), 20.0) << "what there is to cover";

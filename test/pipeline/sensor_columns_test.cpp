@@ -53,7 +53,7 @@ SensorJudged judgeSensor(const simulation::MachineSettings& machine, CrankStamps
     const double time = 1e-9 * static_cast<double>(result.stamp - machine.start_stamp);
     if (!result.isPublished() || time < from) continue;
     times.push_back(time);
-    const HullWrench &w = result.outputs.front().wrench, &d = result.outputs.front().deviation.wrench;
+    const HullWrench &w = result.outputs.front().wrench, &d = result.outputs.front().deviation.wrench();
     found.push_back({time, w.force_x, w.force_z, w.torque_y, d.force_x, d.force_z, d.torque_y});
   }
   for (const simulation::CrankTruth& t : simulation::truthAt(machine, times))

@@ -48,7 +48,7 @@ Heard hear(const simulation::MachineSettings& machine) {
     if (!result.isPublished() || session.truth[i].time < 4.0) continue;
     const double error = result.outputs.front().wrench.force_z - session.truth[i].load.force_z;
     judged += 1.0;
-    heard.covered += std::abs(error) <= 2.0 * result.outputs.front().deviation.wrench.force_z;
+    heard.covered += std::abs(error) <= 2.0 * result.outputs.front().deviation.wrench().force_z;
   }
   take(pipeline.end());
   heard.covered /= judged;

@@ -56,7 +56,7 @@ TEST(TurnLoads, AnExtremeBetweenSamplesHasTheDeviationOfItsOwnPlace) {
           ASSERT_NE(close, outputs.rend());
           if (seconds(instant - close->stamp) > 1e-3) continue;  // withheld beside the blow
           ++turns;
-          const double there = close->deviation.wrench.force_x;
+          const double there = close->deviation.wrench().force_x;
           EXPECT_NEAR(turn->channels[0].minimum.error.deviation(), there, 0.2 * there) << turns;
         }
       });

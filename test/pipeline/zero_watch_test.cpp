@@ -121,7 +121,7 @@ ZeroPlayed playZero(const Settings& settings, const simulation::Session& session
     const WrenchOutput& output = result.outputs.front();
     const Eigen::Vector3d is(truth.load.force_x, truth.load.force_z, truth.load.torque_y + truth.drive_reaction_y);
     const Eigen::Vector3d error = (vectorOf(output.wrench) - is).cwiseAbs();
-    const double ratio = error.cwiseQuotient(vectorOf(output.deviation.wrench)).maxCoeff();
+    const double ratio = error.cwiseQuotient(vectorOf(output.deviation.wrench())).maxCoeff();
     if (ratio > played.worst) played.worst = ratio, played.worst_at = time;
     played.beyond += ratio > kImpossibleError;
     if (time > 4.0) worst = std::max(worst, error[0]);

@@ -71,7 +71,7 @@ inline Covered coveredOf(const Settings& shipped, const WornMachineSettings& mac
                              .torque(result.crank.acceleration, 0.0);
     const double errors[] = {result.wrench.force_x - sample.force_x, result.wrench.force_z - sample.force_z,
                              result.wrench.torque_y - drive - sample.torque_y};
-    const Eigen::Vector3d stated = vectorOf(result.deviation.wrench);
+    const Eigen::Vector3d stated = vectorOf(result.deviation.wrench());
     ++covered.count[c];
     covered.largest = std::max(covered.largest, std::abs(sample.force_z));
     if (c < 2) ++covered.after_blow, covered.followed += result.rod_followed;

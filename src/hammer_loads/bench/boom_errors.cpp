@@ -62,7 +62,7 @@ void BoomErrors::addWrench(const simulation::OnBoomTruth& truth, const SampleRes
   const double torque_y = result.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y;
   worst_force = std::max(worst_force, std::hypot(x, z));
   const HullWrench deviation =
-      result.outputs.empty() ? HullWrench{kNaN, kNaN, kNaN} : result.outputs.back().deviation.wrench;
+      result.outputs.empty() ? HullWrench{kNaN, kNaN, kNaN} : result.outputs.back().deviation.wrench();
   wrench[0].add(x, deviation.force_x);
   wrench[1].add(z, deviation.force_z);
   wrench[2].add(torque_y, deviation.torque_y);
@@ -74,7 +74,7 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   force_z.add(result.wrench.force_z, truth.load.force_z);
   const auto said = life::LoadError::of;
   life_force_z.add(result.wrench.force_z, truth.load.force_z,
-                   said(result.ofExtreme().deviation.force_z, result.deviation.common.force_z));
+                   said(result.ofExtreme().deviation.force_z, result.deviation.common().force_z));
   addWrench(truth, result);
   moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
   const BoomState& boom = *result.boom;

@@ -67,8 +67,8 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed) {
     if (truth == session.truth.end() || std::abs(truth->time - time(loads.stamp)) > 1e-6) return;
     const Eigen::Vector3d is = wrenchOf(*truth);
     life.add(loads.wrench.force_z, is[1],
-             life::LoadError::of(loads.ofExtreme().deviation.force_z, loads.deviation.common.force_z));
-    const Eigen::Vector3d found = vectorOf(loads.wrench), deviation = vectorOf(loads.deviation.wrench);
+             life::LoadError::of(loads.ofExtreme().deviation.force_z, loads.deviation.common().force_z));
+    const Eigen::Vector3d found = vectorOf(loads.wrench), deviation = vectorOf(loads.deviation.wrench());
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       peak[k] = std::max(peak[k], std::abs(is[i]));

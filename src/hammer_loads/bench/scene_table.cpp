@@ -60,7 +60,7 @@ struct Judge {
       if (touches) continue;
       right /= kInMean;
       largest = largest.cwiseMax(right.cwiseAbs());
-      const Eigen::Vector3d error = vectorOf(mean.wrench) - right, said = vectorOf(mean.deviation.wrench);
+      const Eigen::Vector3d error = vectorOf(mean.wrench) - right, said = vectorOf(mean.deviation.wrench());
       for (Eigen::Index k = 0; k < 3; ++k) errors[static_cast<std::size_t>(k)].add(error[k], said[k]);
     }
     std::array<FigureErrors::Result, 3> result;

@@ -126,11 +126,9 @@ inline double crankAngle(CrankAngle angle) noexcept {
   return angle.offset < 0.0 ? angle.offset + kTwoPi : angle.offset;
 }
 
-inline LinkState linkState(const LinkMotion& links, const CrankMotion& crank) noexcept {
-  return {crankAngle(crank.angle),   rodAngle(links),
-          rockerAngle(links.rocker), crank.speed,
-          links.v * crank.speed,     links.rocker.u * crank.speed,
-          transmissionAngle(links)};
+inline LinkState linkState(const LinkMotion& links, CrankAngle angle, double speed) noexcept {
+  return {crankAngle(angle), rodAngle(links),        rockerAngle(links.rocker), speed,
+          links.v * speed,   links.rocker.u * speed, transmissionAngle(links)};
 }
 
 /// Blow by the change of the crank's speed; if that is not known, the crank keeps its speed.
@@ -174,7 +172,7 @@ class WrenchColumns {
   /// [kg m2]. No allocation.
   Matrix wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
                 const HullMotion& hull) const noexcept;
-  /// Prepares wrench() for many calls, in some 2 ms.
+  /// Prepares wrench() for many calls, in some milliseconds.
   void tabulate();
   /// Sources in the columns' order, as MachineColumn::name.
   std::vector<std::string> names() const;

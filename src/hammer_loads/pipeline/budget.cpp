@@ -67,7 +67,7 @@ void BudgetRecorder::Range::endTurn() noexcept {
 void BudgetRecorder::sample(const SampleResult& result) noexcept {
   const SampleResult::OfExtreme extreme = result.ofExtreme();
   const Eigen::Vector3d load = vectorOf(result.wrench), all = vectorOf(extreme.deviation),
-                        common = vectorOf(result.deviation.common), rod = vectorOf(extreme.ring);
+                        common = vectorOf(result.deviation.common()), rod = vectorOf(extreme.ring);
   for (std::size_t i = 0; i < kHullChannels; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (!std::isfinite(all[row])) continue;

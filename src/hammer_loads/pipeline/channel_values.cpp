@@ -21,7 +21,7 @@ void channelValues(const SampleResult& result, const Boom* boom, double* values,
                    double* common) noexcept {
   wrenchValues(result.wrench, values);
   wrenchValues(result.ofExtreme().deviation, deviations);
-  wrenchValues(result.deviation.common, common);
+  wrenchValues(result.deviation.common(), common);
   if (boom == nullptr) return;
   double* value = values + kHullChannels;
   const auto joints = static_cast<std::size_t>(boom->chain().joints());
@@ -106,8 +106,8 @@ void BandMeans::form(const WrenchOutput& mean, const double* deviations, const d
   std::copy_n(deviations, deviations_.size(), deviations_.begin());
   std::copy_n(common, common_.size(), common_.begin());
   wrenchValues(mean.wrench, mean_.data());
-  wrenchValues(mean.deviation.wrench, deviations_.data());
-  wrenchValues(mean.deviation.common, common_.data());
+  wrenchValues(mean.deviation.wrench(), deviations_.data());
+  wrenchValues(mean.deviation.common(), common_.data());
   if (!known_) std::fill_n(mean_.begin(), kHullChannels, kNaN);
 }
 

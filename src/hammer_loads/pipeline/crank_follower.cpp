@@ -273,7 +273,7 @@ bool CrankFollower::isSettled(const HullMotion& hull, double peak_force) noexcep
   if (peak_force > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;
   if (peak_force > 0.0) {
     const double deviation =
-        hullDeviation(*model_, {}, estimate_, hull, tracker_->uncertainty(1.0).covariance()).wrench.force_z;
+        hullDeviation(*model_, {}, estimate_, hull, tracker_->uncertainty(1.0).covariance()).wrench().force_z;
     if (kSettledDeviations * deviation > settings_.withhold_above * peak_force) return false;
   }
   unsettled_ = false;

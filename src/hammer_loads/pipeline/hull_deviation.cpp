@@ -42,21 +42,8 @@ Gradient gradient(const CrankEstimate& crank, const LinksBeside& links, const At
 
 HullDeviation unknownDeviation() noexcept {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  constexpr HullWrench kWrench{kUnknown, kUnknown, kUnknown};
-  const Eigen::Vector3d correlation = Eigen::Vector3d::Constant(kUnknown);
-  return {kWrench, kWrench, correlation, correlation, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
-}
-
-HullWrench deviationOf(const Eigen::Matrix3d& covariance) noexcept {
-  return wrenchOf(covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
-}
-
-Eigen::Vector3d correlationOf(const Eigen::Matrix3d& covariance) noexcept {
-  const auto coefficient = [&](int i, int k) {
-    const double square = covariance(i, i) * covariance(k, k);
-    return square > 0.0 ? std::clamp(covariance(i, k) / std::sqrt(square), -1.0, 1.0) : 0.0 * square;
-  };
-  return {coefficient(0, 1), coefficient(0, 2), coefficient(1, 2)};
+  const Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);
+  return {covariance, covariance, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 }
 
 /// Wrench at one crank angle as a function of speed and acceleration.
@@ -69,13 +56,12 @@ auto wrenchAt(const HullModel& model, const DriveReaction& drive, const HullMoti
 
 }  // namespace
 
-void addCovariance(const Eigen::Matrix3d& covariance, HullDeviation& deviation) noexcept {
-  const Eigen::Vector3d d = vectorOf(deviation.wrench), r = deviation.correlation;
-  const double xz = r[0] * d[0] * d[1], xy = r[1] * d[0] * d[2], zy = r[2] * d[1] * d[2];
-  Eigen::Matrix3d sum;
-  sum << d[0] * d[0], xz, xy, xz, d[1] * d[1], zy, xy, zy, d[2] * d[2];
-  sum += covariance;
-  deviation.wrench = deviationOf(sum), deviation.correlation = correlationOf(sum);
+Eigen::Vector3d HullDeviation::correlationOf(const Eigen::Matrix3d& covariance) noexcept {
+  const auto coefficient = [&](int i, int k) {
+    const double square = covariance(i, i) * covariance(k, k);
+    return square > 0.0 ? std::clamp(covariance(i, k) / std::sqrt(square), -1.0, 1.0) : 0.0 * square;
+  };
+  return {coefficient(0, 1), coefficient(0, 2), coefficient(1, 2)};
 }
 
 LinksBeside::LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept
@@ -86,11 +72,8 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
                             const Eigen::Matrix3d& covariance) noexcept {
   if (!(covariance(1, 1) > 0.0)) return unknownDeviation();
   const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) { return wrenchAt(model, drive, hull, at); });
-  const Eigen::Matrix3d of_load = g * covariance * g.transpose();
-  return {deviationOf(of_load),        {},
-          correlationOf(of_load),      Eigen::Vector3d::Zero(),
-          std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
-          std::sqrt(covariance(2, 2))};
+  return {g * covariance * g.transpose(), Eigen::Matrix3d::Zero(), std::sqrt(covariance(0, 0)),
+          std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2))};
 }
 
 HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
@@ -107,13 +90,18 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
       drive.torque(crank.acceleration, hull.acceleration) - none.torque(crank.acceleration, hull.acceleration);
   columns.row(2).head<ConstantErrors::kSize>() += by_inertia * uncertainty.by_constant.row(CrankUncertainty::kInertia);
   columns(2, kInertiaColumn) = by_inertia * uncertainty.inertia;
-  const Eigen::Matrix3d common = columns.lazyProduct(columns.transpose());
+  const Eigen::Matrix3d common = covarianceOf(columns);
   const Eigen::Matrix3d all = g * uncertainty.own * g.transpose() + common;
   const Eigen::Vector3d of_crank = uncertainty.by_constant.topRows<3>().rowwise().squaredNorm();
   const Eigen::Vector3d crank_all = (uncertainty.own.diagonal() + of_crank).cwiseSqrt();
-  return {deviationOf(all),       deviationOf(common),   correlationOf(all), correlationOf(common),
-          crank_all[0],           crank_all[1],          crank_all[2],       std::sqrt(of_crank[0]),
-          std::sqrt(of_crank[1]), std::sqrt(of_crank[2])};
+  return {all,
+          common,
+          crank_all[0],
+          crank_all[1],
+          crank_all[2],
+          std::sqrt(of_crank[0]),
+          std::sqrt(of_crank[1]),
+          std::sqrt(of_crank[2])};
 }
 
 void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,
@@ -127,7 +115,7 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
     by.col(2) = 0.5 * (load({{0.0, 0.0}, hull.rate + 1.0, 0.0}) - load({{0.0, 0.0}, hull.rate - 1.0, 0.0}));
   by.col(3) = load({{0.0, 0.0}, 0.0, 1.0});
   by(2, 3) -= drive.by_hull;
-  addCovariance((by.lazyProduct(covariance)).eval().lazyProduct(by.transpose()), deviation);
+  deviation.covariance += (by.lazyProduct(covariance)).eval().lazyProduct(by.transpose());
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
@@ -138,7 +126,7 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
       return HullWrench{p.x, p.z, p.about_d + drive.by_crank * speed};
     };
   });
-  return deviationOf(g * covariance * g.transpose());
+  return HullDeviation::deviationOf(g * covariance * g.transpose());
 }
 
 MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
@@ -191,13 +179,10 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
   return spread;
 }
 
-Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept {
-  return covarianceRoot<3>(columns.lazyProduct(columns.transpose()));
-}
+Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept { return covarianceRoot<3>(covarianceOf(columns)); }
 
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
-  const auto of_hammer = columns.middleCols<kMachineColumns>(ConstantErrors::kTable);
-  return covarianceRoot<3>(of_hammer.lazyProduct(of_hammer.transpose()));
+  return covarianceRoot<3>(covarianceOf(columns.middleCols<kMachineColumns>(ConstantErrors::kTable)));
 }
 
 double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept {

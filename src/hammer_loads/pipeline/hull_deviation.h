@@ -13,20 +13,30 @@ namespace hammer_loads {
 
 class CrankFilter;
 
-/// Standard deviations; NaN where the crank's covariance is not known.
+/// Uncertainty of a wrench; NaN where the crank's covariance is not known.
 struct HullDeviation {
-  HullWrench wrench;  ///< standard deviations of force_x [N], force_z [N], torque_y [N m]
-  HullWrench common;  ///< the part of it that is the same in all samples: of constants
+  /// Of force_x [N], force_z [N] and torque_y [N m], in products of these.
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d common_covariance{
+      Eigen::Matrix3d::Zero()};  ///< the part that is the same in all samples: of constants
+
+  /// Standard deviations of force_x [N], force_z [N], torque_y [N m].
+  HullWrench wrench() const noexcept { return deviationOf(covariance); }
+  HullWrench common() const noexcept { return deviationOf(common_covariance); }
   /// Coefficients of (force_x, force_z), (force_x, torque_y), (force_z, torque_y) [-]; 0 beside a deviation of 0.
-  Eigen::Vector3d correlation, common_correlation;
+  Eigen::Vector3d correlation() const noexcept { return correlationOf(covariance); }
+  Eigen::Vector3d commonCorrelation() const noexcept { return correlationOf(common_covariance); }
+
+  static HullWrench deviationOf(const Eigen::Matrix3d& covariance) noexcept {
+    return wrenchOf(covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
+  }
+  static Eigen::Vector3d correlationOf(const Eigen::Matrix3d& covariance) noexcept;
+
   double angle{};                                                ///< standard deviation of the crank angle [rad]
   double speed{};                                                ///< [rad/s]
   double acceleration{};                                         ///< [rad/s2]
   double common_angle{}, common_speed{}, common_acceleration{};  ///< the part of constants of these
 };
-
-/// Adds an error of the load that is independent of those in `deviation.wrench`.
-void addCovariance(const Eigen::Matrix3d& covariance, HullDeviation& deviation) noexcept;
 
 /// Motion of the links at a crank angle and slightly beside it, for gradients by the angle.
 struct LinksBeside {

@@ -20,7 +20,7 @@ struct LifeFollower::StepEnd {
   explicit StepEnd(const SampleResult& result) noexcept {
     wrenchValues(result.wrench, value.data());
     wrenchValues(result.ofExtreme().deviation, deviation.data());
-    wrenchValues(result.deviation.common, common.data());
+    wrenchValues(result.deviation.common(), common.data());
   }
   std::array<double, kHullChannels> value, deviation, common;
 };
@@ -180,8 +180,8 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   if (all_within) return;
   const CrankStep& step = pipeline_->crank().step();
   const HullDeviation there = pipeline_->stepDeviation(place.time, crank);
-  wrenchValues(there.wrench, deviations_there_.data());
-  wrenchValues(there.common, common_there_.data());
+  wrenchValues(there.wrench(), deviations_there_.data());
+  wrenchValues(there.common(), common_there_.data());
   std::array<double, kHullChannels> forward, back;
   const std::optional<CrankWays> ways = place.ways(step);
   if (ways) {

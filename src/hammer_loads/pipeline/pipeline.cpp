@@ -173,11 +173,10 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
   result_.level = elastic_.isWanted() && !elastic_.isUsed() ? Level::kLinkage : settings_.level;
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitchKnown();
-  result_.links = linkState(links.here.links, motion);
-  if (elastic_.runs()) {
-    const TwoBodyState& bodies = elastic_.filter().motion().state;
-    result_.links.rocker_angle += bodies.beside, result_.links.rocker_speed += bodies.beside_speed;
-  }
+  result_.links = links.here.links;
+  const TwoBodyState& bodies = elastic_.filter().motion().state;
+  result_.rocker_beside = elastic_.runs() ? bodies.beside : 0.0;
+  result_.rocker_beside_speed = elastic_.runs() ? bodies.beside_speed : 0.0;
   result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
   result_.crank.acceleration += rod.crank;
   result_.pins = elastic_.runs() ? elastic_.pins(result_.hull.motion, settings_.near_blow, result_.deviation.angle)
@@ -223,7 +222,7 @@ bool Pipeline::isKnown() const noexcept {
       std::abs(std::log(inertia / given)) > kInertiaOff)
     return false;
   // An unknown force of the rod gives no information on the crank.
-  const Eigen::Vector3d squares = vectorOf(result_.deviation.wrench).cwiseAbs2() - result_.unknown.rowwise().sum();
+  const Eigen::Vector3d squares = result_.deviation.covariance.diagonal() - result_.unknown.rowwise().sum();
   const double largest = squares.head<2>().maxCoeff();
   if (inertia > 0.0) return !(largest > square(peak_at_speed_));  // of a crank at work
   return largest <= square(kUncertain * settings_.withhold_above * std::max(1.0, speedScale()) * peak_at_speed_);

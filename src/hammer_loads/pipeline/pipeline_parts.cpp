@@ -70,10 +70,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_std_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
-  if (gives) {
-    result_.deviation.wrench = result_.deviation.common;
-    result_.deviation.correlation = result_.deviation.common_correlation;
-  }
+  if (gives) result_.deviation.covariance = result_.deviation.common_covariance;
   const ElasticFollower::Beside rod =
       gives ? elastic_.beside(drive, rod_.acceleration())
             : ElasticFollower::Beside{{}, rod_.covariance(links.here.links, result_.crank.speed)};
@@ -85,7 +82,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
   const Eigen::Matrix3d contact = contactDoubt(links.here.links, drive);
   result_.beside = rod.covariance + contact + zeroDoubt(drive) + unknown.covariance;
-  addCovariance(result_.beside, result_.deviation);
+  result_.deviation.covariance += result_.beside;
   const CrankFilter& tracker = crank_.tracker();
   // An encoder's edge shows the side of the blow as far as the zero is known.
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;

@@ -44,19 +44,25 @@ struct WrenchOutput {
 };
 
 struct SampleResult {
-  /// deviation.wrench and rod_ring where the sample stands for an extreme of the revolution. For a vibration of unknown
-  /// phase that is the crest, the root of two times its root mean square.
+  /// deviation.wrench() and rod_ring where the sample stands for an extreme of the revolution. For a vibration of
+  /// unknown phase that is the crest, the root of two times its root mean square.
   struct OfExtreme {
     HullWrench deviation, ring;
     UnknownForce::Squares unknown;
   };
   OfExtreme ofExtreme() const noexcept {
     const UnknownForce::Squares crest = UnknownForce::ofExtreme(unknown);
-    Eigen::Vector3d all = vectorOf(deviation.wrench).cwiseAbs2() + (crest - unknown).rowwise().sum();
+    Eigen::Vector3d all = deviation.covariance.diagonal() + (crest - unknown).rowwise().sum();
     if (rod_followed) return {wrenchOf(all.cwiseSqrt()), rod_ring, crest};
     const Eigen::Vector3d ring = vectorOf(rod_ring);
     all += ring.cwiseAbs2();
     return {wrenchOf(all.cwiseSqrt()), wrenchOf(std::sqrt(2.0) * ring), crest};
+  }
+
+  LinkState linkState() const noexcept {
+    LinkState state = hammer_loads::linkState(links, crank.position.angle, crank.speed);
+    state.rocker_angle += rocker_beside, state.rocker_speed += rocker_beside_speed;
+    return state;
   }
 
   StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence
@@ -83,7 +89,9 @@ struct SampleResult {
   HullDeviation deviation;  ///< at the sample, with what the hull's motion adds
   double consistency{};     ///< CrankFilter::consistency()
   bool inconsistent{};      ///< readings contradict the model, not yet so that samples are withheld
-  LinkState links;
+  LinkMotion links;         ///< of a rigid rod
+  double rocker_beside{},
+      rocker_beside_speed{};  ///< what an elastic rod adds to the rocker's angle [rad] and speed [rad/s]
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad
   HullWrench wrench;   ///< at the sample, of links and drive

@@ -107,7 +107,7 @@ void TurnFollower::trackErrors(const SampleResult& result) noexcept {
     errors_.rose(result.stamp, momentumColumns(*columns_, *model_, crank.position.angle, crank.speed,
                                                result.doubt.speedAtAngle(crank.acceleration / crank.speed)));
   const SampleResult::OfExtreme extreme = result.ofExtreme();
-  errors_.sample(result.wrench.force_z, extreme.deviation.force_z, result.deviation.common.force_z,
+  errors_.sample(result.wrench.force_z, extreme.deviation.force_z, result.deviation.common().force_z,
                  extreme.ring.force_z, result.load_columns);
 }
 

@@ -7,6 +7,17 @@
 #include "hammer_loads/util/functions.h"
 
 namespace hammer_loads {
+namespace {
+
+/// The correlations stay.
+void setVariances(const Eigen::Vector3d& variances, Eigen::Matrix3d& covariance) noexcept {
+  const Eigen::Array3d before = covariance.diagonal();
+  const Eigen::Vector3d by = (before > 0.0).select(variances.array() / before, 0.0).sqrt();
+  covariance = (by.asDiagonal() * covariance * by.asDiagonal()).eval();
+  covariance.diagonal() = variances;
+}
+
+}  // namespace
 
 WrenchSampler::WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step,
                              const CrankFilter& tracker, const ElasticFollower& elastic,
@@ -19,7 +30,7 @@ WrenchSampler::WrenchSampler(const HullModel& model, const WrenchColumns& column
       kind_(settings.output),
       rate_(settings.output_rate),
       longest_gap_(settings.stale_after),
-      near_blow_(settings.near_blow),
+      cos_near_blow_(std::cos(settings.near_blow)),
       torque_part_(settings.torque_std_part) {}
 
 std::size_t WrenchSampler::mostOutputs() const noexcept {
@@ -127,16 +138,15 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
     output.drive_reaction_y = drive_.torque(output.crank.acceleration, hull.acceleration);
   }
   last_output_ = stamp;
-  const double transmission = at_sample ? result.links.transmission_angle
-                                        : transmissionAngle(linksAt(*model_, output.crank.position.angle).links);
-  output.near_blow = transmission < near_blow_;
   if (at_sample) {
+    output.near_blow = links.here.links.cos_mu > cos_near_blow_;
     output.deviation = result.deviation;
     boundMean(links, result.doubt.own, result, output);
     return output;
   }
   const CrankUncertainty doubt = tracker_->uncertaintyBetween(time, torque_part_);
   const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
+  output.near_blow = there.here.links.cos_mu > cos_near_blow_;
   output.deviation = deviation(output.crank, doubt, there, hull, result);
   boundMean(there, doubt.own, result, output);
   return output;
@@ -160,7 +170,7 @@ HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUn
   addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of);
   // Errors by rod and unknown forces change at a blow; before it they are those of the previous sample.
   const bool before_blow = hull_.blow && crank.position.angle.side == Side::kBeforeBlow;
-  addCovariance(before_blow ? beside_before_ : beside_, of);
+  of.covariance += before_blow ? beside_before_ : beside_;
   return of;
 }
 
@@ -183,12 +193,11 @@ void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& o
   const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_std_ + momentum + blow_doubt_);
   momentum_std_ = momentum;
   blow_doubt_ = {};
-  const Eigen::Vector3d of_end =
-      (vectorOf(deviation.wrench).cwiseAbs2() - vectorOf(deviation.common).cwiseAbs2()).cwiseMax(0.0);
+  const Eigen::Vector3d of_end = (deviation.covariance - deviation.common_covariance).diagonal().cwiseMax(0.0);
   const Eigen::Vector3d common = (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm();
   column_impulse_.setZero();
-  deviation.common = wrenchOf(common.cwiseSqrt());
-  deviation.wrench = wrenchOf((of_end.cwiseMin(allowed.cwiseAbs2()) + common).cwiseSqrt());
+  setVariances(common, deviation.common_covariance);
+  setVariances(of_end.cwiseMin(allowed.cwiseAbs2()) + common, deviation.covariance);
 }
 
 }  // namespace hammer_loads

@@ -21,29 +21,30 @@ void fillWrench(StampNs stamp, const HullWrench& wrench, geometry_msgs::WrenchSt
 
 void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullLoads& message) {
   const HullDeviation& deviation = output.deviation;
+  const HullWrench std = deviation.wrench(), systematic = deviation.common();
   message.header.stamp = timeOf(output.stamp);
   message.sample_stamp = timeOf(result.sample_stamp);
   message.force_x = output.wrench.force_x;
   message.force_z = output.wrench.force_z;
   message.torque_y = output.wrench.torque_y;
   message.drive_reaction_y = output.drive_reaction_y;
-  message.force_x_std = deviation.wrench.force_x;
-  message.force_z_std = deviation.wrench.force_z;
-  message.torque_y_std = deviation.wrench.torque_y;
+  message.force_x_std = std.force_x;
+  message.force_z_std = std.force_z;
+  message.torque_y_std = std.torque_y;
   message.crank_angle = crankAngle(output.crank.position.angle);
   message.crank_speed = output.crank.speed;
   message.crank_acceleration = output.crank.acceleration;
   message.crank_angle_std = deviation.angle;
   message.crank_speed_std = deviation.speed;
   message.crank_acceleration_std = deviation.acceleration;
-  message.force_x_systematic_std = deviation.common.force_x;
-  message.force_z_systematic_std = deviation.common.force_z;
-  message.torque_y_systematic_std = deviation.common.torque_y;
+  message.force_x_systematic_std = systematic.force_x;
+  message.force_z_systematic_std = systematic.force_z;
+  message.torque_y_systematic_std = systematic.torque_y;
   message.crank_angle_systematic_std = deviation.common_angle;
   message.crank_speed_systematic_std = deviation.common_speed;
   message.crank_acceleration_systematic_std = deviation.common_acceleration;
-  Eigen::Map<Eigen::Vector3d>(message.correlation.data()) = deviation.correlation;
-  Eigen::Map<Eigen::Vector3d>(message.systematic_correlation.data()) = deviation.common_correlation;
+  Eigen::Map<Eigen::Vector3d>(message.correlation.data()) = deviation.correlation();
+  Eigen::Map<Eigen::Vector3d>(message.systematic_correlation.data()) = deviation.commonCorrelation();
   message.interval = output.interval;
   message.level = nameOf(result.level);  // short enough for no allocation
   message.consistency = result.consistency;
@@ -56,7 +57,7 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
 }
 
 void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message) {
-  const LinkState& links = result.links;
+  const LinkState links = result.linkState();
   message.header.stamp = timeOf(result.stamp);
   const double angles[]{links.crank_angle, links.rod_angle, links.rocker_angle};
   const double speeds[]{links.crank_speed, links.rod_speed, links.rocker_speed};
@@ -67,7 +68,7 @@ void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message)
 void fillPinForces(const SampleResult& result, PinForces& message) {
   const PinReactions& pins = result.pins;
   message.header.stamp = timeOf(result.stamp);
-  message.crank_angle = result.links.crank_angle;
+  message.crank_angle = crankAngle(result.crank.position.angle);
   message.crank_speed = result.crank.speed;
   message.crank_acceleration = result.crank.acceleration;
   message.force_a_x = pins.hull_on_crank.x;
@@ -79,7 +80,7 @@ void fillPinForces(const SampleResult& result, PinForces& message) {
   message.force_d_x = pins.hull_on_rocker.x;
   message.force_d_z = pins.hull_on_rocker.z;
   message.drive_torque = pins.drive_torque;
-  message.transmission_angle = result.links.transmission_angle;
+  message.transmission_angle = transmissionAngle(result.links);
   message.near_blow = pins.near_blow;
 }
 

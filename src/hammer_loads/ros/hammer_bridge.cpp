@@ -165,7 +165,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   last_record_time_ = record_time;
   const bool continues = std::exchange(goes_on_, result.isPublished()) && pipeline_->crank().step().known() &&
                          !pipeline_->crank().step().strikes();
-  if (result.isPublished()) reference_.computed(result.stamp, result.wrench, result.deviation.wrench, continues);
+  if (result.isPublished()) reference_.computed(result.stamp, result.wrench, result.deviation.wrench(), continues);
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
