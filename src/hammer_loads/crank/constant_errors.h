@@ -167,7 +167,7 @@ constexpr int indexOfUnknown(const char* name) {
 /// supply's error is therefore estimated as if the sensor's mounting were right, since the two can hardly be separated.
 class ConstantErrors {
  public:
-  /// kSize: rounded up to an even number, so that the compiler computes two columns at a time; the last one may be zero.
+  /// kSize: rounded up to an even number, since pairs of columns are computed at once; the last one may be zero.
   static constexpr int kTable = kUnknowns.size(), kSize = (kTable + kMachineColumns + 1) / 2 * 2, kPlace = countSeen();
   static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
                        kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
