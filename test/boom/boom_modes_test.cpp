@@ -49,11 +49,11 @@ TEST_F(ShippedBoom, IsStiffenedOrSoftenedByItsWeight) {
     const Eigen::Matrix4d K = weightStiffness(boom_.chain(), q, g_B);
     ASSERT_LT((K + slope).norm(), 1e-6 * slope.norm());
     // What it does to the frequencies, to first order: half of what the strain energy of a mode gains.
-    vibration().rest();  // each time: modes are found where the joints stand
+    vibration().reset();  // each time: modes are found where the joints stand
     pose(q);
     if (modes().count == 0) continue;  // a dead centre
     const BoomModes without = modes();
-    vibration().rest();
+    vibration().reset();
     boom_.moveCompliant({q, kZero, kZero}, g_B);
     for (int k = 0; k < 3; ++k) {
       const double gained = without.shape.col(k).dot(K.bottomRightCorner<3, 3>() * without.shape.col(k));

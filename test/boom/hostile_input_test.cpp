@@ -59,7 +59,7 @@ TEST(HostileInput, LoadsAreFiniteOrMarkedAndRecover) {
     }
     if (i % 100 != 0) continue;
     // A usual session afterwards is that of a boom that never saw such a sample.
-    boom.vibration().rest();
+    boom.vibration().reset();
     Boom fresh = test::shippedBoom();
     for (int k = 0; k < 5; ++k) {
       BoomLoads expected;

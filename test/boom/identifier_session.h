@@ -23,7 +23,7 @@ class IdentifierSession {
     const JointVector zero = JointVector::Zero(4);
     boom_->moveCompliant({workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
     if (identify) boom_->vibration().identify();
-    boom_->vibration().rest();
+    boom_->vibration().reset();
     boom_->moveCompliant({workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
     J_ = tipJacobian(boom_->pose());
   }

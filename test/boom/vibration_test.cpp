@@ -88,12 +88,12 @@ TEST_F(ShippedBoom, EnergyComesBackWithThePose) {
 TEST_F(ShippedBoom, GivesReducedMassAndStiffnessAtTheHull) {
   for (const Eigen::Vector3d& direction : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()}) {
     const ReducedHull reduced = boom_.reducedHull(direction);
-    vibration().rest();
+    vibration().reset();
     // An impulse of 1 N s along it moves the hull along it at 1/mass; a steady 1 N by 1/stiffness.
     const JointVector unit = boom_.hammerTorque({direction, Eigen::Vector3d::Zero()});
     vibration().strike(unit);
     EXPECT_NEAR(direction.dot(boom_.tipVibration().velocity.head<3>()) * reduced.mass, 1.0, 1e-11);
-    vibration().rest();
+    vibration().reset();
     for (int i = 0; i < 10; ++i) steadyLoad(5.0, unit);
     EXPECT_NEAR(direction.dot(boom_.tipVibration().displacement.head<3>()) * reduced.stiffness, 1.0, 1e-9);
     EXPECT_GT(reduced.mass, 50.0);

@@ -94,9 +94,9 @@ TEST_F(FilterTrouble, AKickThatARodExplainsIsFollowed) {
   EXPECT_EQ(turnOn(rigid, kStep, kKicked), Tracking::kOutlier);
   CrankFilter f = turning(kStep);
   const double known = std::sqrt(f.covariance()(1, 1));
-  f.considerRod(0.0, 4.0 * known);
+  f.inflateByRod(0.0, 4.0 * known);
   EXPECT_EQ(std::sqrt(f.covariance()(1, 1)), known);
-  f.considerRod(0.0, kKicked / kStep);
+  f.inflateByRod(0.0, kKicked / kStep);
   EXPECT_EQ(turnOn(f, kStep, kKicked), Tracking::kContinued);
   EXPECT_NEAR(f.state().position.angle.offset, angle_ + kKicked, 0.2 * kKicked);
 }

@@ -217,7 +217,7 @@ TEST(ConstantFit, FadesUpdatesAndBoundsTheEffectOfOneInnovation) {
   fit.fade(0.5);
   EXPECT_DOUBLE_EQ(fit.score()[0], 1.015);
   const double before = fit.score()[0] / fit.information()(0, 0);
-  fit.take(0, -before);  // the constant is now given as it was found
+  fit.shift(0, -before);  // the constant is now given as it was found
   EXPECT_NEAR(fit.score()[0], 0.0, 1e-15);
 }
 

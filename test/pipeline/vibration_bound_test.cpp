@@ -52,7 +52,7 @@ TEST(VibrationBound, DoesNotHoldForEnergyFromNowhere) {
   EXPECT_TRUE(shaken.bound.holds(shaken.boom.vibration())) << "it was struck";
   shaken.boom.vibration().strike(1e4 * impulse);
   EXPECT_FALSE(shaken.bound.holds(shaken.boom.vibration()));
-  shaken.boom.vibration().rest();
+  shaken.boom.vibration().reset();
   EXPECT_TRUE(shaken.bound.holds(shaken.boom.vibration()));
 }
 

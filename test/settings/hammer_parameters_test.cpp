@@ -127,7 +127,7 @@ TEST(HammerParameters, TheRodsSpringIsOptional) {
 
 TEST(HammerParameters, TakesTheRodAsUncertainUnlessTheFileStatesIt) {
   const HammerParameters usual = parametersWith("");
-  EXPECT_TRUE(priorOf(usual.rod, usual.rod_std).gives);
+  EXPECT_TRUE(priorOf(usual.rod, usual.rod_std).is_elastic);
   const HammerParameters weighed =
       parametersWith("rod_stiffness_std_N_m: 1e8\nrod_damping_ratio_std: 0.1\npin_play_std_m: 5e-5\n");
   EXPECT_EQ(weighed.rod_std.stiffness, 1e8);
@@ -135,7 +135,7 @@ TEST(HammerParameters, TakesTheRodAsUncertainUnlessTheFileStatesIt) {
   EXPECT_EQ(weighed.rod_std.play, 5e-5);
   EXPECT_EQ(parametersWith("pin_friction_radius_std_m: 2e-4\n").rod_std.friction_radius, 2e-4);
   const HammerParameters rigid = parametersWith("rod_stiffness_std_N_m: 0\npin_play_std_m: 0\n");
-  EXPECT_FALSE(priorOf(rigid.rod, rigid.rod_std).gives);
+  EXPECT_FALSE(priorOf(rigid.rod, rigid.rod_std).is_elastic);
   EXPECT_EQ(problemsWith({}, "rod_stiffness_std_N_m: -1\n").size(), 1U);
 }
 

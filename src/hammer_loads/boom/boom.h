@@ -194,7 +194,7 @@ class Boom {
   double ownInertia(int link, int joint, int other) const noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void arrangeResponse() noexcept;
-  void takeDeviations(BoomDeviations& result) const noexcept;
+  void computeDeviations(BoomDeviations& result) const noexcept;
   /// Columns: LoadErrors::Inputs. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces
   /// on their bases' pins.
   Eigen::MatrixXd response_;

@@ -101,7 +101,8 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
     const int run = VibrationSpread::kLoads + i;
     errors.add(vibrates && run < spread.runs() ? difference(run) : none, w_tip.part[static_cast<std::size_t>(i)]);
   }
-  for (int k = 0; vibrates && spread.swings() && k < spread.modes(); ++k) errors.add(spread.accelerationOfSwing(k), {});
+  for (int k = 0; vibrates && spread.startsUnknown() && k < spread.modes(); ++k)
+    errors.add(spread.accelerationOfSwing(k), {});
   deviations(errors, result);
 }
 
@@ -116,7 +117,7 @@ void Boom::deviations(const LoadErrors& errors, BoomDeviations& result) noexcept
     deviation_.setZero();
     for (Eigen::Index i = 0; i < in_plane_; ++i) deviation_[rows_in_plane_[i]] = std::sqrt(variance[i]);
   }
-  takeDeviations(result);
+  computeDeviations(result);
 }
 
 void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexcept {
@@ -125,7 +126,7 @@ void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexce
   const auto first = static_cast<Eigen::Index>(cylinders_.size());  // before it: accelerations
   for (Eigen::Index i = 0; i < in_plane_; ++i)
     deviation_[rows_in_plane_[i]] = response_in_plane_.row(i).segment<3>(first).lazyProduct(tip).norm();
-  takeDeviations(result);
+  computeDeviations(result);
 }
 
 /// Part of one link in the mass matrix [kg m2].
@@ -205,7 +206,7 @@ JointVector Boom::findWeightDeviation() const noexcept {
 }
 
 /// From deviation_.
-void Boom::takeDeviations(BoomDeviations& result) const noexcept {
+void Boom::computeDeviations(BoomDeviations& result) const noexcept {
   Eigen::Index row = chain_.joints();
   result.torque = deviation_.head(row);
   const auto next = [&] {

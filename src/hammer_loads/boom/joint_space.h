@@ -15,9 +15,9 @@ class JointVector : public Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoint
   using Base = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
   using Base::Base;
   JointVector() = default;
-  JointVector(const JointVector& other) noexcept : Base() { take(other); }
+  JointVector(const JointVector& other) noexcept : Base() { copy(other); }
   JointVector& operator=(const JointVector& other) noexcept {
-    take(other);
+    copy(other);
     return *this;
   }
   template <typename Other>
@@ -29,7 +29,7 @@ class JointVector : public Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoint
   }
 
  private:
-  void take(const JointVector& other) noexcept {
+  void copy(const JointVector& other) noexcept {
     resize(other.size());
     if (other.size() == 4)
       head<4>() = other.head<4>();

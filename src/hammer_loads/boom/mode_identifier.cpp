@@ -190,7 +190,7 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
     power += share * (square(modal.mean[k]) - power);
   }
   held_.push(step, modal);
-  takeForces(step);
+  applyForces(step);
   for (double& age : age_) age += step;
   imu_age_ += step;
   free_for_ = follows_contact_ && !bears_ ? free_for_ + step : 0.0;

@@ -100,7 +100,7 @@ class ModeIdentifier {
   /// True if the caller must provide modes of the current estimate of the oil, even if it is uncertain.
   bool seeks() const noexcept { return seeks_; }
   /// True if the delay of the pressures relative to an IMU is identified; oil and delay look alike without one.
-  bool knowsLag() const noexcept { return isDelayFollowed(Clock::kPressures) && imuSpeaks(); }
+  bool isLagKnown() const noexcept { return isDelayFollowed(Clock::kPressures) && imuSpeaks(); }
   /// Mean square of the innovations of the oil torques over their variance, averaged over 1 s [-]. Correct pressures at
   /// 500 Hz have 0.3 to 0.7 (one of 20 machines briefly 1.2), pressures that lag by 5 ms have 1.2 and more. 0 without
   /// identification.
@@ -204,9 +204,9 @@ class ModeIdentifier {
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
   double rockOn(int mode) const noexcept { return follows_contact_ ? contact_[mode] : 0.0; }
-  void takeForces(double step) noexcept;
+  void applyForces(double step) noexcept;
   void advanceModes(const HeldForces::Piece& piece) noexcept;
-  void takeBlow(const ModeVector& jump) noexcept;
+  void applyBlow(const ModeVector& jump) noexcept;
   void addBlowToDelay(const ModeVector& force) noexcept;
   void walk(int mode, double step) noexcept;
   void walkContact(double step) noexcept;
@@ -227,11 +227,11 @@ class ModeIdentifier {
   struct Predicted {
     double value{}, rate{}, bend{};
   };
-  void take(const VibrationReading* readings, std::size_t count) noexcept;
+  void update(const VibrationReading* readings, std::size_t count) noexcept;
   void excuseNoMoreThanRead(const VibrationReading& reading, double difference, State& row) const noexcept;
   void correct(const VibrationReading& reading, const State& row, double difference, const Predicted& predicted,
                const StateList& kept) noexcept;
-  double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
+  double gateReading(const VibrationReading& reading, double predicted, double difference) noexcept;
   void restoreKept(const StateList& kept, double moved, double S, const State& gain_S) noexcept;
   void limitPull(double step) noexcept;
   void transform(const JointMatrix& T) noexcept;

@@ -33,7 +33,7 @@ double lesserOf(double a, double b) noexcept {
 
 /// Takes forces from the queue until the IMU's delay remains in it; the delay changes little in a step. With early
 /// stamps the sensors' time waits for the crank.
-void ModeIdentifier::takeForces(double step) noexcept {
+void ModeIdentifier::applyForces(double step) noexcept {
   const double early = std::max(0.0, -imuDelay());
   const double own = std::max(kLeastStep * step, step + waiting_ - early);
   waiting_ += step - own;
@@ -47,7 +47,7 @@ void ModeIdentifier::takeForces(double step) noexcept {
     piece.duration *= stretch;
     if (struck_) addBlowToDelay(piece.from - force_);
     advanceModes(piece);
-    if (piece.strikes) takeBlow(piece.jump);
+    if (piece.strikes) applyBlow(piece.jump);
   }
 }
 
@@ -56,10 +56,10 @@ void ModeIdentifier::strike(const JointVector& impulse) noexcept {
   ModeVector jump = ModeVector::Zero();
   jump.head(count_) = modalForce(modes_, impulse);
   if (!held_.empty()) return held_.strike(jump);
-  takeBlow(jump);
+  applyBlow(jump);
 }
 
-void ModeIdentifier::takeBlow(const ModeVector& jump) noexcept {
+void ModeIdentifier::applyBlow(const ModeVector& jump) noexcept {
   for (int k = 0; k < count_; ++k) {
     state_[at(k, kV)] += jump[k];
     history_.strike(k, jump[k]);

@@ -143,7 +143,7 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
   const std::size_t together = clock == Clock::kPressures ? 1 : kTogether;
   for (std::size_t first = 0; first < count; first += together) {
     if (first > 0 && learns_) useOil();  // by the reading before
-    take(readings + first, std::min(together, count - first));
+    update(readings + first, std::min(together, count - first));
   }
   correctHose(state_ - known);
   if (clock == Clock::kImu) limitPull(since_imu);
@@ -185,7 +185,7 @@ void ModeIdentifier::excuseNoMoreThanRead(const VibrationReading& reading, doubl
 }
 
 /// Finds the rows of all readings about one state, then updates by one reading after the other.
-void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) noexcept {
+void ModeIdentifier::update(const VibrationReading* readings, std::size_t count) noexcept {
   SeenModes seen;
   States then;
   for (int k = 0; k < count_; ++k) {
@@ -237,7 +237,7 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
   TimingNoise& jitter = jitter_[static_cast<std::size_t>(reading.channel)];
   const double by_stamp = byDelay(reading.clock, row) + square(rate) * jitterVariance(reading.clock, reading.channel) +
                           2.0 * square(predicted.bend);
-  const double S = weigh(reading, inUse(row).dot(inUse(gain_S)) + by_stamp, difference);
+  const double S = gateReading(reading, inUse(row).dot(inUse(gain_S)) + by_stamp, difference);
   if (isDelayFollowed(reading.clock) && S > 0.0) jitter.learn(difference, S, rate);
   if (!(S > 0.0)) return;
   state_.segment(begin(), states()) += difference / S * inUse(gain_S);
@@ -257,7 +257,7 @@ bool ModeIdentifier::mayYetExplain() const noexcept {
 bool ModeIdentifier::isExplained() const noexcept { return explains_ && surprise_ < kCalm && learns_ && identified(); }
 
 /// Innovation variance S of a reading from the variance of its prediction; 0 if the reading is ignored.
-double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
+double ModeIdentifier::gateReading(const VibrationReading& reading, double predicted, double difference) noexcept {
   const double S = predicted + square(reading.noise) + square(reading.neglected);
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {

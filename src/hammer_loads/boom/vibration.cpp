@@ -29,7 +29,7 @@ Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const 
     own_oil_[static_cast<Eigen::Index>(i)] = cylinders_[i].parameters().stiffness_std;
   modes_.mass = JointMatrix::Zero(chain.joints(), chain.joints());
   modes_.inertia.resize(chain.joints(), 0);
-  rest();
+  reset();
 }
 
 void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept {
@@ -74,7 +74,7 @@ LogOil Vibration::oilToTake() const noexcept {
   return (log_oil_ + found).cwiseMax(-kMostOil).cwiseMin(kMostOil) - log_oil_;
 }
 
-void Vibration::rest() noexcept {
+void Vibration::reset() noexcept {
   x_.setZero(modes_.count);
   v_.setZero(modes_.count);
   torque_.setZero();
@@ -89,7 +89,7 @@ void Vibration::startAnew() noexcept {
   if (identifier_) identifier_.emplace(settings_.damping_ratio, identifier_->learns(), own_oil_);
   log_oil_.setZero();
   swing_.setZero();
-  rest();
+  reset();
 }
 
 void Vibration::advance(double step, const TorqueStep& torque) noexcept {
@@ -105,7 +105,7 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   }
   torque_ = torque.to;
   force_ = modal.to;
-  if (follows_readings_) takeMotion();
+  if (follows_readings_) storeMotion();
   if (identifier_)
     mean_contact_ += std::min(1.0, step / look_back::kSomeTurns) * (identifier_->contact() - mean_contact_);
   restIfNotFinite();
@@ -124,7 +124,7 @@ void Vibration::followSwing(double step) noexcept {
 void Vibration::strike(const JointVector& impulse) noexcept {
   if (identifier_) identifier_->strike(impulse);
   if (follows_readings_) {
-    takeMotion();
+    storeMotion();
   } else {
     v_ += modalForce(modes_, impulse);
   }
@@ -163,10 +163,10 @@ void Vibration::useMotion() noexcept {
   identifier_->bear(bears);
   follows_readings_ = bears || (identifier_->learns() && identifier_->explains() && identifier_->identified());
   contact_ = bears ? identifier_->contact() : follows_readings_ ? mean_contact_ : 0.0;
-  if (follows_readings_) takeMotion();
+  if (follows_readings_) storeMotion();
 }
 
-void Vibration::takeMotion() noexcept {
+void Vibration::storeMotion() noexcept {
   for (int k = 0; k < modes_.count; ++k) {
     const ModeState seen = identifier_->motion(k);
     x_[k] = seen.x, v_[k] = seen.v;
@@ -214,7 +214,7 @@ std::optional<Vibration::OilAgainstOthers> Vibration::oilAgainstOthers(std::size
 
 void Vibration::restIfNotFinite() noexcept {
   if (x_.allFinite() && v_.allFinite() && torque_.allFinite()) return;
-  rest();
+  reset();
 }
 
 JointVector Vibration::displacement() const noexcept { return jointsOf(modes_, x_); }

@@ -34,10 +34,10 @@ class Vibration {
   /// when a joint has moved far enough.
   void setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
   /// Sets the boom at rest without load, as after a gap in the samples. The next setPose() computes new modes.
-  void rest() noexcept;
+  void reset() noexcept;
   /// Resets to the start: at rest, frequencies and damping as given. This discards what wrong readings have identified.
   void startAnew() noexcept;
-  /// Recent root mean square of each mode's displacement [m sqrt(kg)]; rest() leaves it as it is.
+  /// Recent root mean square of each mode's displacement [m sqrt(kg)]; reset() leaves it as it is.
   JointVector usualSwing() const noexcept { return swing_.cwiseSqrt(); }
   /// Advances by a step [s] >= 0 of any size. Exact for torques that are linear between the ends plus a parabola with
   /// the given mean.
@@ -132,7 +132,7 @@ class Vibration {
   OilFound oilFound(const LogOil& by) const noexcept;  ///< weighted sum over the cylinders
   LogOil oilToTake() const noexcept;
   void useMotion() noexcept;
-  void takeMotion() noexcept;
+  void storeMotion() noexcept;
   void followSwing(double step) noexcept;
   double contactAtLoad(int mode) const noexcept { return contact_ * contact_by_newton_[mode]; }
 

@@ -20,7 +20,7 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
   if (same && !vibration.identifies()) return;  // unchanged
   if (now.count != modes_.count) {
     modes_ = now;
-    rest();
+    reset();
   } else if (!same && now.count > 0) {
     for (std::size_t run = 0; run < kMaxRuns; ++run) {
       for (auto* values : {&x_, &v_, &force_}) (*values)[run] = modalOf(now, jointsOf(modes_, (*values)[run]));
@@ -53,7 +53,7 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
 
 /// Starts the runs from the estimated state when the readings end.
 void VibrationSpread::start(const Vibration& vibration) noexcept {
-  if (!waits_) rest();
+  if (!waits_) reset();
   for (int k = 0; k < modes_.count; ++k) {
     const ModeState now = vibration.motion(k);
     const double load = vibration.loadOn(k);
@@ -61,7 +61,7 @@ void VibrationSpread::start(const Vibration& vibration) noexcept {
   }
 }
 
-void VibrationSpread::rest() noexcept {
+void VibrationSpread::reset() noexcept {
   for (auto* values : {&x_, &v_, &force_}) {
     for (JointVector& value : *values) value.setZero(modes_.count);
   }
@@ -70,7 +70,7 @@ void VibrationSpread::rest() noexcept {
 }
 
 void VibrationSpread::fade(double step) noexcept {
-  if (!swings()) return;
+  if (!startsUnknown()) return;
   for (int k = 0; k < modes_.count; ++k) swing_[k] *= std::exp(-mode(kLoads, k).zeta * mode(kLoads, k).omega * step);
   if (swing_.maxCoeff() < kFaded) swing_.resize(0);
 }
@@ -106,7 +106,7 @@ void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadS
     force = last;
     finite = advanceRun(run, step, paths) && finite && last.allFinite();
   }
-  if (!finite) rest();
+  if (!finite) reset();
 }
 
 /// Returns false if the state is no longer finite.

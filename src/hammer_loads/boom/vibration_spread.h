@@ -27,7 +27,7 @@ class VibrationSpread {
   /// Advances as Vibration::advance(). The errors of the load are those at the step's end, and linear over the step.
   void advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept;
   void strike(const JointVector& impulse) noexcept;
-  void rest() noexcept;
+  void reset() noexcept;
   /// Sets the estimated vibration to rest, with an unknown decaying vibration of each mode at any phase. swing:
   /// standard deviations [m sqrt(kg)].
   void begin(const JointVector& swing) noexcept { swing_ = swing; }
@@ -40,7 +40,7 @@ class VibrationSpread {
   /// Difference of the joints' accelerations of a run from those of the vibration at the same instant [rad/s2].
   JointVector accelerationDifference(int run, const JointVector& vibration) const noexcept;
   /// Returns true if an unknown vibration existed when the runs began.
-  bool swings() const noexcept { return swing_.size() > 0; }
+  bool startsUnknown() const noexcept { return swing_.size() > 0; }
   /// Standard deviation of the joints' accelerations by that unknown vibration, of one mode [rad/s2].
   JointVector accelerationOfSwing(int mode) const noexcept;
   int modes() const noexcept { return modes_.count; }

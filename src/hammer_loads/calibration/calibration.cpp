@@ -100,7 +100,7 @@ void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double
   fit.globals[kLogInertia] = log_inertia;
   const RodEvidence rod = rodEvidence(track, basis, fit);
   if (std::isfinite(rod.later())) result.problem += "; " + textOf(rod, false);
-  if (rod.gives()) result.more_blows = kInfinity;
+  if (rod.showsElasticRod()) result.more_blows = kInfinity;
 }
 
 /// Without the gaps.

@@ -265,8 +265,8 @@ constexpr double kOfZero = 3.0 * kDegree, kOfEccentricity = 1.5 * kDegree, kOfIn
 /// Marks the keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
 /// ratio: encoder turns per crank turn.
 void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
-  result.rod_gives = rod.gives();
-  if (!rod.gives()) return;
+  result.rod_gives = rod.showsElasticRod();
+  if (!rod.showsElasticRod()) return;
   const auto effectOn = [&](const Estimate& e) {
     if (e.key == "crank_zero_rad") return kOfZero * std::abs(ratio);
     if (e.key == "drive_inertia_kg_m2") return kOfInertia * e.value;
@@ -283,7 +283,7 @@ void addResults(const Found& found, Calibration& result) {
   const std::vector<Improved> improvements = improved(found.hammer);
   addSensor(found, result);
   addCorrelations(found.hammer, result);
-  if (!found.rod.gives()) addHammer(improvements, found.basis.mechanism.parameters(), result);
+  if (!found.rod.showsElasticRod()) addHammer(improvements, found.basis.mechanism.parameters(), result);
   refuseForRod(found.rod, found.basis.ratio(), result);
   addHiding(found, improvements, result);
   addRemarks(found.curve_square, result);

@@ -57,7 +57,7 @@ std::string textOf(const RodEvidence& rod, bool settled) {
       "just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of a "
       "revolution later by %.2g",
       rod.pickedUp(), rod.later());
-  if (!rod.gives()) return where;
+  if (!rod.showsElasticRod()) return where;
   return where + ": " + (settled ? "" : "lengths or masses of the hammer file are others, or ") +
          "rod, pins and bearings give. A rigid rod's fit takes that for a zero up to 3 deg too small and for an "
          "eccentric encoder, so neither is written. Turn the crank by hand, or let it creep without blows, to "

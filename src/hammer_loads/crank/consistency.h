@@ -26,15 +26,15 @@ class Consistency {
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
   /// Factor on variances in what the filter learns, at least 1.
-  double growth() const noexcept { return samples_ < kEnough ? 1.0 : doubt(); }
+  double growth() const noexcept { return samples_ < kEnough ? 1.0 : publishedGrowth(); }
   /// Factor on published variances. Missing samples of the mean have the value before the restart.
-  double doubt() const noexcept {
+  double publishedGrowth() const noexcept {
     const double known = std::min(1.0, static_cast<double>(samples_) / kEnough);
     return std::max(1.0, known * mean_ + (1.0 - known) * before_);
   }
   /// Restarts the mean for another estimate, whose initial uncertainty is the same.
   void restart() noexcept {
-    before_ = doubt();
+    before_ = publishedGrowth();
     samples_ = 0, mean_ = 0.0;
   }
 
@@ -42,7 +42,7 @@ class Consistency {
   static constexpr int kLength = 500, kEnough = 200;
   int samples_{};
   double mean_{};
-  double before_{1.0};  ///< doubt() before the restart
+  double before_{1.0};  ///< publishedGrowth() before the restart
 };
 
 /// Mean of innovation^2 over its variance by half revolutions before the blow: the lesser of the last two, so that one
@@ -107,7 +107,7 @@ class RodEvidence {
   /// True if the blow is so violent that a rigid mechanism still loses the crank a quarter of a revolution later: rock
   /// that throws the rocker back (8 to 20 then). The blow that it identifies is wrong.
   bool isLost() const noexcept { return later_.count() > kEnough && later() > mismatch::kUnexplained; }
-  bool gives() const noexcept {
+  bool showsElasticRod() const noexcept {
     return picked_up_.count() > kEnough && pickedUp() > mismatch::kSeen && pickedUp() - 1.0 > kShare * (later() - 1.0);
   }
 

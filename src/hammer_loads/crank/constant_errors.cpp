@@ -19,21 +19,21 @@ constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen les
 
 }  // namespace
 
-bool ConstantErrors::knows() const noexcept { return turns_ >= kTurnsToKnow; }
+bool ConstantErrors::isKnown() const noexcept { return turns_ >= kTurnsToKnow; }
 
 double ConstantErrors::zeroDeviation() const noexcept {
   return std::hypot(std::sqrt(moment_(kZero, kZero)), kUnknowns[kZero].unmodelled);
 }
 
-void ConstantErrors::takeSupply(double change) noexcept {
-  fit_.take(kSupply, change);
+void ConstantErrors::shiftSupply(double change) noexcept {
+  fit_.shift(kSupply, change);
   estimate_[kSupply] += change;
 }
 
-void ConstantErrors::consider(int constant, double deviation) noexcept {
+void ConstantErrors::setConsidered(int constant, double deviation) noexcept {
   if (prior_[constant] == deviation) return;
   prior_[constant] = deviation;
-  considerPriors();
+  addConsidered();
   root_ = covarianceRoot(moment_);
 }
 
@@ -45,12 +45,12 @@ void ConstantErrors::stepZero(double variance) noexcept {
 
 ConstantErrors::ConstantErrors(const Vector& prior, double zero_std) noexcept : prior_(prior), zero_given_(zero_std) {
   fit_.begin(prior_);
-  considerPriors();
+  addConsidered();
   moment_(kZero, kZero) = square(zero_given_);
   root_ = covarianceRoot(moment_);
 }
 
-void ConstantErrors::considerPriors() noexcept {
+void ConstantErrors::addConsidered() noexcept {
   for (int i = 0; i < kTable; ++i)
     if (kUnknowns[static_cast<std::size_t>(i)].use == Unknown::Use::kConsidered) moment_(i, i) = square(prior_[i]);
 }
@@ -97,7 +97,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   moment_.diagonal() += share * share * doubt;
   moment_(kZero, kZero) += stepped_ + square(zeroNotLinear());
   if (!zeroIsShown()) moment_(kZero, kZero) = std::max(moment_(kZero, kZero), square(zero_given_));
-  considerPriors();
+  addConsidered();
   root_ = covarianceRoot(moment_);
   fit_.fade(1.0 - 1.0 / look_back::kManyTurns);
   beside_ *= 1.0 - 1.0 / look_back::kManyTurns;

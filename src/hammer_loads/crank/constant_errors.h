@@ -39,7 +39,7 @@ class ConstantFit {
     return weight;
   }
   /// One of the given constants has been changed by this much.
-  void take(int constant, double change) noexcept { score_ += information_.col(constant) * change; }
+  void shift(int constant, double change) noexcept { score_ += information_.col(constant) * change; }
   /// Earlier measurements count for this part of themselves.
   void fade(double part) noexcept { information_ *= part, score_ *= part; }
 
@@ -209,13 +209,13 @@ class ConstantErrors {
   void endTurn(double growth, double count) noexcept;
 
   /// Sets the improved standard deviation of a considered constant.
-  void consider(int constant, double deviation) noexcept;
+  void setConsidered(int constant, double deviation) noexcept;
   /// Present standard deviation of a considered constant.
-  double considered(int constant) const noexcept { return prior_[constant]; }
+  double consideredDeviation(int constant) const noexcept { return prior_[constant]; }
   /// Notes that the encoder's zero was moved by an amount with this variance [rad2].
   void stepZero(double variance) noexcept;
   /// Notes a change of the supply's stiffness [SupplyLaw::unit].
-  void takeSupply(double change) noexcept;
+  void shiftSupply(double change) noexcept;
   /// 0 before some turns. deviation: of the sensor's place alone.
   const Vector& estimate() const noexcept { return estimate_; }
   const Vector& deviation() const noexcept { return deviation_; }
@@ -225,14 +225,14 @@ class ConstantErrors {
   /// zeroSeen() without the threshold of a clean machine: an elastic rod has such an error.
   double zeroLooks() const noexcept { return zero_looks_; }
   /// Returns true after enough turns for estimate() and deviation().
-  bool knows() const noexcept;
+  bool isKnown() const noexcept;
   int turns() const noexcept { return turns_; }
   /// Returns true if the turns have shown the zero, or if its given deviation is small. Until then moment() contains
   /// the given deviation, since the estimate of a zero that is 8 deg off may pass through 0 in the first turns.
-  bool zeroIsShown() const noexcept { return zeroIsGiven() || (knows() && !zero_is_doubted_); }
+  bool zeroIsShown() const noexcept { return zeroIsGiven() || (isKnown() && !zero_is_doubted_); }
   bool zeroIsGiven() const noexcept { return zero_given_ < kCalibratedZero; }
   /// Sets whether the search over the whole turn contradicts estimate().
-  void doubtZero(bool doubted) noexcept { zero_is_doubted_ = doubted; }
+  void setZeroContradicted(bool doubted) noexcept { zero_is_doubted_ = doubted; }
   /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
   /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().
   double zeroNotLinear() const noexcept { return kNotLinear * estimate_[kZero] * estimate_[kZero]; }
@@ -264,7 +264,7 @@ class ConstantErrors {
     ((all[i] = of(kUnknowns[i])), ...);
     return all;
   }
-  void considerPriors() noexcept;
+  void addConsidered() noexcept;
 
   Vector prior_;
   double zero_given_{};  ///< [rad]

@@ -20,7 +20,7 @@ class ContactHypothesis {
   /// Begins at a restart, where it is not known whether there was contact at the last blow. estimate: with contact.
   void beginAnew(const CrankBelief& estimate) noexcept;
   /// Begins after a doubtful blow; both hypotheses are equally likely. estimate: that of the other hypothesis.
-  void ask(const CrankBelief& estimate) noexcept {
+  void beginWithEvenOdds(const CrankBelief& estimate) noexcept {
     beginAnew(estimate);
     evidence_ = 0.0;
   }

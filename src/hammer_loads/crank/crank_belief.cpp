@@ -193,7 +193,7 @@ void CrankBelief::meetTool(double deviation, double dt) noexcept {
   doubtSpeedChange(square(deviation), state.speed, 0.5 * dt, dt, *this);
 }
 
-bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt) noexcept {
+bool CrankBelief::inflateBlow(Row row, double innovation, double total, double dt) noexcept {
   const double before = state.speed / factor, since = std::max(0.5 * dt, state.position.angle.offset / state.speed);
   const double squared = row == kSpeed ? square(before) : square(before) * (square(since) + square(dt) / 12.0);
   const double variance = (square(innovation) - total) / squared;

@@ -72,11 +72,11 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   void meetTool(double deviation, double dt) noexcept;
   /// Inflates the variance of the factor of a blow within the last dt [s] until it explains an innovation of variance
   /// `total` of angle or speed. Returns false, without a change, if no factor explains it.
-  bool doubtBlow(Row row, double innovation, double total, double dt) noexcept;
+  bool inflateBlow(Row row, double innovation, double total, double dt) noexcept;
   /// Variances of angle, speed and torque, times `by` where that is above 1.
   void widen(double by) noexcept;
   /// Sets the position exactly at the blow.
-  void standAtBlow() noexcept { state.position.angle.offset = 0.0; }
+  void stopAtBlow() noexcept { state.position.angle.offset = 0.0; }
   /// Draws a new factor of the blow: sets its prior mean and variance.
   void drawFactor(const BlowPrior& prior) noexcept;
   /// Prior of the next blow at its passage.

@@ -46,7 +46,7 @@ class LearnedSupply {
   }
   void pass(double dt) noexcept { turn_time_ += dt; }  ///< [s]
   /// A torque [N m] between a blow and the end of its half turn.
-  void feel(double torque) noexcept { half_turn_.add(square(torque)); }
+  void addTorque(double torque) noexcept { half_turn_.add(square(torque)); }
   /// Once a turn, half a turn after the blow. known: the torques since were those of the supply.
   void endTurn(const CrankPosition& at, bool known = true) noexcept {
     if (known && half_turn_.count() > 0.0) usual_.add(half_turn_.mean());

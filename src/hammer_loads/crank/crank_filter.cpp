@@ -87,7 +87,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   supply_.restart();
   outlier_ = 0.0;
   unexplained_ = 0;
-  takeLoad();
+  updateLoad();
   now_.tool_met = false;
   mirrored_ = false;
   hypothesis_.drop();
@@ -121,7 +121,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   SampleStep to{last, weighed(reading), dt, struck};  // (2)
   to.read = to.sample.angle;
   const bool begins = findLag() || moved;
-  to.behind = takeOffLag(last, dt, struck, to.read, to.sample);
+  to.behind = subtractLag(last, dt, struck, to.read, to.sample);
   if (begins) return begin(to.sample);
   to.innovation = to.sample.ofAngle(now_);
   instant_off_ = std::abs(now_.state.speed) > kLearnSpeed ? to.innovation.value / now_.state.speed : 0.0;
@@ -131,7 +131,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   if (to.sample.speed) witness_.emplace().measured = *to.sample.speed;
   if (has_speed_)
     if (const auto result = judge(to)) return *result;
-  return take(to, reading.angle);
+  return accept(to, reading.angle);
 }
 
 /// Handles lost samples and slips of the encoder. The update ends here for a slip that the next sample must confirm,
@@ -161,7 +161,7 @@ std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
   WeighedSample& sample = to.sample;
   Innovation& innovation = to.innovation;
   const double ratio = innovation.ratio();
-  if (!takesSpeeds()) sample.speed.reset();
+  if (!usesSpeeds()) sample.speed.reset();
   fit_ = innovation.logLikelihood();
   if (!HAMMER_LOADS_ABLATE(jitter)) timing_.learn(innovation.value, innovation.total, now_.state.speed, to.dt);  // (3)
   sample.timing_variance = timing_.variance();
@@ -181,7 +181,7 @@ std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
 }
 
 /// reading: of the encoder, as it came [rad].
-Tracking CrankFilter::take(const SampleStep& to, double reading) noexcept {
+Tracking CrankFilter::accept(const SampleStep& to, double reading) noexcept {
   sample_ = to.sample;
   angle_fit_ = withoutRod(to.dt, to.innovation).logLikelihood();
   before_ = 1 - before_;
@@ -198,8 +198,8 @@ Tracking CrankFilter::take(const SampleStep& to, double reading) noexcept {
     return begin(to.sample);
   }
   rememberBlow(to.last, to.dt);
-  doubtInertia(to.dt);
-  takeLoad();
+  checkInertia(to.dt);
+  updateLoad();
   judgeSpeed(to.dt, to.struck);
   if (!std::exchange(has_speed_, true)) return Tracking::kRestarted;
   return revised ? Tracking::kRevised : Tracking::kContinued;
@@ -287,7 +287,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   correctAngle(innovation);
   settleSide(last, dt, sample, struck);
   read_side_ = readSide(reading);
-  respectCount(last, dt, struck, sample, reading);
+  applyReadSide(last, dt, struck, sample, reading);
   if (witness_) {
     const ConstantErrors::Row by_error = now_.encoderByError(Belief::kSpeed);
     witness_->speed = now_.encoderSpeed();
@@ -296,13 +296,13 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
     witness_->by_scale = by_error[ConstantErrors::kSpeedScale];
   }
   if (sample.speed) correctSpeed(sample, dt, struck);
-  if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed
+  if (!mirrored_ && now_.state.position.isMirrored()) now_.stopAtBlow();  // pushed by the speed
   now_.boundFactor();
   if (contested && hypothesis_.isThere()) {
     predict(dt, mirrored_, hypothesis_.belief());
     hypothesis_.follow(sample, model_, fit_, consistency_.growth(), mostSpeed());
   }
-  doubtContact();
+  checkContact();
   return hypothesis_.isThere() && hypothesis_.choose(now_, mirrored_);
 }
 
@@ -316,7 +316,7 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 }
 
 /// Computes the load at now_, with the latest motion of the hull.
-void CrankFilter::takeLoad() noexcept {
+void CrankFilter::updateLoad() noexcept {
   load_ = model_(now_.state.position.angle);
   now_hull_ = model_.hullMotion();
   hull_moved_ = false;
@@ -324,7 +324,7 @@ void CrankFilter::takeLoad() noexcept {
 
 /// Inflates the speed's variance where a rod's vibration would bias the filter, which has no rod; smaller vibrations
 /// are smoothed. A reading that is then followed is the same evidence of a rod as one that contradicts the prediction.
-void CrankFilter::considerRod(double angle, double speed) noexcept {
+void CrankFilter::inflateByRod(double angle, double speed) noexcept {
   rod_.followed = true;
   double& of_speed = now_.covariance(Belief::kSpeed, Belief::kSpeed);
   if (HAMMER_LOADS_ABLATE(rod_considered) || !exceeds(speed, of_speed, gate::kImpossible)) return;
@@ -340,7 +340,9 @@ Innovation CrankFilter::withoutRod(double dt, Innovation innovation) const noexc
   return innovation;
 }
 
-BlowFactor CrankFilter::blowFactor() const noexcept { return now_.blowFactor(consistency_.doubt(), errors_.root()); }
+BlowFactor CrankFilter::blowFactor() const noexcept {
+  return now_.blowFactor(consistency_.publishedGrowth(), errors_.root());
+}
 
 bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torque) <= mostTorque(); }
 
@@ -368,7 +370,7 @@ CrankUncertainty CrankFilter::uncertaintyBetween(double dt, double torque_part) 
 CrankUncertainty CrankFilter::uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load,
                                             double torque_part) const noexcept {
   const double part = std::min(1.0, torque_part * roughness_.deviationFactor());
-  return motionUncertainty(model_, load, belief, consistency_.doubt(), errors_.root(), part);
+  return motionUncertainty(model_, load, belief, consistency_.publishedGrowth(), errors_.root(), part);
 }
 
 /// (10) Learns once a turn, half a turn after the blow, when all samples that determine it are known.
@@ -381,7 +383,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   speed_trust_.endTurn();
   slip_.endTurn();
   if (!had_contact) return;
-  considerSensor();
+  updateConsidered();
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   if (!HAMMER_LOADS_ABLATE(supply_law)) learnSupply();
   if (!HAMMER_LOADS_ABLATE(blow_history))
@@ -392,7 +394,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
 void CrankFilter::learnSupply() noexcept {
   const double change = supply_.learn(errors_.estimate()[ConstantErrors::kSupply]);
   now_.move(now_.by_constant.col(ConstantErrors::kSupply) * change);
-  errors_.takeSupply(change);
+  errors_.shiftSupply(change);
 }
 
 /// (10) ratio: of the innovation before a tool or a slip was used.
@@ -413,7 +415,7 @@ void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept
 
 /// (10) Resets the identified machine if it has contradicted the readings for seconds, as it may have been identified
 /// before the stamps' jitter was known.
-void CrankFilter::doubtInertia(double dt) noexcept {
+void CrankFilter::checkInertia(double dt) noexcept {
   unlearn_after_ -= dt;
   if (HAMMER_LOADS_ABLATE(doubt_inertia) || !(consistency_.growth() > mismatch::kUnexplained) || unlearn_after_ > 0.0)
     return;

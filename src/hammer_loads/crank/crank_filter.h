@@ -61,10 +61,10 @@ class CrankFilter {
   /// Sets the clock of the next sample: if a reading is ahead by whole intervals, samples were lost before it.
   void setClock(const SampleClock& clock) noexcept { clock_ = clock; }
   /// Sets the standard deviation of a common shift of all stamps [s], which the readings do not show.
-  void considerLatency(double deviation) noexcept { stamps_off_ = deviation; }
+  void setLatencyDeviation(double deviation) noexcept { stamps_off_ = deviation; }
   /// Sets the displacement of the crank from the estimate by an elastic connecting rod [rad], [rad/s], which is added
   /// to the uncertainty.
-  void considerRod(double angle, double speed) noexcept;
+  void inflateByRod(double angle, double speed) noexcept;
 
   /// Starts at a sample; the identified constants of the machine are kept. jitter: of the coming stamps, learned anew
   /// where it is larger than that of the stamps so far [s].
@@ -112,8 +112,8 @@ class CrankFilter {
   /// Increases the encoder's zero by this angle of the crank [rad] from the next sample on, where the estimate
   /// restarts.
   void moveZero(double angle) noexcept { zero_moves_ += angle; }
-  /// See ConstantErrors::doubtZero().
-  void doubtZero(bool doubted) noexcept { errors_.doubtZero(doubted); }
+  /// See ConstantErrors::setZeroContradicted().
+  void setZeroContradicted(bool doubted) noexcept { errors_.setZeroContradicted(doubted); }
 
   const ShaftState& state() const noexcept { return now_.state; }
   /// Estimate at the last accepted sample, as the filter computes it.
@@ -180,12 +180,12 @@ class CrankFilter {
     double dt{};      ///< [s]
     bool struck{};    ///< a blow within it
     double read{};    ///< angle before any lag is taken off [rad]
-    double behind{};  ///< takeOffLag() [rad]
+    double behind{};  ///< subtractLag() [rad]
     Innovation innovation{};
   };
   std::optional<Tracking> followSensor(SampleStep& to) noexcept;
   std::optional<Tracking> judge(SampleStep& to) noexcept;
-  Tracking take(const SampleStep& to, double reading) noexcept;
+  Tracking accept(const SampleStep& to, double reading) noexcept;
   void countSurprise(bool surprised) noexcept;
   const CrankBelief& before() const noexcept { return earlier_[before_]; }
   /// The last two and the step between them.
@@ -216,26 +216,27 @@ class CrankFilter {
   void correctAngle(Innovation innovation) noexcept;
   void settleSide(const CrankBelief& last, double dt, const WeighedSample& sample, bool struck) noexcept;
   std::optional<Side> readSide(double reading) const noexcept;
-  void respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
-                    double reading) noexcept;
+  void applyReadSide(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
+                     double reading) noexcept;
   void undoBlow(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
-  void considerSensor() noexcept;
+  void updateConsidered() noexcept;
   bool findLag() noexcept;
   bool applyZero() noexcept;
-  double takeOffLag(const CrankBelief& last, double dt, bool struck, double read, WeighedSample& sample) const noexcept;
-  bool takesSpeeds() noexcept;
+  double subtractLag(const CrankBelief& last, double dt, bool struck, double read,
+                     WeighedSample& sample) const noexcept;
+  bool usesSpeeds() noexcept;
   double speedJump(bool struck) const noexcept;
   void judgeSpeed(double dt, bool struck) noexcept;
   void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;
   void beginHypothesis(const CrankBelief& belief) noexcept;
   bool hypothesisExplains(double dt, const WeighedSample& sample) noexcept;
-  void doubtContact() noexcept;
+  void checkContact() noexcept;
   void learnFrom(const Innovation& innovation, double ratio) noexcept;
   void rememberBlow(const CrankBelief& last, double dt) noexcept;
   void learnSupply() noexcept;
-  void doubtInertia(double dt) noexcept;
+  void checkInertia(double dt) noexcept;
   void forgetInertia() noexcept;
-  void takeLoad() noexcept;
+  void updateLoad() noexcept;
   Tracking begin(const WeighedSample& sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
   double mostTorque() const noexcept;
@@ -254,7 +255,7 @@ class CrankFilter {
   struct {
     double angle{}, speed{};  ///< [rad], [rad/s]
     bool followed{};
-  } rod_;                    ///< considerRod() since the last sample
+  } rod_;                    ///< inflateByRod() since the last sample
   bool rod_hides_branch_{};  ///< rod_.followed when the branch was last doubted
   TimingNoise timing_;
   SupplyRoughness roughness_;

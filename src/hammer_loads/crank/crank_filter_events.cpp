@@ -62,10 +62,10 @@ bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const Weigh
   if (sample.speed) {
     const Innovation speed = sample.ofSpeed(now_, model_);
     const double ratio = speed.value * angle.value > 0.0 ? speed.ratio() : 0.0;
-    if (ratio > square(kToolSeen)) return now_.doubtBlow(Belief::kSpeed, speed.value, speed.total, dt);
+    if (ratio > square(kToolSeen)) return now_.inflateBlow(Belief::kSpeed, speed.value, speed.total, dt);
     by_angle = by_angle && ratio > 1.0;  // the prior may explain the speed; where both go one way it is the blow
   }
-  return by_angle && now_.doubtBlow(Belief::kAngle, angle.value, angle.total, dt);
+  return by_angle && now_.inflateBlow(Belief::kAngle, angle.value, angle.total, dt);
 }
 
 /// (7) Undoes a predicted blow that has not occurred within this step.
@@ -77,7 +77,7 @@ void CrankFilter::undoBlow(const CrankBelief& last, double dt, const WeighedSamp
   const bool may_be_tool = again.value > -std::abs(last.state.speed) * dt;  // which stops the crank at most
   if (may_be_tool && meetsTool(dt, again, sample)) again = sample.ofAngle(now_);
   now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
-  if (now_.state.position.isMirrored()) now_.standAtBlow();
+  if (now_.state.position.isMirrored()) now_.stopAtBlow();
 }
 
 /// (7) The corrected angle may lie on the other side of the blow than the prediction. Forward: it passes the blow late.
@@ -101,7 +101,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
   const double doubt =
       kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
   if (angle.offset > -doubt && now_.state.speed > -1.0) {
-    now_.standAtBlow();  // it stands or goes on, whatever a count or a stamp says
+    now_.stopAtBlow();  // it stands or goes on, whatever a count or a stamp says
   } else {
     angle.side = Side::kBeforeBlow;
   }
@@ -122,8 +122,8 @@ std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
 }
 
 /// (7) The estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
-void CrankFilter::respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
-                               double reading) noexcept {
+void CrankFilter::applyReadSide(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
+                                double reading) noexcept {
   CrankAngle& angle = now_.state.position.angle;
   const double near = kNearCounts * encoder_.resolution();
   if (!read_side_ || mirrored_ || std::abs(angle.offset) > near) return;
@@ -163,18 +163,18 @@ bool CrankFilter::hypothesisExplains(double dt, const WeighedSample& sample) noe
 /// (9) Examines the other branch half a turn after a blow. On a wrong branch no sample need contradict the estimate,
 /// because the estimated torque compensates the blow. If the supply never has such a torque, the other branch is tried
 /// with a usual one.
-void CrankFilter::doubtContact() noexcept {
+void CrankFilter::checkContact() noexcept {
   if (HAMMER_LOADS_ABLATE(contact_by_torque) || !(now_.state.position.angle.offset > kRingOver)) return;
-  supply_.feel(now_.state.torque);
+  supply_.addTorque(now_.state.torque);
   if (hypothesis_.isThere()) return;
-  const double doubt = consistency_.doubt();
+  const double doubt = consistency_.publishedGrowth();
   const double variance = supply_.usual() + doubt * now_.covariance(Belief::kTorque, Belief::kTorque);
   if (doubt > mismatch::kContradicts || !exceeds(now_.state.torque, variance, gate::kImpossible)) return;
   CrankBelief other = now_;
   other.state.torque = 0.0;
   other.draw(Belief::kTorque, supply_.usual());
   rod_hides_branch_ = rod_.followed;
-  hypothesis_.ask(other);
+  hypothesis_.beginWithEvenOdds(other);
 }
 
 /// (2) Angle and speed of the crank from those of its sensor, with their noise.
@@ -188,22 +188,22 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   if (!sample.speed || speed_trust_.areGood()) return sample;
   sample.of_speed = ConstantErrors::Row::Zero();
   for (const int constant : {ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale})
-    (*sample.of_speed)[constant] = square(errors_.considered(constant));
+    (*sample.of_speed)[constant] = square(errors_.consideredDeviation(constant));
   return sample;
 }
 
 /// (10) Noise of stamps and speeds, given and identified.
-void CrankFilter::considerSensor() noexcept {
+void CrankFilter::updateConsidered() noexcept {
   const double ahead =
       std::hypot(angle_lag_.deviation(), speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0);
-  errors_.consider(ConstantErrors::kLatency,
-                   std::hypot(settings_.constant_deviations[ConstantErrors::kLatency], std::hypot(stamps_off_, ahead)));
-  if (!speed_trust_.knows()) return;
+  errors_.setConsidered(ConstantErrors::kLatency, std::hypot(settings_.constant_deviations[ConstantErrors::kLatency],
+                                                             std::hypot(stamps_off_, ahead)));
+  if (!speed_trust_.isKnown()) return;
   const auto consider = [&](int constant, double amount, double deviation) {
     const double prior = settings_.constant_deviations[constant];
     if (!(prior > 0.0)) return;
     const double shown = std::max(0.0, square(amount) - square(gate::kUsual * deviation));
-    errors_.consider(constant, std::sqrt(square(std::min(prior, deviation)) + shown));
+    errors_.setConsidered(constant, std::sqrt(square(std::min(prior, deviation)) + shown));
   };
   consider(ConstantErrors::kSpeedLag, speed_trust_.lag(), speed_trust_.lagDeviation());
   consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());
@@ -214,11 +214,11 @@ void CrankFilter::considerSensor() noexcept {
 bool CrankFilter::findLag() noexcept {
   const double more = -speed_trust_.lag();
   if (HAMMER_LOADS_ABLATE(angle_lag) || !speed_trust_.lags() || !(angle_lag_.isThere() || more > 0.0)) return false;
-  angle_lag_.take(more, speed_trust_.lagDeviation());
+  angle_lag_.correct(more, speed_trust_.lagDeviation());
   angle_lag_.begin(now_.encoderSpeed());
   speed_trust_ = {};
   errors_ = ConstantErrors(settings_.constant_deviations, settings_.zero_std);
-  considerSensor();
+  updateConsidered();
   forgetInertia();
   return true;
 }
@@ -228,14 +228,14 @@ bool CrankFilter::applyZero() noexcept {
   if (zero_moves_ == 0.0) return false;
   encoder_.slip(std::exchange(zero_moves_, 0.0));
   errors_ = ConstantErrors(settings_.constant_deviations, settings_.zero_std);
-  considerSensor();
+  updateConsidered();
   forgetInertia();
   return true;
 }
 
 /// (2) read: the angle as it was read; returns how far it is behind [rad].
-double CrankFilter::takeOffLag(const CrankBelief& last, double dt, bool struck, double read,
-                               WeighedSample& sample) const noexcept {
+double CrankFilter::subtractLag(const CrankBelief& last, double dt, bool struck, double read,
+                                WeighedSample& sample) const noexcept {
   const double behind = angle_lag_.behind(last.encoderSpeed() + speedJump(struck), now_.encoderSpeed(), dt);
   sample.angle = CrankAngle::wrapToPi(read + behind);
   return behind;
@@ -244,8 +244,8 @@ double CrankFilter::takeOffLag(const CrankBelief& last, double dt, bool struck, 
 /// Returns true if the speed is used. Speeds with a lag or a wrong scale are not. Until this is known, a filter that
 /// has restarted with jittering stamps uses its angles alone, because such speeds would cause further restarts and
 /// prevent their judgement.
-bool CrankFilter::takesSpeeds() noexcept {
-  speeds_wait_ = speeds_wait_ && !speed_trust_.knows();
+bool CrankFilter::usesSpeeds() noexcept {
+  speeds_wait_ = speeds_wait_ && !speed_trust_.isKnown();
   if (HAMMER_LOADS_ABLATE(speed_trust)) return true;
   return speed_trust_.isTrusted() && (HAMMER_LOADS_ABLATE(speeds_wait) || !speeds_wait_);
 }
@@ -291,7 +291,7 @@ void CrankFilter::predictTo(SampleStep& to, double dt) noexcept {
   now_ = to.last;
   to.dt = dt;
   to.struck = predict(dt, true, now_) > 0;
-  to.behind = takeOffLag(to.last, dt, to.struck, to.read, to.sample);
+  to.behind = subtractLag(to.last, dt, to.struck, to.read, to.sample);
   to.innovation = to.sample.ofAngle(now_);
 }
 
@@ -325,7 +325,8 @@ double CrankFilter::timeLost(double dt, const Innovation& innovation) const noex
 bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
   const CrankAngle& at = now_.state.position.angle;
   const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
-  return !HAMMER_LOADS_ABLATE(rod_excuse) && rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
+  return !HAMMER_LOADS_ABLATE(rod_excuse) && rod_evidence_.showsElasticRod() &&
+         !(calm && std::abs(innovation.value) > kRodMoves);
 }
 
 /// (5) Whether a step of the reading would differ from the crank's own and from what a rod that rings moves.

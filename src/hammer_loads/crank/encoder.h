@@ -253,7 +253,7 @@ class AngleLag {
   double lag() const noexcept { return lag_; }              ///< taken off the readings [s]
   double deviation() const noexcept { return deviation_; }  ///< standard deviation of lag() [s]
   /// more: seen in readings from which lag() has been taken off [s]; deviation: of it.
-  void take(double more, double deviation) noexcept {
+  void correct(double more, double deviation) noexcept {
     lag_ = std::max(0.0, lag_ + more);
     deviation_ = deviation;
   }

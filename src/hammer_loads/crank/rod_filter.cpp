@@ -189,7 +189,7 @@ void RodFilter::addFriction(double dt) noexcept {
   belief_.addNoise(kSpeed, kSpeed, impulse / square(motion_.inertia));
 }
 
-bool RodFilter::take(const WeighedSample& sample) noexcept {
+bool RodFilter::update(const WeighedSample& sample) noexcept {
   const double innovation = CrankAngle::wrapToPi(sample.angle - motion_.state.angle.offset);
   const double variance = sample.angleVariance(motion_.state.speed);
   const double total = belief_.covariance(kAngle, kAngle) + variance;

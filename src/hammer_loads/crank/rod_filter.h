@@ -59,7 +59,7 @@ class RodFilter {
   /// Predicts by dt [s] > 0; supply, walks: those of the crank's filter.
   void move(double dt, const CrankWalks& walks, Gravity gravity) noexcept;
   /// Updates by a sample of the crank. Returns false if it contradicts the model.
-  bool take(const WeighedSample& sample) noexcept;
+  bool update(const WeighedSample& sample) noexcept;
   bool isRunning() const noexcept { return running_; }
   /// Nothing is learned.
   void abandon() noexcept { running_ = false; }

@@ -46,11 +46,11 @@ class SpeedTrust {
 
   /// Returns true if speeds may be used.
   bool isTrusted() const noexcept { return !lags() && !isOutOfScale(); }
-  bool knows() const noexcept { return turns_ >= look_back::kTurnsToKnow; }  ///< lag and scale
+  bool isKnown() const noexcept { return turns_ >= look_back::kTurnsToKnow; }  ///< lag and scale
   /// Returns true if both are known to be negligible.
-  bool areGood() const noexcept { return knows() && are_good_; }
-  bool lags() const noexcept { return knows() && lags_.isEngaged(); }
-  bool isOutOfScale() const noexcept { return knows() && out_of_scale_.isEngaged(); }
+  bool areGood() const noexcept { return isKnown() && are_good_; }
+  bool lags() const noexcept { return isKnown() && lags_.isEngaged(); }
+  bool isOutOfScale() const noexcept { return isKnown() && out_of_scale_.isEngaged(); }
   double lag() const noexcept { return lag_; }                      ///< > 0: late [s]
   double lagDeviation() const noexcept { return deviation_[0]; }    ///< [s]
   double scale() const noexcept { return scale_; }                  ///< measured over true speed, less 1 [-]

@@ -30,12 +30,12 @@ class ControllerTask {
   /// Adds a reading with its stamp [ns]. off: innovation of its angle over the speed [s]; 0 at low speed.
   void add(std::int64_t stamp, double off) noexcept {
     repeats_.add(0.0);
-    if (takeStep(stamp) && off != 0.0) findGrid(stamp, off);
+    if (addStep(stamp) && off != 0.0) findGrid(stamp, off);
   }
   /// Adds a repetition of the last reading with this stamp [ns], although the crank has turned.
   void repeat(std::int64_t stamp) noexcept {
     repeats_.add(1.0);
-    takeStep(stamp);
+    addStep(stamp);
   }
 
   /// Period of the task that is recognised [s]; 0: none.
@@ -46,7 +46,7 @@ class ControllerTask {
 
  private:
   /// Adds an interval to their mean, in which jitter cancels. Returns false after a gap.
-  bool takeStep(std::int64_t stamp) noexcept {
+  bool addStep(std::int64_t stamp) noexcept {
     const double step = 1e-9 * static_cast<double>(stamp - std::exchange(last_, stamp));
     if (!(std::abs(step) < kLongest)) return false;
     const double mean = step_.mean(), most = kMost * mean;
@@ -76,17 +76,17 @@ class ControllerTask {
   static constexpr std::array<int, 11> kPeriods{2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20};  ///< [ms]
   static constexpr std::int64_t kCommon = 240000000;  ///< multiple of all periods [ns]: its turns' powers are theirs
   using Turns = std::array<std::complex<double>, kPeriods.size()>;  ///< exp(2 pi i instant/period) of each
-  static constexpr double kRecognised = 0.5;  ///< by chance once in exp(100)
-  static constexpr double kDivides = 0.1;     ///< share of a period up to which an interval counts as whole periods
-  static constexpr double kMost = 0.5;        ///< share of the mean interval by which one may differ from it
-  static constexpr double kLongest = 0.1;     ///< [s]
+  static constexpr double kRecognised = 0.5;                        ///< by chance once in exp(100)
+  static constexpr double kDivides = 0.1;  ///< share of a period up to which an interval counts as whole periods
+  static constexpr double kMost = 0.5;     ///< share of the mean interval by which one may differ from it
+  static constexpr double kLongest = 0.1;  ///< [s]
   static constexpr double kOften = 0.2, kStuck = 0.98;
 
   RunningMean<> step_{look_back::kReadings}, repeats_{look_back::kReadings};
-  Turns taken_{};  ///< their means
-  double readings_{};                                          ///< in it
-  double grid_{};                                              ///< period of the grid [s]; 0: none
-  std::int64_t last_{};                                        ///< stamp [ns]
+  Turns taken_{};        ///< their means
+  double readings_{};    ///< in it
+  double grid_{};        ///< period of the grid [s]; 0: none
+  std::int64_t last_{};  ///< stamp [ns]
 };
 
 /// Knowledge of the time before a sample that is one of equal intervals.

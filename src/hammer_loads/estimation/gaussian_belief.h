@@ -62,7 +62,7 @@ struct GaussianBelief {
   /// of the reading itself. The gain: the owner moves its mean by that times the innovation.
   Vector correct(Eigen::Index row, double variance, const ConstantRow& measured_by_constant) noexcept {
     const Vector column = covariance.col(row), gain = column / (covariance(row, row) + variance);
-    take(gain, column, variance, measured_by_constant - by_constant.row(row));
+    applyGain(gain, column, variance, measured_by_constant - by_constant.row(row));
     // K R is the covariance with a measured variable; the difference of large numbers would lose it.
     covariance.row(row) = variance * gain.transpose();
     covariance.col(row) = variance * gain;
@@ -71,7 +71,7 @@ struct GaussianBelief {
   /// Corrects by a measurement that depends on several variables by `seen`, which is H.
   Vector correct(const Row& seen, double variance, const ConstantRow& measured_by_constant) noexcept {
     const Vector column = covariance * seen.transpose(), gain = column / (seen.dot(column) + variance);
-    take(gain, column, variance, measured_by_constant - seen * by_constant);
+    applyGain(gain, column, variance, measured_by_constant - seen * by_constant);
     return gain;
   }
   /// Corrects by a measurement of one variable where the constants have these variances, independent of each other. The
@@ -117,7 +117,7 @@ struct GaussianBelief {
  private:
   /// P <- P - K c^T. The corrected covariance is never below K R K^T (Joseph's form): a diagonal that rounding takes
   /// below that is worth nothing.
-  void take(const Vector& gain, const Vector& column, double variance, const ConstantRow& seen) noexcept {
+  void applyGain(const Vector& gain, const Vector& column, double variance, const ConstantRow& seen) noexcept {
     if constexpr (constants > 0) by_constant.noalias() += gain.lazyProduct(seen);  // Eigen 3.3 has no such product
     for (Eigen::Index j = 0; j < variables; ++j) {
       covariance(j, j) = std::max(covariance(j, j) - gain[j] * column[j], variance * gain[j] * gain[j]);

@@ -115,8 +115,8 @@ LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double tur
   const HammerParameters& p = mechanism.parameters();
   const RodPrior rod = priorOf(p.rod, p.rod_std);
   Eigen::Vector3d of_rod = Eigen::Vector3d::Zero();
-  if (rod.gives) of_rod = ofRod(mechanism, rod.rod, turn, gravity, interval);
-  LevelChoice choice{rod.gives ? Level::kElastic : Level::kLinkage, tolerance, rod.gives, {}};
+  if (rod.is_elastic) of_rod = ofRod(mechanism, rod.rod, turn, gravity, interval);
+  LevelChoice choice{rod.is_elastic ? Level::kElastic : Level::kLinkage, tolerance, rod.is_elastic, {}};
   for (std::size_t i = choice.difference.size(); i-- > 0;) {
     const HullModel model(mechanism, static_cast<Level>(i));
     Eigen::Vector3d squares = of_rod;
@@ -137,8 +137,8 @@ std::string describe(const LevelChoice& choice) {
   return format(
       "level auto: %s is the cheapest whose difference to %s is within %.3g of what the hammer file leaves open; "
       "over a working turn: pulse %.3g, rocker %.3g, linkage %.3g%s",
-      name(choice.level), name(choice.gives ? Level::kElastic : Level::kLinkage), choice.tolerance,
-      choice.difference[0], choice.difference[1], choice.difference[2], choice.gives ? ", elastic 0" : "");
+      name(choice.level), name(choice.rod_is_elastic ? Level::kElastic : Level::kLinkage), choice.tolerance,
+      choice.difference[0], choice.difference[1], choice.difference[2], choice.rod_is_elastic ? ", elastic 0" : "");
 }
 
 }  // namespace hammer_loads

@@ -15,7 +15,7 @@ namespace hammer_loads {
 struct LevelChoice {
   Level level{};  ///< the cheapest within tolerance
   double tolerance{};
-  bool gives{};                        ///< the rod
+  bool rod_is_elastic{};               ///< the rod
   std::array<double, 3> difference{};  ///< relative differences of levels pulse, rocker and linkage
 };
 

@@ -32,7 +32,7 @@ struct RodPrior {
   double log_stiffness{}, log_damping{};  ///< standard deviations of their logarithms
   double play{};                          ///< standard deviation [m]
   double friction_radius{};               ///< standard deviation [m]
-  bool gives{};                           ///< false: the rod is given as rigid, its pins as tight
+  bool is_elastic{};                      ///< false: the rod is given as rigid, its pins as tight
 
   static constexpr double kStiffness = 8e8, kDamping = 0.4;  ///< 4e8 to 1e9 N/m and 0.2 to 0.6: estimates
   static constexpr double kStiffest = 1e11;                  ///< stands for a rigid rod [N/m]
@@ -51,7 +51,7 @@ inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexce
   if (!(rod.damping_ratio > 0.0)) prior.rod.damping_ratio = prior.kDamping;
   prior.log_stiffness = deviation.stiffness / prior.rod.stiffness;
   prior.log_damping = deviation.damping_ratio / prior.rod.damping_ratio;
-  prior.gives = rod.stiffness > 0.0 || deviation.stiffness > 0.0 || rod.play > 0.0 || deviation.play > 0.0;
+  prior.is_elastic = rod.stiffness > 0.0 || deviation.stiffness > 0.0 || rod.play > 0.0 || deviation.play > 0.0;
   return prior;
 }
 

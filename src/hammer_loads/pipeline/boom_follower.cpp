@@ -72,7 +72,7 @@ Wrench BoomFollower::wrenchAtLink(int link, const HullWrench& load) const noexce
   return hammer_loads::wrenchAtLink(pose, link, onTip(load));
 }
 
-bool BoomFollower::takesCompliant() const noexcept {
+bool BoomFollower::usesCompliant() const noexcept {
   if (!follow_vibration_ || !boom_.vibration().known()) return false;
   const BoomChoice& choice = state_.choice;
   return model_ == BoomModel::kCompliant || !choice.judged || choice.rigid_error > choice.rigid_tolerance;
@@ -101,7 +101,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   if (follow_vibration_) {
     const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
     const bool continued = swung || (known_ && step.count > 0);
-    if (!continued) boom_.vibration().rest(), spread_.rest(), bound_.rest(), beside_modes_.setZero();
+    if (!continued) boom_.vibration().reset(), spread_.reset(), bound_.reset(), beside_modes_.setZero();
     pose(since);
     spread_.follow(boom_.vibration());
     if (!continued) beginUnseen(sample.unseen_peak);
@@ -121,7 +121,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   }
   known_ = true;
   last_stamp_ = sample.stamp;
-  state_.choice.compliant = takesCompliant();
+  state_.choice.compliant = usesCompliant();
   findLoads(sample, since);
   if (follow_vibration_) fillVibration();
   return state_;
@@ -133,7 +133,7 @@ void BoomFollower::pose(double since) noexcept {
   JointMotion operated = motion_;
   operated.position -= displacement;
   held_.follow(operated, since);
-  if (takesCompliant()) {
+  if (usesCompliant()) {
     boom_.moveVibrating(held_.motion(), displacement, g_B_);
   } else {
     boom_.moveCompliant(motion_, g_B_);
@@ -147,7 +147,7 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   boom_.loads(w_tip, rigid, links, state_.loads);
   beside_modes_.setZero();
   if (!rigid) beside_modes_ = state_.loads.vibration - boom_.vibration().torque();
-  takeMeasured(sample, step);
+  updateMeasured(sample, step);
   boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
   addConstants(sample);
@@ -230,7 +230,7 @@ TipVelocity BoomFollower::drivenTip() const noexcept {
   return {velocity[2], velocity[4]};
 }
 
-void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
+void BoomFollower::advanceWithoutLoads(StampNs stamp, const WrenchHistory& step) noexcept {
   if (!known_ || !follow_vibration_ || !(stamp > last_stamp_)) return;
   WrenchHistory freely;
   freely.count = 1;

@@ -107,7 +107,7 @@ class BoomFollower {
   /// until the next call.
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Advances over a crank sample without loads: the boom continues to vibrate, freely if the step has no pieces.
-  void swing(StampNs stamp, const WrenchHistory& step) noexcept;
+  void advanceWithoutLoads(StampNs stamp, const WrenchHistory& step) noexcept;
   /// Covariance of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], by the sensors or,
   /// without identification, by the boom file; zero for a rigid boom.
   Eigen::Matrix3d tipCovariance() const noexcept;
@@ -166,7 +166,7 @@ class BoomFollower {
   static Wrench onTip(const HullWrench& w) noexcept;
   JointVector hammerTorque(const HullWrench& w) const noexcept;
   void addHammerTorque(const HullWrench& w, JointVector& torque) const noexcept;
-  bool takesCompliant() const noexcept;
+  bool usesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const HullWrench& displaced_links, const WrenchSpread& spread) noexcept;
   void strike(const HullWrench& impulse) noexcept;
   bool runsAway(double step) noexcept;
@@ -176,9 +176,9 @@ class BoomFollower {
   void forgetWrongReadings(bool imu_lost) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
   Eigen::Matrix3d tipCovarianceAsGiven() const noexcept;
-  void weighUnexplained(const ImuReading& reading, double step) noexcept;
+  void learnUnexplained(const ImuReading& reading, double step) noexcept;
   WrenchSpread spreadWithRock(const WrenchSpread& of_crank) const noexcept;
-  void takeMeasured(const BoomSample& sample, double step) noexcept;
+  void updateMeasured(const BoomSample& sample, double step) noexcept;
   void useMeasured() noexcept;
   void followContact(StampNs stamp) noexcept;
   void findContact(double step) noexcept;

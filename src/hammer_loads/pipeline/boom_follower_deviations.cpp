@@ -53,12 +53,12 @@ Eigen::Matrix3d BoomFollower::tipCovarianceAsGiven() const noexcept {
   const Eigen::Vector3d stiffer = ofRun(VibrationSpread::kStiffer), softer = ofRun(VibrationSpread::kSofter);
   add(stiffer.head<2>().squaredNorm() > softer.head<2>().squaredNorm() ? stiffer : softer);
   for (int run = VibrationSpread::kDamped; run < spread_.runs(); ++run) add(ofRun(run));
-  for (int k = 0; spread_.swings() && k < spread_.modes(); ++k) add(ofTip(spread_.accelerationOfSwing(k)));
+  for (int k = 0; spread_.startsUnknown() && k < spread_.modes(); ++k) add(ofTip(spread_.accelerationOfSwing(k)));
   return covariance;
 }
 
 /// The part of the hull's acceleration that hammer and oil do not explain is attributed to a force on its mass.
-void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noexcept {
+void BoomFollower::learnUnexplained(const ImuReading& reading, double step) noexcept {
   const ModeIdentifier& identifier = *boom_.vibration().identifier();
   state_.contact_unknown = !identifier.explains() && identifier.learns() && !identifier.followsContact();
   if (identifier.followsContact() || !std::isfinite(state_.reduced.mass)) return;

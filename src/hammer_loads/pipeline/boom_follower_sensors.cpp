@@ -39,7 +39,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   boom_.vibration().keepOil(!last_blow_ || seconds(sample.stamp - *last_blow_) > kStillBeats);
   if (sample.imu) {
     observer_.imu(boom_, held_, sample.stamp, step, *sample.imu);
-    if (!state_.at_blow) weighUnexplained(sample.imu->reading, step);  // the reading may be from before the blow
+    if (!state_.at_blow) learnUnexplained(sample.imu->reading, step);  // the reading may be from before the blow
   }
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (!pressuresCount()) return;
@@ -49,7 +49,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
 }
 
 /// A measured force balances all loads on its joint; the difference from the model is attributed to the rock.
-void BoomFollower::takeMeasured(const BoomSample& sample, double step) noexcept {
+void BoomFollower::updateMeasured(const BoomSample& sample, double step) noexcept {
   state_.contact_torque.setZero();
   state_.contact = {};
   state_.measured = state_.hold_down_force_lost = false;

@@ -74,8 +74,8 @@ void warnOfPressures(const ModeIdentifier& identifier, double explained, std::ve
                         format("cylinder_pressures: errors are %.2g times the expected variance, deviations are "
                                "inflated. %s.",
                                surprise,
-                               identifier.knowsLag() ? "Check boom file and robot description"
-                                                     : "Their delay is not known: add hull_imu"),
+                               identifier.isLagKnown() ? "Check boom file and robot description"
+                                                       : "Their delay is not known: add hull_imu"),
                         true});
   }
 }
@@ -134,8 +134,8 @@ void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warnin
 const char* causeOf(const BoomFollower& follower, const BoomState& boom) {
   if (boom.contact_unknown) return "rock contact that is not measured. Add cylinder_pressures";
   const std::optional<ModeIdentifier>& identifier = follower.boom().vibration().identifier();
-  return identifier && identifier->knowsLag() ? "pressures that do not fit. Check boom file, stamps and hoses"
-                                              : "pressures whose delay is not known. Add hull_imu";
+  return identifier && identifier->isLagKnown() ? "pressures that do not fit. Check boom file, stamps and hoses"
+                                                : "pressures whose delay is not known. Add hull_imu";
 }
 
 void warnOfVibration(const BoomFollower& follower, const BoomState* boom, bool imu_lost,

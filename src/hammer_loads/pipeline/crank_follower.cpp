@@ -43,7 +43,7 @@ void CrankStep::forget(const CrankPosition& at) noexcept {
   links_ = links_before_ = hammer_loads::linksAt(*model_, at.angle);
 }
 
-void CrankStep::take(StampNs start, double length, const CrankPosition& from) noexcept {
+void CrankStep::set(StampNs start, double length, const CrankPosition& from) noexcept {
   known_ = true;
   start_ = start;
   length_ = length;
@@ -106,7 +106,7 @@ double CrankStep::timeBesides(const Passage& passage, Side side) const noexcept 
   return isEarlier(passage, side) ? std::max(0.0, passage.time - kBesideBlow) : passage.time + kBesideBlow;
 }
 
-CrankEstimate CrankStep::besides(const Passage& passage, Side side) const noexcept {
+CrankEstimate CrankStep::atSide(const Passage& passage, Side side) const noexcept {
   CrankEstimate estimate = at(timeBesides(passage, side));
   estimate.position = {passage.blow, {0.0, side}};
   estimate.speed = isEarlier(passage, side) ? passage.speed_before : passage.speed_after;
@@ -189,30 +189,30 @@ std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& m
   return verdict_.refusal ? verdict_.refusal : otherUnit();
 }
 
-CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
+CrankFollower::Outcome CrankFollower::update(const HullMotion& hull) noexcept {
   const CrankSample sample{measured_.angle, verdict_.speed_is_dead ? std::nullopt : measured_.speed};
   tracker_->setHullMotion(hull);
   tracker_->setClock(sequence_.clock());
-  tracker_->considerLatency(stampsOff());
+  tracker_->setLatencyDeviation(stampsOff());
   if (verdict_.order == CrankSampleGate::Order::kFirst) {
     tracker_->start(sample, sequence_.errorBeforeRestart());
     restart();
     speed_measured_ = sample.speed.has_value();
-    return Taken::kBegan;
+    return Outcome::kBegan;
   }
   const Tracking tracking = tracker_->update(verdict_.step, sample);
   followStamp();
   sequence_.confirm(tracker_->countsIntervals());
   followLostTime();
-  if (tracking == Tracking::kOutlier) return Taken::kRefused;
+  if (tracking == Tracking::kOutlier) return Outcome::kRefused;
   if (tracking != Tracking::kContinued) {
     restart();
     speed_measured_ = false;
-    return tracking == Tracking::kRevised ? Taken::kRevised : Taken::kRestarted;
+    return tracking == Tracking::kRevised ? Outcome::kRevised : Outcome::kRestarted;
   }
   estimate_ = tracker_->estimate();
-  step_.take(*gate_.last(), verdict_.step, last_position_);
-  return Taken::kContinued;
+  step_.set(*gate_.last(), verdict_.step, last_position_);
+  return Outcome::kContinued;
 }
 
 /// Counts a late stamp whose angle was read in time, as the angle is behind by the stamp's lateness.
@@ -243,8 +243,8 @@ void CrankFollower::followLostTime() noexcept {
   verdict_.step += lost;
 }
 
-void CrankFollower::considerRod(const CrankAngle& angle, double speed) noexcept {
-  tracker_->considerRod(CrankAngle::wrapToPi(angle.offset - estimate_.position.angle.offset), speed - estimate_.speed);
+void CrankFollower::inflateByRod(const CrankAngle& angle, double speed) noexcept {
+  tracker_->inflateByRod(CrankAngle::wrapToPi(angle.offset - estimate_.position.angle.offset), speed - estimate_.speed);
 }
 
 void CrankFollower::hullMoved(const HullMotion& hull) noexcept {

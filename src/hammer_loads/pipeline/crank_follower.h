@@ -47,7 +47,7 @@ class CrankStep {
   /// The time before the last sample, in position `at`, is not known.
   void forget(const CrankPosition& at) noexcept;
   /// A step of `length` [s] that began at stamp `start` in position `from`; finds its passages.
-  void take(StampNs start, double length, const CrankPosition& from) noexcept;
+  void set(StampNs start, double length, const CrankPosition& from) noexcept;
 
   bool known() const noexcept { return known_; }
   StampNs start() const noexcept { return start_; }
@@ -75,10 +75,10 @@ class CrankStep {
 
   /// Estimate on one side of a passage that is not smooth: exactly at the blow, so that nothing is lost to rounding
   /// there.
-  CrankEstimate besides(const Passage& passage, Side side) const noexcept;
+  CrankEstimate atSide(const Passage& passage, Side side) const noexcept;
   /// Standard deviation of the instant of a passage [s].
   double timeDeviation(const Passage& passage) const noexcept;
-  /// Crank at(time), or besides(passage, side), as each of the samples at the step's ends predicts it; none where one
+  /// Crank at(time), or atSide(passage, side), as each of the samples at the step's ends predicts it; none where one
   /// of them does not reach that far.
   std::optional<CrankWays> ways(double time) const noexcept { return tracker_->waysBetween(time); }
   std::optional<CrankWays> waysBesides(const Passage& passage, Side side) const noexcept;
@@ -107,7 +107,7 @@ class CrankFollower {
   CrankFollower& operator=(const CrankFollower&) = delete;
 
   /// Outcome of a sample.
-  enum class Taken {
+  enum class Outcome {
     kRefused,    ///< not accepted: refusal() has the reason
     kBegan,      ///< accepted as the first one after a start, a gap or a jump back in time
     kRevised,    ///< accepted; the decision whether the last passage was a blow is revised
@@ -115,19 +115,19 @@ class CrankFollower {
     kContinued,  ///< accepted; step() is the time since the sample before
   };
 
-  /// Judges a sample by itself: header stamp and reading. Only if there is no refusal, take() must follow.
+  /// Judges a sample by itself: header stamp and reading. Only if there is no refusal, update() must follow.
   std::optional<Refusal> judge(StampNs header, const CrankSample& measured) noexcept;
   /// Instant of the judged sample: its header stamp less crank_latency_s, or that refitted by sequence.
   StampNs stamp() const noexcept { return stamp_; }
-  /// Takes the judged sample. hull: motion at it.
-  Taken take(const HullMotion& hull) noexcept;
+  /// Updates the filter by the judged sample. hull: motion at it.
+  Outcome update(const HullMotion& hull) noexcept;
   /// Ends a step: later steps begin at this sample.
   void accept() noexcept;
 
   /// CrankFilter::moveZero().
   void moveZero(double angle) noexcept { tracker_->moveZero(angle); }
-  /// CrankFilter::doubtZero().
-  void doubtZero(bool doubted) noexcept { tracker_->doubtZero(doubted); }
+  /// CrankFilter::setZeroContradicted().
+  void setZeroContradicted(bool doubted) noexcept { tracker_->setZeroContradicted(doubted); }
   double reading() const noexcept { return measured_.angle; }  ///< angle of the judged sample [rad]
   /// Returns true if angle or speed may be in another unit that is not recognised yet.
   bool suspectsUnit() const noexcept { return unit_check_.suspects(); }
@@ -135,8 +135,8 @@ class CrankFollower {
   bool isSettled(const HullMotion& hull, double peak_force) noexcept;
 
   const CrankEstimate& estimate() const noexcept { return estimate_; }
-  /// Passes the displacement of the crank by an elastic rod to the filter, see CrankFilter::considerRod().
-  void considerRod(const CrankAngle& angle, double speed) noexcept;
+  /// Passes the displacement of the crank by an elastic rod to the filter, see CrankFilter::inflateByRod().
+  void inflateByRod(const CrankAngle& angle, double speed) noexcept;
   /// Updates the hull's motion at the accepted sample; the crank's acceleration is computed with it.
   void hullMoved(const HullMotion& hull) noexcept;
   const CrankStep& step() const noexcept { return step_; }

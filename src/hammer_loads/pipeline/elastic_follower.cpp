@@ -34,7 +34,7 @@ bool isOver(const RodFilter& rod) noexcept {
 ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
     : model_(&model),
       wanted_(level == Level::kElastic &&
-              priorOf(model.mechanism().parameters().rod, model.mechanism().parameters().rod_std).gives),
+              priorOf(model.mechanism().parameters().rod, model.mechanism().parameters().rod_std).is_elastic),
       filters_{RodFilter(model.mechanism(), RodFilter::Pins::kTight),
                RodFilter(model.mechanism(), RodFilter::Pins::kPlay)} {}
 
@@ -53,7 +53,7 @@ const char* ElasticFollower::whyNotUsed() const noexcept {
                : "readings fit a rigid connecting rod as well";
 }
 
-void ElasticFollower::rest() noexcept {
+void ElasticFollower::pause() noexcept {
   runs_ = false;
   for (RodFilter& filter : filters_) filter.abandon();
 }
@@ -81,13 +81,13 @@ void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) no
     return;
   }
   const double dt = length_ = crank.step().length();
-  if (!(dt < look_back::kHeld)) return rest();
+  if (!(dt < look_back::kHeld)) return pause();
   rigid_fit_ += filter.angleFit();
-  late_ = filter.constantErrors().considered(ConstantErrors::kLatency);
+  late_ = filter.constantErrors().consideredDeviation(ConstantErrors::kLatency);
   for (RodFilter& rod : filters_) {
     if (!rod.isRunning()) continue;
     rod.move(dt, filter.walks(), gravity);
-    if (!rod.take(filter.sample()) || isOver(rod)) rod.learn();
+    if (!rod.update(filter.sample()) || isOver(rod)) rod.learn();
   }
   if (std::none_of(filters_.begin(), filters_.end(), [](const RodFilter& rod) { return rod.isRunning(); })) judge();
 }

@@ -23,7 +23,7 @@ class ElasticFollower {
   ElasticFollower(const ElasticFollower&) = delete;
   ElasticFollower& operator=(const ElasticFollower&) = delete;
 
-  void rest() noexcept;
+  void pause() noexcept;
   /// Over the step to the crank's last sample, which continued.
   void follow(const CrankFollower& crank, Gravity gravity) noexcept {
     if (wanted_) followRods(crank, gravity);
@@ -48,7 +48,7 @@ class ElasticFollower {
   /// While it runs: the crank as the two bodies have it, its acceleration as if its rod were rigid.
   CrankEstimate crank() const noexcept { return crankOf(filter().motion()); }
   /// Loads that an elastic rod adds to those of a rigid rod at the same crank motion.
-  struct Beside {
+  struct RodLoads {
     HullWrench wrench;
     Eigen::Matrix3d covariance;  ///< covariance of the whole wrench by readings and rod
     double crank{};              ///< acceleration [rad/s2]
@@ -56,8 +56,8 @@ class ElasticFollower {
   /// Once a sample. ring: of the rocker's acceleration beside a rigid rod's, of any phase (RodRing) [rad/s2]. The
   /// acceleration of the two bodies is weighted with it by the variances, or with its own mean since the blow where
   /// that is larger, as the moment of an impact within the pins is known no better.
-  Beside beside(const DriveReaction& drive, double ring) noexcept;
-  /// Acceleration of the rocker beside that of a rigid rod at the last beside() [rad/s2].
+  RodLoads rodLoads(const DriveReaction& drive, double ring) noexcept;
+  /// Acceleration of the rocker beside that of a rigid rod at the last rodLoads() [rad/s2].
   double vibration() const noexcept { return vibration_; }
   /// While it runs: with links as the spring has them. near_blow: transmission angle below which they are flagged
   /// [rad]; angle_std: of the crank [rad].
@@ -121,8 +121,8 @@ class ElasticFollower {
   /// links: as those of a rigid rod.
   Loads loads(const RodMotion& motion, const LinkMotion& links, const DriveReaction& drive) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const LinkMotion& links, const DriveReaction& drive) const noexcept;
-  /// Weighs the vibration in the loads as beside() does.
-  void weigh(const RodMotion& motion, Loads& loads) const noexcept;
+  /// Weights the vibration in the loads as rodLoads() does.
+  void weightVibration(const RodMotion& motion, Loads& loads) const noexcept;
   LoadCovariance covariance(const DriveReaction& drive, const LinkMotion& links, const Loads& here) const noexcept;
   void followRods(const CrankFollower& crank, Gravity gravity) noexcept;
   void begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept;
@@ -147,7 +147,7 @@ class ElasticFollower {
   RunningMean<> squares_;      ///< mean square of x'' since the blow [rad2/s4]
   double length_{};            ///< length of the last step [s]
   double vibration_{};         ///< x'' at the last sample [rad/s2]
-  Loads gain_{Loads::Zero()};  ///< derivative of beside()'s correction by x''
+  Loads gain_{Loads::Zero()};  ///< derivative of rodLoads()'s correction by x''
 };
 
 }  // namespace hammer_loads

@@ -74,7 +74,7 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
 }
 
 /// A Kalman correction by x'' = 0 +- what is expected of a vibration.
-ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, double ring) noexcept {
+ElasticFollower::RodLoads ElasticFollower::rodLoads(const DriveReaction& drive, double ring) noexcept {
   const RodMotion& now = filter().motion();
   const LinkMotion links = filter().bodies().links(now.state.angle);
   Loads mean = loads(now, links, drive);
@@ -89,12 +89,12 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
   }
   const Eigen::Matrix3d covariance =
       errors.topLeftCorner<3, 3>() - gain_.head<3>() * errors.col(kBesideRigid).head<3>().transpose();
-  weigh(now, mean);
+  weightVibration(now, mean);
   mean -= rigidLoads(now, links, drive);
   return {wrenchOf(mean.head<3>()), covariance, mean[kCrank]};
 }
 
-void ElasticFollower::weigh(const RodMotion& m, Loads& loads) const noexcept {
+void ElasticFollower::weightVibration(const RodMotion& m, Loads& loads) const noexcept {
   if (m.state.angle.side == Side::kAfterBlow) loads -= (gain_ * loads[kBesideRigid]).eval();
 }
 
@@ -103,7 +103,7 @@ ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, bool
   const LinkMotion links = filter().bodies().links(there.state.angle);
   const Loads rigid = rigidLoads(there, links, drive);
   Loads beside = loads(there, links, drive);
-  if (weighed) weigh(there, beside);
+  if (weighed) weightVibration(there, beside);
   beside -= rigid;
   Instant instant{{{blow_, there.state.angle}, there.state.speed, rigid[kCrank]}, {}, there.state, links};
   instant.wrench = hullWrench(*model_, drive, links, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());

@@ -187,7 +187,7 @@ Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
 
 double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
-  if (!filter.rodEvidence().gives()) return std::hypot(angle_std, errors.zeroSeen());
+  if (!filter.rodEvidence().showsElasticRod()) return std::hypot(angle_std, errors.zeroSeen());
   const double hidden = errors.zeroIsGiven() ? 0.0 : ConstantErrors::kRodHides;
   return std::hypot(angle_std, std::hypot(errors.zeroLooks(), hidden));
 }

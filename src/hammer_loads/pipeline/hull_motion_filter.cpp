@@ -114,7 +114,7 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
   beside_ = beside;
   if (step.length() > 0.0) load_square_.add(path_.at(sample).load.cwiseAbs2(), step.length());
   waiting_.takeUpTo(sample, [this](const StampedImuReading& reading) {
-    if (path_.covers(reading.stamp)) take(reading);
+    if (path_.covers(reading.stamp)) update(reading);
   });
 }
 
@@ -157,7 +157,7 @@ void HullMotionFilter::beginAnew() noexcept {
   forgetMotion();
 }
 
-void HullMotionFilter::take(const StampedImuReading& next) noexcept {
+void HullMotionFilter::update(const StampedImuReading& next) noexcept {
   const double step = seconds(next.stamp - last_.stamp);
   if (readings_ > 0 && step > 0.0 && cameTogether(last_.stamp, next.stamp)) return;
   if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();

@@ -83,7 +83,7 @@ class HullMotionFilter {
  private:
   template <typename Signals, typename Each>
   void forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept;
-  void take(const StampedImuReading& reading) noexcept;
+  void update(const StampedImuReading& reading) noexcept;
   void forgetMotion() noexcept;
   void beginAnew() noexcept;
   bool works(const Eigen::Vector3d& load) noexcept;

@@ -96,12 +96,12 @@ HullGravity::HullGravity(const PipelineSettings& settings, const std::optional<B
 }
 
 bool HullGravity::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
-  const bool of_pitch = pitch_.update(names, positions), of_chain = takePosition(names, positions);
+  const bool of_pitch = pitch_.update(names, positions), of_chain = readPositions(names, positions);
   if (of_pitch || of_chain) find();
   return of_pitch;
 }
 
-bool HullGravity::takePosition(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
+bool HullGravity::readPositions(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
   bool taken = false;
   for (std::size_t i = 0; chain_ && i < names.size() && i < positions.size(); ++i) {
     const std::optional<int> joint = chain_->jointIndex(names[i]);
@@ -130,11 +130,11 @@ HullState::HullState(const HammerParameters& hammer, const PipelineSettings& set
       imu_(settings.imu),
       filter_(settings.imu, hammer) {
   if (boom && followsLoad()) mobility_.emplace(*boom, settings.imu.position);
-  weigh();
+  updateGravity();
 }
 
 /// Motion by the present joint angles: weight alone, as for a fixed hull.
-void HullState::weigh() noexcept {
+void HullState::updateGravity() noexcept {
   pitch_known_ = weight_.pitch().known();
   in_degrees_ = weight_.pitch().looksLikeDegrees();
   if (source_ == HullMotionSource::kFixed) now_ = {weight_.gravity(), false, HullMotionCovariance::Zero()};
@@ -155,7 +155,7 @@ HullMotionCovariance HullState::unmeasured() const noexcept {
 
 bool HullState::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
   const bool of_pitch = weight_.joints(names, positions);
-  weigh();
+  updateGravity();
   const JointVector* position = mobility_ ? weight_.position() : nullptr;
   if (position != nullptr)
     if (const std::optional<HullMobility::Mobility> mobility = mobility_->movedTo(*position)) filter_.expect(*mobility);
@@ -250,7 +250,7 @@ std::optional<StampedImuReading> HullState::newImuReading(StampNs sample, bool s
 
 void HullState::vibrates(const BoomFollower* boom) noexcept {
   if (source_ == HullMotionSource::kFixed || source_ == HullMotionSource::kUnmeasured) return;
-  rest();
+  clearVibration();
   const BoomState* state = boom != nullptr ? &boom->state() : nullptr;
   const bool followed = state != nullptr && !state->fault;
   const bool proven = followed && state->choice.compliant && state->identified;

@@ -76,7 +76,7 @@ class HullGravity {
   const HullPitch& pitch() const noexcept { return pitch_; }
 
  private:
-  bool takePosition(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+  bool readPositions(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
   void find() noexcept;
   bool allHeard() const noexcept;
 
@@ -181,7 +181,7 @@ class HullState {
   /// Takes the vibration of the boom at the sample; null: not known. Call after carry().
   void vibrates(const BoomFollower* boom) noexcept;
   /// Notes a gap before the coming samples; the boom is at rest.
-  void rest() noexcept { vibration_.reset(), vibration_doubt_.reset(); }
+  void clearVibration() noexcept { vibration_.reset(), vibration_doubt_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
@@ -192,7 +192,7 @@ class HullState {
   const ImuTrust& imuTrust() const noexcept { return imu_trust_; }
 
  private:
-  void weigh() noexcept;
+  void updateGravity() noexcept;
   void find(StampNs stamp) noexcept;
   void findByBoom() noexcept;
   std::optional<KnownHullMotion> measured(StampNs stamp) const noexcept;

@@ -56,7 +56,8 @@ void MeasuredTorques::followRest(Track& track, double rest) noexcept {
 }
 
 /// model: at the reading, after and before the update by it.
-void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept {
+void MeasuredTorques::addTorque(Track& track, StampNs stamp, double torque, double model,
+                                double model_before) noexcept {
   const double step = seconds(stamp - track.stamp);
   if (track.readings > 0 && step > 0.0 && cameTogether(track.stamp, stamp)) return;
   if (track.readings > 0 && step > 0.0) {
@@ -74,18 +75,19 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
   track.stamp = stamp, track.torque = torque, track.model = model;
 }
 
-MeasuredTorques::Doubt MeasuredTorques::doubtOf(const Vibration& vibration, double stamp_noise) noexcept {
+MeasuredTorques::StampUncertainty MeasuredTorques::stampUncertainty(const Vibration& vibration,
+                                                                    double stamp_noise) noexcept {
   const auto& identifier = vibration.identifier();
-  Doubt doubt;
-  doubt.stamp_noise = stamp_noise;
-  if (!identifier) return doubt;
-  doubt.delay = identifier->delay(Clock::kPressures);
-  doubt.delay_std = identifier->delayDeviation(Clock::kPressures);
+  StampUncertainty stamps;
+  stamps.stamp_noise = stamp_noise;
+  if (!identifier) return stamps;
+  stamps.delay = identifier->delay(Clock::kPressures);
+  stamps.delay_std = identifier->delayDeviation(Clock::kPressures);
   const double surprise = identifier->oilSurprise();
   // Where the stamps' delay is identified, a residual that does not fit is no delay.
-  doubt.misfit = surprise > kSurprised && identifier->knowsLag();
-  if (surprise > kSurprised && !doubt.misfit) doubt.lag = square(kLag) * surprise;
-  return doubt;
+  stamps.misfit = surprise > kSurprised && identifier->isLagKnown();
+  if (surprise > kSurprised && !stamps.misfit) stamps.lag = square(kLag) * surprise;
+  return stamps;
 }
 
 void MeasuredTorques::follow(const Boom& boom, const JointVector& position, const JointVector& steady,
@@ -95,7 +97,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   Vibration::OilTorque model = boom.vibration().oilTorque();
   model.now += steady;
   if (model_.now.size() != model.now.size()) model_ = model, read_ = model.now, sample_ = sample;
-  const Doubt doubt = doubtOf(boom.vibration(), instant.noise);
+  const StampUncertainty stamps = stampUncertainty(boom.vibration(), instant.noise);
   const bool gap = seconds(sample - sample_) > look_back::kHalfTurn;  // nothing was said that could be judged
   StampNs oil_at{};
   JointVector oil_then;  // at that stamp; of most cylinders it is the same
@@ -118,33 +120,33 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
         oil_then = boom.vibration().oilTorqueRead(seconds(stamp - sample)), oil_at = stamp;
       const double torque = -forceOf(cylinder, *read) * at.arm;
       if (gap || !track.goes_on) track.stamp = stamp, track.slope = 0.0;
-      take(track, stamp, torque, oil_then[j] + steady[j], before);
+      addTorque(track, stamp, torque, oil_then[j] + steady[j], before);
       track.readings = pressures.count(i);
       track.goes_on = true;
     }
-    torque_[i] = torqueNow(track, seconds(sample - stamp), {model.now[j], model.rate[j]}, doubt);
+    torque_[i] = torqueNow(track, seconds(sample - stamp), {model.now[j], model.rate[j]}, stamps);
     addConstants(boom, i, motion[j], seconds(sample - sample_), *torque_[i]);
   }
-  read_ = doubt.delay != 0.0 ? JointVector(boom.vibration().oilTorqueRead(0.0) + steady) : model.now;
+  read_ = stamps.delay != 0.0 ? JointVector(boom.vibration().oilTorqueRead(0.0) + steady) : model.now;
   model_ = model, sample_ = sample;
 }
 
 /// age: of the last reading [s].
 MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double age, const Model& model,
-                                                   const Doubt& doubt) noexcept {
-  const double ahead = std::min(age + doubt.delay, look_back::kLine);
-  const double line_square = longerLine(doubt.delay, track.interval) * track.line_square.mean();
+                                                   const StampUncertainty& stamps) noexcept {
+  const double ahead = std::min(age + stamps.delay, look_back::kLine);
+  const double line_square = longerLine(stamps.delay, track.interval) * track.line_square.mean();
   const bool by_oil = track.oil_square.mean() <= line_square;
   // A residual that does not fit is then an oscillation of its own, of a hose and not of the load.
-  const double rest = doubt.misfit ? track.unexplained.mean.mean() : track.rest;
+  const double rest = stamps.misfit ? track.unexplained.mean.mean() : track.rest;
   const double value = by_oil ? rest + model.now : track.torque + ahead * track.slope;
   const double lost = forgottenPart(overdue(age, track.interval));
   // A change has the noise of two readings, what is smoothed that of one or less.
   const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
   const double off = std::sqrt(of_change * std::min(track.oil_square.mean(), line_square) +
-                               (doubt.lag + 2.0 * lost) * track.swing.square.mean() +
-                               (doubt.misfit ? track.unexplained.square.mean() : 0.0) +
-                               (square(doubt.delay_std) + square(doubt.stamp_noise)) * square(model.rate));
+                               (stamps.lag + 2.0 * lost) * track.swing.square.mean() +
+                               (stamps.misfit ? track.unexplained.square.mean() : 0.0) +
+                               (square(stamps.delay_std) + square(stamps.stamp_noise)) * square(model.rate));
   return {value, off, 0.0, 0.0, track.at};
 }
 

@@ -73,7 +73,7 @@ class MeasuredTorques {
         line_square{look_back::kReadings};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
   /// Uncertainty of the pressures' stamps.
-  struct Doubt {
+  struct StampUncertainty {
     double delay{}, delay_std{};  ///< [s]
     double stamp_noise{};         ///< noise of the sample's stamp [s]
     double lag{};   ///< unknown delay of readings that do not fit, as a part of the oscillation's mean square
@@ -83,10 +83,10 @@ class MeasuredTorques {
   struct Model {
     double now{}, rate{};
   };
-  static Doubt doubtOf(const Vibration& vibration, double stamp_noise) noexcept;
-  static Torque torqueNow(const Track& track, double age, const Model& model, const Doubt& doubt) noexcept;
+  static StampUncertainty stampUncertainty(const Vibration& vibration, double stamp_noise) noexcept;
+  static Torque torqueNow(const Track& track, double age, const Model& model, const StampUncertainty& stamps) noexcept;
   void addConstants(const Boom& boom, std::size_t cylinder, double motion, double step, Torque& torque) noexcept;
-  static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
+  static void addTorque(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
   static void followRest(Track& track, double rest) noexcept;
 
   std::array<Track, kMaxJoints> tracks_;

@@ -38,11 +38,11 @@ void ModeObserver::imu(Boom& boom, const HeldPose& held, StampNs sample, double 
   imu_.add(reading);
   const double waiting = boom.vibration().identifier()->waiting() - 0.5 * step;
   imu_.takeUpTo(sample - std::llround(waiting / kSecondsPerNs), [&](const StampedImuReading& next) {
-    if (!held.isDriven()) take(boom, held, seconds(next.stamp - sample), next.reading);
+    if (!held.isDriven()) update(boom, held, seconds(next.stamp - sample), next.reading);
   });
 }
 
-void ModeObserver::take(Boom& boom, const HeldPose& held, double ahead, const ImuReading& reading) const noexcept {
+void ModeObserver::update(Boom& boom, const HeldPose& held, double ahead, const ImuReading& reading) const noexcept {
   const Jacobian& J = boom.tipJacobian();
   const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
   const auto along = [&](const Eigen::Vector3d& n_T) {

@@ -33,7 +33,7 @@ class ModeObserver {
   };
   static constexpr int kImuChannels = 3;
 
-  void take(Boom& boom, const HeldPose& held, double ahead, const ImuReading& reading) const noexcept;
+  void update(Boom& boom, const HeldPose& held, double ahead, const ImuReading& reading) const noexcept;
 
   Eigen::Vector3d imu_position_;
   WaitingReadings imu_;

@@ -85,7 +85,7 @@ const SampleResult& Pipeline::refuse(Refusal refusal) noexcept {
 /// Ends a sample that the crank has used and the outputs have not, which continue from the next one.
 const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
   const bool continues = refusal == Refusal::kUnsettled && crank_.step().known();
-  swingOn(continues ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
+  advanceBoom(continues ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
   sampler_.forget();
   turn_.withheld();
   return refuse(refusal);
@@ -101,9 +101,9 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
     return refuse(*refusal);
   }
   result_.stamp = crank_.stamp();
-  const CrankFollower::Taken taken = crank_.take(hull_.predict(result_.stamp));
-  if (taken == CrankFollower::Taken::kRefused) return refuse(Refusal::kImplausible);
-  follow(taken);
+  const CrankFollower::Outcome outcome = crank_.update(hull_.predict(result_.stamp));
+  if (outcome == CrankFollower::Outcome::kRefused) return refuse(Refusal::kImplausible);
+  follow(outcome);
   crank_.accept();
   if (const auto refusal = whyWithheld()) return withhold(*refusal);
 
@@ -114,7 +114,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   settled_ = isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion));
   if (!settled_) return withhold(Refusal::kImplausible);
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
-  const ElasticFollower::Beside rod = weigh(links, drive);
+  const ElasticFollower::RodLoads rod = computeDeviations(links, drive);
   result_.boom = nullptr;
   if (boom_) followBoom(links, drive);
   hullMovedAtBlow();
@@ -132,29 +132,29 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
 }
 
 /// Advances everything that continues from sample to sample.
-void Pipeline::follow(CrankFollower::Taken taken) noexcept {
+void Pipeline::follow(CrankFollower::Outcome outcome) noexcept {
   result_.stamp = crank_.stamp();  // readings may show that samples were lost
   result_.crank = crank_.estimate();
   result_.consistency = crank_.tracker().consistency();
-  if (taken == CrankFollower::Taken::kBegan) turn_.begin(result_.stamp);
-  followTrust(taken);
+  if (outcome == CrankFollower::Outcome::kBegan) turn_.begin(result_.stamp);
+  followTrust(outcome);
   const bool counts = !trust_.refusal() && !zero_.withholds() && trust_.hasRunUp() && !crank_.suspectsUnit();
   if (!counts) turn_.discard();
-  if (taken == CrankFollower::Taken::kContinued) {
+  if (outcome == CrankFollower::Outcome::kContinued) {
     passBlows();
     followHull();
     rod_.follow(crank_.step(), crank_.tracker());
-    rod_.take(crank_.tracker(), elastic_.isLost(), elastic_.restitution());
+    rod_.setEvidence(crank_.tracker(), elastic_.isLost(), elastic_.restitution());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
     unknown_.observe(crank_.tracker().constantErrors().zeroIsShown() ? elastic_.identifiedPins() : std::nullopt);
     unknown_.follow(crank_.step().length(), crank_.step().strikes(), elastic_.runs() && !elastic_.filter().hasStruck());
     if (elastic_.runs())
-      crank_.considerRod(elastic_.filter().motion().state.angle, elastic_.filter().motion().state.speed);
+      crank_.inflateByRod(elastic_.filter().motion().state.angle, elastic_.filter().motion().state.speed);
     if (counts) turn_.follow(hull_.motion().motion, result_);
   } else {
-    restart(taken == CrankFollower::Taken::kRevised);
+    restart(outcome == CrankFollower::Outcome::kRevised);
     rod_.restart(crank_.tracker());
-    elastic_.rest();
+    elastic_.pause();
   }
 }
 
@@ -168,7 +168,8 @@ std::optional<Refusal> Pipeline::whyWithheld() noexcept {
 }
 
 /// Hull, links, wrench and pin forces.
-void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept {
+void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive,
+                    const ElasticFollower::RodLoads& rod) noexcept {
   const CrankMotion motion = motionOf(result_.crank);
   result_.level = elastic_.isWanted() && !elastic_.isUsed() ? Level::kLinkage : settings_.level;
   result_.hull = hull_.motion();
@@ -186,13 +187,13 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
                 result_.deviation);
 }
 
-void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
-  const double step = taken == CrankFollower::Taken::kContinued ? crank_.step().length() : 0.0;
-  if (taken == CrankFollower::Taken::kBegan) trust_.begin();
+void Pipeline::followTrust(CrankFollower::Outcome outcome) noexcept {
+  const double step = outcome == CrankFollower::Outcome::kContinued ? crank_.step().length() : 0.0;
+  if (outcome == CrankFollower::Outcome::kBegan) trust_.begin();
   trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
   crank_.moveZero(zero_.follow(crank_.tracker(), elastic_.isUsed(), crank_.reading(), step, {hull_.gravity()}));
-  crank_.doubtZero(zero_.doubts(crank_.tracker()));
-  if (taken == CrankFollower::Taken::kContinued) {
+  crank_.setZeroContradicted(zero_.contradicts(crank_.tracker()));
+  if (outcome == CrankFollower::Outcome::kContinued) {
     for (const CrankStep::Passage& passage : crank_.step())
       if (passage.forward) trust_.passBlow(settled_);
   }
@@ -234,7 +235,7 @@ void Pipeline::restart(bool revised) noexcept {
   turn_.restart();
   hull_.follow(result_.stamp, {}, {});
   sampler_.forget();
-  if (revised) swingOn({});
+  if (revised) advanceBoom({});
   boom_follows_ = boom_follows_ && revised;
   ++counts_.restarts;
 }

@@ -81,16 +81,16 @@ class Pipeline {
   const SampleResult& refuse(Refusal refusal) noexcept;
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
-  void follow(CrankFollower::Taken taken) noexcept;
+  void follow(CrankFollower::Outcome outcome) noexcept;
   std::optional<Refusal> whyWithheld() noexcept;
   Eigen::Matrix3d contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
   Eigen::Matrix3d zeroDoubt(const DriveReaction& drive) const noexcept;
-  ElasticFollower::Beside weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
-  void fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept;
+  ElasticFollower::RodLoads computeDeviations(const LinksBeside& links, const DriveReaction& drive) noexcept;
+  void fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::RodLoads& rod) noexcept;
   double speedScale() const noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
   bool isKnown() const noexcept;
-  void followTrust(CrankFollower::Taken taken) noexcept;
+  void followTrust(CrankFollower::Outcome outcome) noexcept;
   void hullMovedAtBlow() noexcept;
   double stampNoise() const noexcept;
   CrankLead crankLead(double speed) const noexcept;
@@ -98,7 +98,7 @@ class Pipeline {
   void followMisuse() noexcept;
   void passBlows() noexcept;
   void followHull() noexcept;
-  void swingOn(const WrenchHistory& step) noexcept;
+  void advanceBoom(const WrenchHistory& step) noexcept;
 
   Mechanism mechanism_;
   PipelineSettings settings_;

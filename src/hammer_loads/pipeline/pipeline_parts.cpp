@@ -43,7 +43,7 @@ Eigen::Matrix3d Pipeline::contactDoubt(const LinkMotion& links, const DriveReact
 Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
   const ConstantErrors& errors = crank_.tracker().constantErrors();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  if (errors.knows() && errors.zeroIsShown()) return covariance;
+  if (errors.isKnown() && errors.zeroIsShown()) return covariance;
   const HullMotion& hull = hull_.motion().motion;
   const CrankMotion motion = motionOf(result_.crank);
   const HammerParameters& p = mechanism_.parameters();
@@ -65,18 +65,18 @@ Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
 }
 
 /// Deviations, and whether the blow's side is certain. Returns the loads that an elastic connecting rod adds.
-ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive) noexcept {
-  const bool gives = elastic_.runs();
+ElasticFollower::RodLoads Pipeline::computeDeviations(const LinksBeside& links, const DriveReaction& drive) noexcept {
+  const bool follows_rod = elastic_.runs();
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_std_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
-  if (gives) result_.deviation.covariance = result_.deviation.common_covariance;
-  const ElasticFollower::Beside rod =
-      gives ? elastic_.beside(drive, rod_.acceleration())
-            : ElasticFollower::Beside{{}, rod_.covariance(links.here.links, result_.crank.speed)};
+  if (follows_rod) result_.deviation.covariance = result_.deviation.common_covariance;
+  const ElasticFollower::RodLoads rod =
+      follows_rod ? elastic_.rodLoads(drive, rod_.acceleration())
+                  : ElasticFollower::RodLoads{{}, rod_.covariance(links.here.links, result_.crank.speed)};
   result_.rod_ring = wrenchOf(rod.covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
-  result_.rod_followed = gives;
-  unknown_.vibrates(links.here.links, gives ? elastic_.vibration() : std::sqrt(2.0) * rod_.acceleration());
+  result_.rod_followed = follows_rod;
+  unknown_.vibrates(links.here.links, follows_rod ? elastic_.vibration() : std::sqrt(2.0) * rod_.acceleration());
   const UnknownForce::Errors unknown = unknown_.errors(links.here.links);
   result_.unknown = unknown.squares;
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
@@ -86,7 +86,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   const CrankFilter& tracker = crank_.tracker();
   // An encoder's edge shows the side of the blow as far as the zero is known.
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
-  const std::optional<bool> beside_rods = gives ? std::make_optional(elastic_.isBesideBlow()) : std::nullopt;
+  const std::optional<bool> beside_rods = follows_rod ? std::make_optional(elastic_.isBesideBlow()) : std::nullopt;
   result_.beside_blow = isBesideBlow(tracker, result_.crank, of_angle, beside_rods);
   result_.uncertain = !isKnown();
   return rod;
@@ -131,12 +131,12 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
 }
 
 /// Advances the boom over a sample without a result.
-void Pipeline::swingOn(const WrenchHistory& step) noexcept {
+void Pipeline::advanceBoom(const WrenchHistory& step) noexcept {
   if (boom_follows_) {
-    boom_->swing(result_.stamp, step);
+    boom_->advanceWithoutLoads(result_.stamp, step);
     hull_.vibrates(&*boom_);
   } else {
-    hull_.rest();
+    hull_.clearVibration();
   }
   hullMovedAtBlow();
 }

@@ -78,7 +78,7 @@ Rods rodsOf(const RodPrior& prior) noexcept {
 RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   const HammerParameters& p = model.mechanism().parameters();
   const RodPrior prior = priorOf(p.rod, p.rod_std);
-  gives_ = !HAMMER_LOADS_ABLATE(rod_ring) && prior.gives;
+  is_elastic_ = !HAMMER_LOADS_ABLATE(rod_ring) && prior.is_elastic;
   rods_ = rodsOf(prior);
 }
 
@@ -90,7 +90,7 @@ void RodRing::begin(double beside_speed) noexcept {
 }
 
 void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
-  if (!(blow.drive_inertia > 0.0) || !(speed_before > 0.0)) return rest();
+  if (!(blow.drive_inertia > 0.0) || !(speed_before > 0.0)) return stop();
   const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
   double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0), factor = blow.mean, deviation = kOtherBlow;
   if (unexplained_ && explained_) {  // what the crank shows of this blow is not its restitution
@@ -98,7 +98,7 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   } else {
     const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
     const double by_rod =
-        lost_ && explained_ ? std::hypot(kOtherBlow, restitution - *explained_) : doubtOf(restitution);
+        lost_ && explained_ ? std::hypot(kOtherBlow, restitution - *explained_) : deviationOf(restitution);
     deviation = std::hypot(measured, by_rod);
   }
   const double rocker = -restitution * at.u_before * speed_before;  // rocker's speed as it leaves the tool
@@ -110,7 +110,7 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
 
 /// angle, speed, acceleration: of the crank in the middle of a time in which its lever counts as constant.
 void RodRing::moveThrough(const CrankAngle& angle, double speed, double acceleration, double time) noexcept {
-  if (!(angle.offset > -RodEvidence::kPickedUp) || !(speed > 0.0)) return rest();
+  if (!(angle.offset > -RodEvidence::kPickedUp) || !(speed > 0.0)) return stop();
   const HammerParameters& p = model_->mechanism().parameters();
   const LinkMotion links = linkMotion(model_->mechanism().linkage(), angle);
   const double lever = p.lengths.rocker * links.sin_mu;
@@ -138,10 +138,10 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
 }
 
 void RodRing::restart(const CrankFilter& tracker) noexcept {
-  rest();
+  stop();
   const CrankEstimate now = tracker.estimate();
   const CrankAngle at = now.position.angle;
-  if (!gives_ || !(at.offset > 0.0) || !(at.offset < RodEvidence::kRungOut) || !(now.speed > kSlowCrank)) return;
+  if (!is_elastic_ || !(at.offset > 0.0) || !(at.offset < RodEvidence::kRungOut) || !(now.speed > kSlowCrank)) return;
   const auto loadAt = [&](double offset) {
     const LinkMotion links = linkMotion(model_->mechanism().linkage(), {offset, at.side});
     ShaftLoad load = shaftLoadLinkage(model_->mechanism(), links, {});
@@ -195,7 +195,7 @@ void RodRing::pass(const CrankStep::Passage& passage, const BlowFactor& blow) no
 }
 
 void RodRing::follow(const CrankStep& step, const CrankFilter& tracker) noexcept {
-  if (!gives_) return;
+  if (!is_elastic_) return;
   double from = 0.0;
   for (const CrankStep::Passage& passage : step) {
     move(step, from, passage.time);
@@ -208,7 +208,7 @@ void RodRing::follow(const CrankStep& step, const CrankFilter& tracker) noexcept
   drive(step, crank);
 }
 
-void RodRing::take(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept {
+void RodRing::setEvidence(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept {
   const RodEvidence& evidence = filter.rodEvidence();
   share_ = std::sqrt(evidence.share(filter.readingDeviation()));
   released_ = std::sqrt(evidence.releasedShare(filter.readingDeviation()));
@@ -216,12 +216,12 @@ void RodRing::take(const CrankFilter& filter, bool lost, std::optional<double> r
   explained_ = restitution;
 }
 
-double RodRing::doubtOf(double restitution) const noexcept {
+double RodRing::deviationOf(double restitution) const noexcept {
   return lost_ ? std::hypot(kAnyRestitution, restitution - kMeanRestitution) : kRestitutionDoubt;
 }
 
 double RodRing::restitutionDoubt(double restitution) const noexcept {
-  return gives_ ? std::max(share_, released_) * doubtOf(restitution) : 0.0;
+  return is_elastic_ ? std::max(share_, released_) * deviationOf(restitution) : 0.0;
 }
 
 double RodRing::speed() const noexcept {

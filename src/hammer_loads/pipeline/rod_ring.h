@@ -40,7 +40,7 @@ class RodRing {
   /// Takes the evidence of the crank's filter on a vibrating rod. lost, restitution: isLost() and restitution() of
   /// ElasticFollower. The vibration after an unexplained blow is that by the restitution of the explained ones; the
   /// restitution of the blow itself is not known.
-  void take(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept;
+  void setEvidence(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept;
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].
   Eigen::Matrix3d covariance(const LinkMotion& links, double crank) const noexcept;
@@ -54,12 +54,12 @@ class RodRing {
   /// the most it was driven at.
   double lackingSpeed() const noexcept { return released_ * lacking_; }
   /// Part of the rocker's speed that the last blow left for the rod to take up [rad/s].
-  double struck() const noexcept { return gives_ ? share_ * struck_ : 0.0; }
+  double struck() const noexcept { return is_elastic_ ? share_ * struck_ : 0.0; }
   /// Root mean square of the rocker's angular speed relative to the rigid links' [rad/s].
   double speed() const noexcept;
 
  private:
-  void rest() noexcept { moves_ = approaches_ = false, driven_ = 0.0; }
+  void stop() noexcept { moves_ = approaches_ = false, driven_ = 0.0; }
   void begin(double beside_speed) noexcept;
   void strike(double speed_before, const BlowFactor& blow) noexcept;
   void move(const CrankStep& step, double from, double to) noexcept;
@@ -67,11 +67,11 @@ class RodRing {
   void pass(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
   void approach(const CrankAngle& at) noexcept;
   void drive(const CrankStep& step, const CrankEstimate& crank) noexcept;
-  double doubtOf(double restitution) const noexcept;
+  double deviationOf(double restitution) const noexcept;
   void release(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;
-  bool gives_, moves_{};           ///< moves: from the run-up on, which may turn out to be a blank firing
+  bool is_elastic_, moves_{};      ///< moves: from the run-up on, which may turn out to be a blank firing
   bool approaches_{}, settles_{};  ///< in this run-up, which began settled
   struct State {
     double x{}, speed{};  ///< [rad], [rad/s]

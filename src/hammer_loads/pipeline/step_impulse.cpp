@@ -49,12 +49,12 @@ void forEachSmoothPart(const CrankStep& step, double from, double to, const Visi
   for (const CrankStep::Passage& passage : step) {
     if (passage.smooth || passage.time < from || passage.time > to) continue;
     if (passage.time == from && from > 0.0) {
-      start = step.besides(passage, second(passage));
+      start = step.atSide(passage, second(passage));
       continue;
     }
-    const CrankEstimate end = step.besides(passage, first(passage));
+    const CrankEstimate end = step.atSide(passage, first(passage));
     visit(start_time, passage.time == start_time ? end : start, passage.time, end);
-    start = step.besides(passage, second(passage));
+    start = step.atSide(passage, second(passage));
     start_time = passage.time;
     passed_at_end = passage.time == to;
   }

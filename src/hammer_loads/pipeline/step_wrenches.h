@@ -72,7 +72,7 @@ void forEachStepExtreme(const StepLoad& load, const CrankStep& step, const OnPla
   for (const CrankStep::Passage& passage : step) {
     const Side first = passage.forward ? Side::kBeforeBlow : Side::kAfterBlow;
     const Side second = passage.forward ? Side::kAfterBlow : Side::kBeforeBlow;
-    const auto on = [&](Side side) { return passage.smooth ? step.at(passage.time) : step.besides(passage, side); };
+    const auto on = [&](Side side) { return passage.smooth ? step.at(passage.time) : step.atSide(passage, side); };
     span.to = passage.time;
     span.finish = on(first);
     alongSpan(span);

@@ -128,7 +128,7 @@ void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, 
                                  {momentumDeviation(*model_, drive, before, links, doubt.own),
                                   momentumDeviation(*model_, drive, before, links, by_readings)},
                                  columns, weightColumns(*columns_, *model_, hull_.gravity));
-  if (is_rings) errors_.doubtBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
+  if (is_rings) errors_.addPeakBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
 }
 
 /// Ends the turn; the blow is measured later.
@@ -138,7 +138,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   end.stamp = step_->stampAt(passage.time);
   end.turn = ++turns_;
   const double time = seconds(step_->start() - epoch_) + passage.time;
-  CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
+  CrankEstimate before = step_->atSide(passage, Side::kBeforeBlow);
   if (elastic_->runs()) before.speed = elastic_->strikingSpeed();
   CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
   const Eigen::Matrix3d by_readings = doubt.own;
@@ -151,7 +151,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, rate, doubt);
   pending_.follow(tracker_->blowFactor());
   last_blow_ = end.stamp;
-  turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
+  turn_.begin(instant(time, step_->atSide(passage, Side::kAfterBlow)));
 }
 
 void TurnFollower::hullMovedAtBlow(const TipVelocity& hull) noexcept {
@@ -160,7 +160,7 @@ void TurnFollower::hullMovedAtBlow(const TipVelocity& hull) noexcept {
 
 /// An elastic rod takes the rocker up within the turn, not at the blow: what that is of the support's impulse is the
 /// turn's.
-void TurnFollower::takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept {
+void TurnFollower::addLaterMomentum(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept {
   const double u_after = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia).u_after;
   const double missing = blow.rocker_speed_after - u_after * blow.crank_speed_after;
   const double momentum = model_->mechanism().rockerFirstMoment() * missing;
@@ -172,7 +172,7 @@ void TurnFollower::takeUpLater(const CrankBlow& crank, LinkMomentum& after, Rock
 
 /// No blow at the dead centre slows the crank so. Where the tool had been met before, its impulses show, uncertain by
 /// what a blow at the dead centre would have; else they are uncertain by what the nearest blow that can be has.
-void TurnFollower::doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept {
+void TurnFollower::inflateImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept {
   RockerBlow other = end.blow;
   if (early) {
     crank.early = true;
@@ -190,7 +190,7 @@ void TurnFollower::doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) co
 }
 
 /// A hull that yields reduces the effective inertia of the rocker, and its acceleration acts on the crank.
-void TurnFollower::doubtHull(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept {
+void TurnFollower::addHullDeviation(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept {
   const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
   const double per_acceleration = model_->mechanism().rockerFirstMoment() * inertia.u_before / inertia.before();
   const double kick = kBlind * per_acceleration * std::sqrt(hull(1, 1));
@@ -231,7 +231,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
         crank.factor_std, rod_->restitutionDoubt(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
         crank.factor * rod_->lackingSpeed() / crank.speed);
   }
-  if (prior_ != nullptr && !result.hull.moves) doubtHull(result.hull.covariance, crank);
+  if (prior_ != nullptr && !result.hull.moves) addHullDeviation(result.hull.covariance, crank);
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
   const double doubt = std::hypot(measured.speed_std / measured.speed, measured.factor_std / measured.factor);
   const HullWrench read{std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0};
@@ -239,7 +239,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
                                             pending_.columnsAfter()));
   blow = measuredBlow(*model_, crank);
-  if (elastic) takeUpLater(crank, after, blow);
+  if (elastic) addLaterMomentum(crank, after, blow);
   turn_.correctBegin(after);
   BlowErrors& errors = pending_end_.blow_errors;
   errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
@@ -250,7 +250,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
     errors.setRodBeyond(ownErrors(*model_, rigid, measuredBlow(*model_, rigid)));
   }
   voidImpossible(model_->mechanism(), model_->level(), blow);
-  if (blow.impossible) doubtImpossible(crank, !elastic && pending_.isEarly(), pending_end_);
+  if (blow.impossible) inflateImpossible(crank, !elastic && pending_.isEarly(), pending_end_);
   impossible_ += blow.impossible;
   countHullSpeed(pending_end_);
   pending_end_.mean_hold_down_force *= blow.tool_impulse_z;

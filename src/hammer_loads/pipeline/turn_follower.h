@@ -92,7 +92,7 @@ class TurnErrors {
                   const MomentumColumns& weight) const noexcept;
   /// Adds the uncertainty of a vibration's peak between samples, which only the model determines: its excess over the
   /// highest sample.
-  void doubtBetween(double peak, NumberError& error) const noexcept {
+  void addPeakBetween(double peak, NumberError& error) const noexcept {
     const double beyond = std::max(0.0, peak - peak_);
     error.own = std::hypot(error.own, beyond), error.rod = std::hypot(error.rod, beyond);
   }
@@ -242,9 +242,9 @@ class TurnFollower {
   }  ///< number of backward passages of the blow, less those forward again
 
  private:
-  void doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept;
-  void takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept;
-  void doubtHull(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept;
+  void inflateImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept;
+  void addLaterMomentum(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept;
+  void addHullDeviation(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept;
   void countHullSpeed(TurnEnd& end) const noexcept;
   void countBackward(const CrankStep::Passage& passage) noexcept;
   double partOfStep(bool rings) const noexcept;

@@ -27,7 +27,7 @@ constexpr double kLeastLever = 0.01;  // part of l3: below it the rod's force do
 UnknownForce::UnknownForce(const Mechanism& mechanism) noexcept : mechanism_(&mechanism) {
   const RodSpring &rod = mechanism.parameters().rod, &deviation = mechanism.parameters().rod_std;
   const RodPrior prior = priorOf(rod, deviation);
-  if (!prior.gives) return;
+  if (!prior.is_elastic) return;
   clearance_ = given_clearance_ = std::hypot(rod.play, deviation.play);
   friction_radius_ = given_friction_radius_ = std::hypot(rod.friction_radius, deviation.friction_radius);
   damping_ = deviation.damping_ratio;

@@ -11,7 +11,7 @@ namespace hammer_loads {
 /// vibration but a diverging observer.
 class VibrationBound {
  public:
-  void rest() noexcept { pushed_ = 0.0; }
+  void reset() noexcept { pushed_ = 0.0; }
   void advance(const Vibration& vibration, double step, const TorqueStep& torque) noexcept;
   void strike(const Vibration& vibration, const JointVector& impulse) noexcept;
   bool holds(const Vibration& vibration) const noexcept;

@@ -107,9 +107,9 @@ double beyondRod(const Unknown& unknown, double amount) {
   return std::max(0.0, std::abs(amount) - kRodLooksEccentric);
 }
 
-/// Constants whose error the innovations show, by their table. gives: the rod does.
-void warnOfConstants(const ConstantErrors& errors, const ZeroWatch::Stated& zero, const CrankSensor& sensor, bool gives,
-                     std::vector<Warning>& warnings) {
+/// Warns of constants whose error the innovations show, by their table.
+void warnOfConstants(const ConstantErrors& errors, const ZeroWatch::Stated& zero, const CrankSensor& sensor,
+                     bool rod_is_elastic, std::vector<Warning>& warnings) {
   for (std::size_t i = 0; i < kUnknowns.size();) {
     const Unknown& first = kUnknowns[i];
     double amount = 0.0, deviation = 0.0;
@@ -120,7 +120,7 @@ void warnOfConstants(const ConstantErrors& errors, const ZeroWatch::Stated& zero
       deviation = std::max(deviation, errors.deviation()[at]);
       if (at == ConstantErrors::kZero) amount = zero.error, deviation = zero.deviation;
     }
-    const double certain = gives ? beyondRod(first, amount) : std::abs(amount);
+    const double certain = rod_is_elastic ? beyondRod(first, amount) : std::abs(amount);
     const bool named = first.warning != nullptr && certain > std::max(first.notable, gate::kUsual * deviation);
     if (first.of_reading) amount /= sensor.gain(), deviation /= std::abs(sensor.gain());
     if (named) warnings.push_back({first.name, first.warning(amount, deviation), true});
@@ -175,7 +175,7 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
         "crank: readings differ from the model after the blow (%.2g times the variance); deviations are too small. "
         "Check the coupling.",
         all);
-  if (filter.rodEvidence().gives())
+  if (filter.rodEvidence().showsElasticRod())
     return format(
         "crank: readings differ from the model (%.2g times the variance): rod or pins may be elastic. Check hammer "
         "file, coupling.",
@@ -202,21 +202,22 @@ std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
       count(withheld).c_str(), filter.consistency());
 }
 
-/// Warns of readings that contradict the model. gives: the rod is elastic, and that explains them.
-void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gives, std::vector<Warning>& warnings) {
+/// Warns of readings that contradict the model. rod_is_elastic: an elastic connecting rod explains them.
+void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool rod_is_elastic,
+                    std::vector<Warning>& warnings) {
   const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
   const bool strike = filter.strikeConsistency() > CrankTrust::kInconsistent;
   const bool now = filter.consistency() > CrankTrust::kInconsistent || strike || filter.isUnexplained() ||
                    pipeline.crankTrust().isInconsistent() || mostIsWithheld(pipeline.counts());
-  if (now && !gives)
+  if (now && !rod_is_elastic)
     return warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld > 0), true});
-  if (gives) {
+  if (rod_is_elastic) {
     warnings.push_back({withheld > 0 ? "inconsistent" : "rod", rodOf(pipeline, filter), true});
   } else if (withheld > 0) {
     warnings.push_back({"inconsistent before", agreesAgain(filter, withheld), false});
   }
-  warnOfConstants(filter.constantErrors(), pipeline.zeroWatch().stated(filter), pipeline.settings().crank_sensor, gives,
-                  warnings);
+  warnOfConstants(filter.constantErrors(), pipeline.zeroWatch().stated(filter), pipeline.settings().crank_sensor,
+                  rod_is_elastic, warnings);
 }
 
 /// Warns of a sensor error to which the filter's innovations point.
@@ -231,11 +232,11 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
     return warnings.push_back(
         {pipeline.zeroWatch().withholds() ? "zero off" : "zero", zeroFarOff(pipeline, filter), true});
   // A rod alone hardly makes most of a recording contradict the model before the blow.
-  const bool gives = filter.rodEvidence().gives() && !mostIsWithheld(pipeline.counts());
+  const bool rod_is_elastic = filter.rodEvidence().showsElasticRod() && !mostIsWithheld(pipeline.counts());
   if (filter.isLost())
     warnings.push_back({"lost",
                         std::string("crank: the estimate restarts again and again; readings and ") +
-                            (gives ? "a rigid rod" : "hammer file") + " contradict each other. Check both.",
+                            (rod_is_elastic ? "a rigid rod" : "hammer file") + " contradict each other. Check both.",
                         true});
   if (filter.encoder().contradictsGiven())
     warnings.push_back(
@@ -245,7 +246,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          true});
   warnOfStamps(pipeline.crank(), filter, kTwoPi * pipeline.settings().turn_rate, warnings);
   warnOfReadings(pipeline.crank(), filter, warnings);
-  warnOfMismatch(pipeline, filter, gives, warnings);
+  warnOfMismatch(pipeline, filter, rod_is_elastic, warnings);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr double kRefined = 0.5 * kDegree;
 /// model just after the blow, a wrong zero elsewhere as well.
 double consistencyBesideRod(const CrankFilter& filter) noexcept {
   const RodEvidence& rod = filter.rodEvidence();
-  return rod.gives() ? std::max(rod.later(), filter.strikeConsistency()) : filter.consistency();
+  return rod.showsElasticRod() ? std::max(rod.later(), filter.strikeConsistency()) : filter.consistency();
 }
 
 }  // namespace
@@ -59,10 +59,10 @@ double ZeroWatch::follow(const CrankFilter& filter, bool rod_explains, double re
 bool ZeroWatch::agrees(const CrankFilter& filter) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];
-  return errors.knows() && consistencyBesideRod(filter) < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
+  return errors.isKnown() && consistencyBesideRod(filter) < kAgrees && std::hypot(shown, deviation) < kFilterAgrees;
 }
 
-bool ZeroWatch::doubts(const CrankFilter& filter) const noexcept {
+bool ZeroWatch::contradicts(const CrankFilter& filter) const noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const bool agrees = filter.consistency() < kAgrees;
   const auto& found = search_.found();
@@ -76,10 +76,11 @@ ZeroWatch::Stated ZeroWatch::stated(const CrankFilter& filter) const noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const auto& found = search_.found();
   if (moved_ != 0.0 && !settled_) return {moved_, deviation_};
-  if (!errors.knows() || (found && doubts(filter))) return {moved_ + (found ? found->error : 0.0), kSearchDeviation};
+  if (!errors.isKnown() || (found && contradicts(filter)))
+    return {moved_ + (found ? found->error : 0.0), kSearchDeviation};
   const double shown = errors.estimate()[ConstantErrors::kZero];
   Eigen::Vector4d deviations(errors.deviation()[ConstantErrors::kZero], errors.zeroNotLinear(), 0.0, 0.0);
-  if (filter.rodEvidence().gives()) deviations[2] = ConstantErrors::kRodHides;
+  if (filter.rodEvidence().showsElasticRod()) deviations[2] = ConstantErrors::kRodHides;
   // The linear estimate saturates: if it does not explain the readings, the difference from the search is a part of the
   // deviation.
   if (!(filter.consistency() < kAgrees)) deviations[3] = found ? found->error - shown : ConstantErrors::kUnknownZero;
@@ -92,7 +93,7 @@ bool ZeroWatch::mayCount(const CrankFilter& filter) const noexcept {
   if (!errors.zeroIsShown() || errors.turns() < kTurnsToSearch) return false;
   if (errors.estimate()[ConstantErrors::kZero] > kCountsAhead) return false;
   // An elastic rod causes an apparent error of up to 3 deg, and calibrate cannot separate it from the zero.
-  return filter.rodEvidence().gives() || std::max(errors.zeroDeviation(), stated(filter).deviation) < kMost;
+  return filter.rodEvidence().showsElasticRod() || std::max(errors.zeroDeviation(), stated(filter).deviation) < kMost;
 }
 
 double ZeroWatch::toMove(const CrankFilter& filter, bool rod_explains) noexcept {
@@ -104,14 +105,15 @@ double ZeroWatch::toMove(const CrankFilter& filter, bool rod_explains) noexcept 
     const double readings = std::hypot(filter.timingNoise() * filter.state().speed, kOfStep * search_.stepAngle());
     const double least = found && found->error > 0.0 ? kSearchShowsAhead : kSearchShows;
     // Friction in the pins of an elastic rod misleads the search by up to 14 deg.
-    const bool right = filter.rodEvidence().gives() &&
-                       (rod_explains || agrees(filter) || (!errors.knows() && consistencyBesideRod(filter) < kAgrees));
+    const bool right =
+        filter.rodEvidence().showsElasticRod() &&
+        (rod_explains || agrees(filter) || (!errors.isKnown() && consistencyBesideRod(filter) < kAgrees));
     if (found && !(left_ && found->error < 0.0) && !right &&
-        (moved_ == 0.0 || errors.knows() || !(filter.consistency() < kAgrees)) &&
+        (moved_ == 0.0 || errors.isKnown() || !(filter.consistency() < kAgrees)) &&
         std::abs(found->error) > std::max(least, kDeviations * std::hypot(found->deviation, readings)))
       return move(found->error, kSearchDeviation);
   }
-  if (!errors.knows()) return 0.0;
+  if (!errors.isKnown()) return 0.0;
   const bool is_off = moved_ != 0.0 ? std::abs(shown) > std::max(kRefined, gate::kUsual * deviation)
                                     : shown > std::max(kFilterShows, gate::kRare * deviation);
   if (is_off) return move(shown, stated(filter).deviation);

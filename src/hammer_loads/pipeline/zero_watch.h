@@ -32,7 +32,7 @@ class ZeroWatch {
   /// Returns true if the zero in force differs from the parameter's.
   bool isOff() const noexcept { return std::abs(moved_) > kNone; }
   /// Returns true if the filter's estimate of the zero may be wrong, as it contradicts the readings or the search.
-  bool doubts(const CrankFilter& filter) const noexcept;
+  bool contradicts(const CrankFilter& filter) const noexcept;
   struct Stated {
     double error{};      ///< error of the parameter [rad of the crank's angle]
     double deviation{};  ///< standard [rad]
