@@ -83,7 +83,7 @@ class ControllerTask {
   static constexpr double kOften = 0.2, kStuck = 0.98;
 
   RunningMean<> step_{look_back::kReadings}, repeats_{look_back::kReadings};
-  Turns taken_{};        ///< their means
+  Turns taken_{};        ///< means of exp(2 pi i instant/period)
   double readings_{};    ///< in it
   double grid_{};        ///< period of the grid [s]; 0: none
   std::int64_t last_{};  ///< stamp [ns]

@@ -114,7 +114,7 @@ class ColumnTable {
 
  private:
   static constexpr int kPoints = 256;          ///< parts of half a turn
-  static constexpr int kBeyond = kPoints / 2;  ///< of them on the mirrored branch
+  static constexpr int kBeyond = kPoints / 2;  ///< points on the mirrored branch
   static constexpr double kWidth = 0.5 * kTwoPi / kPoints;
   static double fromBlow(CrankAngle angle) noexcept {
     return (angle.side == Side::kBeforeBlow ? -angle.offset : angle.offset) / kWidth;

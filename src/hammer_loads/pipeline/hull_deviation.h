@@ -15,7 +15,7 @@ class CrankFilter;
 
 /// Uncertainty of a wrench; NaN where the crank's covariance is not known.
 struct HullDeviation {
-  /// Of force_x [N], force_z [N] and torque_y [N m], in products of these.
+  /// Covariance of force_x [N], force_z [N] and torque_y [N m], in products of these.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   Eigen::Matrix3d common_covariance{
       Eigen::Matrix3d::Zero()};  ///< the part that is the same in all samples: of constants

@@ -85,13 +85,13 @@ struct SampleResult {
   Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
   HullWrench rod_ring;  ///< part of the deviation that the rod makes, whose spring the level leaves out
   UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< squares of forces that no level models, by source
-  bool rod_followed{};      ///< else rod_ring is a root mean square over a phase that is not known
-  HullDeviation deviation;  ///< at the sample, with what the hull's motion adds
-  double consistency{};     ///< CrankFilter::consistency()
-  bool inconsistent{};      ///< readings contradict the model, not yet so that samples are withheld
-  LinkMotion links;         ///< of a rigid rod
-  double rocker_beside{},
-      rocker_beside_speed{};  ///< what an elastic rod adds to the rocker's angle [rad] and speed [rad/s]
+  bool rod_followed{};           ///< else rod_ring is a root mean square over a phase that is not known
+  HullDeviation deviation;       ///< at the sample, with what the hull's motion adds
+  double consistency{};          ///< CrankFilter::consistency()
+  bool inconsistent{};           ///< readings contradict the model, not yet so that samples are withheld
+  LinkMotion links;              ///< as with a rigid rod
+  double rocker_beside{};        ///< angle of the rocker, less that with a rigid rod [rad]
+  double rocker_beside_speed{};  ///< its rate [rad/s]
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad
   HullWrench wrench;   ///< at the sample, of links and drive

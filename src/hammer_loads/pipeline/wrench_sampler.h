@@ -54,7 +54,7 @@ class WrenchSampler {
   OutputKind kind_;
   double rate_;           ///< [Hz]; 0: at each sample
   double longest_gap_;    ///< between samples [s]
-  double cos_near_blow_;  ///< of the transmission angle there
+  double cos_near_blow_;  ///< cosine of the transmission angle below which a wrench is near the blow
   double torque_part_;    ///< PipelineSettings::torque_std_part
   bool begun_{};
   StampNs origin_{};       ///< origin of the grid
