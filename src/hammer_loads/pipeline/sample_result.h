@@ -89,9 +89,9 @@ struct SampleResult {
   HullDeviation deviation;       ///< at the sample, with what the hull's motion adds
   double consistency{};          ///< CrankFilter::consistency()
   bool inconsistent{};           ///< readings contradict the model, not yet so that samples are withheld
-  LinkMotion links;              ///< as with a rigid rod
+  LinkMotion links;              ///< links as with a rigid rod
   double rocker_beside{};        ///< angle of the rocker, less that with a rigid rod [rad]
-  double rocker_beside_speed{};  ///< its rate [rad/s]
+  double rocker_beside_speed{};  ///< rate of that angle [rad/s]
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad
   HullWrench wrench;   ///< at the sample, of links and drive
