@@ -1,4 +1,4 @@
-// Samples and outputs that are closer to the blow than the crank's angle is known, by the simulated machine's truth.
+// Checks samples and outputs that are closer to the blow than the crank's angle is known, against the simulated truth.
 #include <gtest/gtest.h>
 
 #include "hammer_loads/pipeline/hull_deviation.h"
@@ -11,18 +11,18 @@
 namespace hammer_loads {
 namespace {
 
-/// From 4 s on, for what the readings say of the zero is known after six turns, until the machine stops.
+/// Counts from 4 s, when the readings of six revolutions have determined the zero, to 11 s, before the machine stops.
 struct Published {
   std::size_t samples{}, outputs{}, beside{};
   std::size_t wrong_withheld{};   ///< samples beside the blow whose likelier side is not the true one
-  std::size_t wrong_published{};  ///< outputs, of the other side than the truth at their stamp
+  std::size_t wrong_published{};  ///< outputs on the wrong side of the blow at their stamp
 };
 
 bool isAfter(double truth_angle) { return truth_angle < 0.5 * kTwoPi; }
 bool isNear(const CrankEstimate& crank) { return std::abs(crank.position.angle.offset) < 0.1; }
 bool isAfter(const CrankEstimate& crank) { return crank.position.angle.side == Side::kAfterBlow; }
 
-/// A machine at work at 1 kHz whose stamps are off by a standard deviation [s], and whose encoder's zero is off [rad].
+/// Plays a machine at work at 1 kHz. Its stamps have a standard deviation [s] and its encoder's zero an error [rad].
 Published published(double stamp_noise, OutputKind kind, double output_rate, std::uint64_t seed, double zero = 0.0) {
   const Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   simulation::MachineSettings machine = test::shippedMachine(shipped, 12.0, seed);
@@ -75,8 +75,8 @@ TEST(BesideBlow, NoSampleIsPublishedOnTheWrongSide) {
     EXPECT_EQ(published(1e-3, OutputKind::kInstantaneous, 0.0, seed).wrong_published, 0u) << "jitter of 1 ms " << seed;
 }
 
-/// An encoder's edge shows the side of its own zero. With the edge taken as exact, up to a blow in four has a sample on
-/// the wrong side.
+/// An encoder's edge shows the side relative to the encoder's own zero. If the edge were taken as exact, up to one blow
+/// in four would have a sample on the wrong side.
 TEST(BesideBlow, AnEdgeShowsTheSideOnlyAsFarAsTheZeroIsKnown) {
   for (const double degrees : {-0.23, -0.06, 0.1, 0.23}) {
     Published all;
@@ -91,7 +91,7 @@ TEST(BesideBlow, AnEdgeShowsTheSideOnlyAsFarAsTheZeroIsKnown) {
   }
 }
 
-/// The dead centre is not where the zero has it, and the readings say so: a blow in four has a sample between the two.
+/// The readings show that the dead centre is not at the zero. One blow in four has a sample between the two.
 TEST(BesideBlow, NoSampleIsPublishedOnTheWrongSideOfAZeroThatIsSeenToBeWrong) {
   for (const double degrees : {-0.6, 0.4, 0.6}) {
     const Published p = published(0.0, OutputKind::kInstantaneous, 0.0, 421, degrees * kTwoPi / 360.0);
@@ -115,8 +115,8 @@ TEST(BesideBlow, MeansGoOn) {
   EXPECT_EQ(p.outputs, p.samples);
 }
 
-/// Some ms pass until the readings show that a blow was none; until then its force is published, and said to be as
-/// doubtful as blank blows are frequent.
+/// The readings need some milliseconds to show a blank firing. Until then the force of a blow is published, with a
+/// deviation that follows from the frequency of blank firings.
 TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsFlagged) {
   const Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   simulation::MachineSettings machine = test::shippedMachine(shipped, 30.0, 431);

@@ -1,5 +1,5 @@
-// What the boom carries while a sensor gives damaged readings or others than said: close to the truth or with a
-// deviation that says how far it may be.
+// Boom loads while a sensor gives damaged readings or differs from its description. They are close to the truth, or
+// their deviation states the possible error.
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -26,7 +26,7 @@ class DamagedReading : public testing::TestWithParam<Damage> {
     static const Session session = simulation::recordSession(disturbedMachine());
     return session;
   }
-  /// So many damaged readings in a row at a time, judged from there on.
+  /// Returns the errors from kDisturbed to 5.6 s, with consecutive damaged readings from a time [s] on.
   BoomErrors with(int readings, double time) const {
     Session damaged = whole();
     for (int i = 0; i < readings; ++i) GetParam().to(damaged, time, i);
@@ -62,14 +62,14 @@ INSTANTIATE_TEST_SUITE_P(
 struct Mistake {
   const char* name;
   const char* warning;
-  const char* says;  ///< what was found
+  const char* says;  ///< text that the warning must contain
   std::function<void(Session&)> make;
 };
 
 void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 
-/// A sensor that is connected, mounted or scaled otherwise than said: named, and not used. On a hull that hangs free
-/// and on rock.
+/// A sensor whose connection, mounting or scale differs from its description is named and not used. The hull hangs free
+/// or stands on rock.
 class Mistaken : public testing::TestWithParam<Mistake> {};
 
 const Session& sessionOn(bool rock) {
@@ -82,14 +82,14 @@ const Session& sessionOn(bool rock) {
   return rock ? bears : free;
 }
 
-/// Empty: no such warning.
+/// Returns the text of a warning; empty if there is none.
 std::string textOf(const Pipeline& pipeline, const std::string& key) {
   for (const Warning& w : warningsOf(pipeline))
     if (w.key == key) return w.text;
   return "";
 }
 
-/// To the end; a warning, and whether the sensor is used.
+/// Result of a whole session: the sensor's warning, and whether the sensor is used at the end.
 struct Played {
   std::string warning;
   bool used;
@@ -125,15 +125,15 @@ TEST_P(Mistaken, SensorsAreNamedAndNotUsed) {
   }
 }
 
-/// Without any sensor, which no mistake changes.
+/// Returns the error of the torques without any sensor, which no mistake affects.
 double worstTorqueWithout(bool rock) {
   static const double worst[] = {errorsOf(sessionOn(false), kBoomIdentified, {}, 3.5, 5.0).worstTorque(),
                                  errorsOf(sessionOn(true), kBoomIdentified, {}, 3.5, 5.0).worstTorque()};
   return worst[rock ? 1 : 0];
 }
 
-/// Until they were recognised they had a say in frequencies, damping and motion: none of that stays. A hull on rock is
-/// far off without pressures, and says so.
+/// Mistaken sensors affect frequencies, damping and motion until they are recognised; no such effect remains. On rock,
+/// large errors without pressures are withheld or covered by their deviations.
 TEST_P(Mistaken, SensorsLeaveNothingBehind) {
   for (const bool rock : {false, true}) {
     Session session = sessionOn(rock);
@@ -148,8 +148,8 @@ TEST_P(Mistaken, SensorsLeaveNothingBehind) {
   }
 }
 
-/// A bus that takes 10 ms, more than can be allowed for: beside an IMU they are not used; alone they show that the
-/// loads are not known, as an IMU alone does on rock.
+/// A bus delays the pressures by 10 ms, more than can be corrected. Beside an IMU they are not used. Without an IMU
+/// they show that the loads are unknown, as an IMU alone does on rock.
 TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
   for (const bool rock : {false, true}) {
     for (const bool imu : {false, true}) {
@@ -161,7 +161,7 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
       for (simulation::PressureReading& r : session.pressures) r.stamp += 10'000'000;
       const BoomErrors without = errorsOf(sessionOn(rock), keys, {imu, false}, 3.5, 5.0);
       const BoomErrors late = errorsOf(session, keys, {imu, true}, 3.5, 5.0);
-      // On rock the oil is not known yet in these 5 s where no IMU helps.
+      // On rock and without an IMU, the oil is not known yet within these 5 s.
       EXPECT_EQ(late.warnedOf("pressure stamps"), imu) << rock;
       if (!imu && !rock) {
         EXPECT_TRUE(late.warnedOf("pressure fit")) << "how late does not show";
@@ -175,14 +175,14 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
   }
 }
 
-/// A unit with a clock of its own. Without allowing for it 1 ms is 7 % of the torques, 2 ms are 15 %.
+/// The IMU has its own clock. Uncorrected, 1 ms causes an error of 7 % of the torques, and 2 ms one of 15 %.
 TEST(MistakenSensors, ImuStampsThatAreOffAreNamedAndAllowedFor) {
   for (const double late : {0.0, 2e-3, -2e-3}) {
     for (const bool rock : {false, true}) {
       Session session = sessionOn(rock);
       for (simulation::HullImuReading& r : session.imu) r.stamp += static_cast<std::int64_t>(1e9 * late);
       for (const bool pressures : {false, true}) {
-        if (rock && !pressures) continue;  // the rock's force is not known at all
+        if (rock && !pressures) continue;  // the rock's force is unknown
         const BoomErrors e = errorsOf(session, kHullByImu, {true, pressures}, 3.5, 5.0);
         EXPECT_GT(e.covered(), 0.85) << late << rock << pressures;
         EXPECT_EQ(e.warnedOf("imu stamps"), late != 0.0) << late << rock << pressures;
@@ -193,14 +193,14 @@ TEST(MistakenSensors, ImuStampsThatAreOffAreNamedAndAllowedFor) {
   }
 }
 
-/// A bus that takes 1 or 2 ms. Without allowing for it 1 ms is 6 % of the torques, on rock 9 to 17 %.
+/// A bus delays the pressures by 1 or 2 ms. Uncorrected, 1 ms causes an error of 6 % of the torques, on rock 9 to 17 %.
 TEST(MistakenSensors, PressuresThatAreLateAreNamedAndAllowedFor) {
   for (const double late : {1e-3, 2e-3}) {
     for (const bool rock : {false, true}) {
       Session session = sessionOn(rock);
       for (simulation::PressureReading& r : session.pressures) r.stamp += static_cast<std::int64_t>(1e9 * late);
       for (const bool imu : {false, true}) {
-        if (rock && !imu) continue;  // whatever force is lacking may be the rock's
+        if (rock && !imu) continue;  // a missing force may come from the rock
         const BoomErrors e = errorsOf(session, imu ? kHullByImu : kBoomIdentified, {imu, true}, 3.5, 5.0);
         EXPECT_LT(e.worstTorque(), imu ? 0.03 : 0.02 + 25.0 * late) << late << rock << imu;
         EXPECT_GT(e.covered(), 0.85) << late << rock << imu;
@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
                                 if (r.stamp > held.stamp) r.specific_force = held.specific_force, r.rate = held.rate;
                             }}));
 
-/// What is lasting and no rock makes is an error of the sensors, or of masses and lengths.
+/// A lasting difference that rock cannot cause is an error of the sensors, or of masses and lengths.
 TEST(PressuresThatAreOff, StayWithinTheDeviations) {
   const std::vector<std::function<double(double)>> wrong{[](double p) { return 1.02 * p; },
                                                          [](double p) { return p + 1e5; }};

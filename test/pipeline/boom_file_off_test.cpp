@@ -1,5 +1,5 @@
-// Boom files whose bores, closed lengths, hoses and IMU's place are not the machine's: no readings show them apart from
-// oil and sensors, and deviations of these hold them.
+// Boom files with wrong bores, closed lengths, hose volumes and IMU position. No reading distinguishes these errors
+// from those of oil and sensors, so that the deviations of oil and sensors must cover them.
 #include <random>
 
 #include "hammer_loads/boom/boom.h"
@@ -11,8 +11,8 @@ namespace {
 
 constexpr char kBoth[] = "boom_stiffness: identified\nhull_motion: imu\n";
 
-/// A file as from a drawing and a tape measure: 0.3 % of a bore, 1 cm of a closed length, a quarter of a hose, 2 cm of
-/// the IMU's place.
+/// Returns keys as from a drawing and a tape measure. Their standard deviations are 0.3 % of a bore, 1 cm of a closed
+/// length, a quarter of a hose volume and 2 cm of the IMU's position.
 std::string drawnFile(std::mt19937& random) {
   std::normal_distribution<> off;
   const Settings shipped = test::settingsWith(kBoth);
@@ -20,7 +20,7 @@ std::string drawnFile(std::mt19937& random) {
   for (const CylinderParameters& c : shipped.boom->parameters().cylinders) {
     const char* name = c.name.c_str();
     keys += format("%s_bore_m: %.6f\n", name, c.bore * (1.0 + 0.003 * off(random)));
-    // A rod that is longer by what the tube is shorter reaches the same poses.
+    // The stroke grows by what the closed length loses, so that the same poses are reached.
     const double shorter = 0.01 * std::abs(off(random));
     keys += format("%s_closed_length_m: %.4f\n%s_stroke_m: %.4f\n", name, c.closed_length - shorter, name,
                    c.stroke + shorter);
@@ -50,7 +50,7 @@ TEST(BoomFileThatIsOff, IsWithinTheDeviationsOfOilAndSensors) {
   EXPECT_GT(worst, 1.3 * as_given) << "what is off is seen at all";
 }
 
-// Boom and arm that bend in their middles, seen by an IMU on the hull alone.
+// Boom and arm bend in their middles, and only an IMU on the hull observes it.
 
 using accuracy::BoomErrors;
 
@@ -61,8 +61,8 @@ BoomErrors byImuAlone(double oil, const test::Pose& pose, double bending_frequen
                         "boom_stiffness: identified\nlevel: rocker\nhull_motion: imu\n", {true, false});
 }
 
-/// Each link's own mass moves less than its joint says: up to 14 % of a torque that is a small difference of large
-/// ones.
+/// The mass of a bending link moves less than its joint indicates. The error is up to 14 % of a torque that is a small
+/// difference of large ones.
 TEST(BendingLinks, AreInTheDeviationsOfAnImuAlone) {
   double worst = 0.0;
   const std::array<test::Pose, 2> poses{{{-0.45, 1.00, -0.50}, {-0.70, 1.55, -0.75}}};

@@ -56,8 +56,8 @@ class Follower {
 
 constexpr HullWrench kLoad{-900.0, 7000.0, 300.0};
 
-/// A load that is no number, in one step: the vibration begins anew, its loads are withheld until what was wrong would
-/// have died out, and are then those of a follower that knew nothing of it.
+/// One step with a load of NaN resets the vibration. Its loads are withheld until the disturbance would have decayed,
+/// and then equal those of an undisturbed follower.
 TEST(BoomFollower, ResetsAVibrationThatRunsAwayAndWithholdsItForAWhile) {
   Follower struck(BoomModel::kCompliant), other(BoomModel::kCompliant);
   for (int i = 0; i < 50; ++i) ASSERT_FALSE(struck.sample(kLoad).fault) << "the channel";
@@ -85,12 +85,12 @@ TEST(BoomFollower, ALoadThatStaysIsCarriedAsOnARigidBoom) {
   for (int i = 0; i < 20000; ++i) compliant.sample(kLoad);
   const BoomState& state = compliant.follower.state();
   EXPECT_TRUE(state.choice.compliant);
-  // exp(-zeta omega t) of what began: below 1e-7 after 20 s at 0.05 and some 3 Hz.
+  // The initial vibration decays by exp(-zeta omega t): below 1e-7 after 20 s at zeta = 0.05 and some 3 Hz.
   EXPECT_TRUE(state.loads.total.isApprox(rigid.follower.state().loads.total, 1e-7));
   EXPECT_TRUE(state.tip.velocity.isZero(1e-6));
   const double deflection = state.tip.displacement.z();
   EXPECT_GT(deflection, 0.0);
-  // Along z alone the hull yields as its reduced stiffness says; the x force and moment are a tenth of it here.
+  // A force along z alone deflects the hull by its reduced stiffness; force x and moment are a tenth of it here.
   EXPECT_NEAR(deflection, kLoad.force_z / state.reduced.stiffness, 0.5 * deflection);
 }
 
@@ -108,7 +108,7 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanHoldDownForceAtTheTool) {
   EXPECT_EQ(once.least, once.cylinder[0]);
   EXPECT_TRUE(once.least >= 1.0);
 
-  // The same force at the tool's end, moments about the rear edge by hand: all masses against the force.
+  // Check by hand with moments about the rear edge: the force at the tool's end against the weight of all masses.
   const Boom& boom = rigid.follower.boom();
   const hammer_loads::Pose& X_BH = boom.pose().tip();
   const Eigen::Vector3d tool = X_BH * Eigen::Vector3d(-kStrikingDistance, 0.0, -0.75);
@@ -152,7 +152,7 @@ TEST(BoomFollower, AutoIsCompliantUntilALongPulseShowsThatRigidSuffices) {
   EXPECT_NEAR(choice.pulse_length, 100.0 * slowest, 1e-9);
   EXPECT_NEAR(choice.lowest_frequency, 1.0 / slowest, 1e-9);
 
-  // What the hammer does: 18 ms.
+  // A pulse of the hammer lasts 18 ms.
   automatic.follower.turnEnded(pulseOf(0.018), 300.0);
   choice = automatic.sample(kLoad).choice;
   EXPECT_TRUE(choice.compliant);
@@ -163,7 +163,7 @@ TEST(BoomFollower, AutoIsCompliantUntilALongPulseShowsThatRigidSuffices) {
   const JointVector went_on = automatic.follower.state().loads.vibration,
                     went = always.follower.state().loads.vibration;
   EXPECT_LT((went_on - went).norm(), 1e-4 * went.norm()) << "but for levers that the vibration itself changes";
-  // A turn without a pulse tells nothing new.
+  // A revolution without a pulse does not change the choice.
   automatic.follower.turnEnded(std::nullopt, 300.0);
   EXPECT_TRUE(automatic.sample(kLoad).choice.compliant);
 }
@@ -206,7 +206,7 @@ TEST(BoomFollower, TakesTheBoomAsRigidAtAZeroMomentArm) {
   EXPECT_EQ(state.loads.total, rigid.follower.state().loads.total);
 }
 
-/// A force within the error of the boom's weight is no contact with rock; a multiple of that error is.
+/// A force within the error of the boom's weight is not taken as contact with rock; twice that error is.
 TEST(MeasuredRock, ShowsAboveTheErrorOfTheBoomsWeight) {
   const Boom shipped = shippedBoom();
   const double least = 0.05 * kGravity * massFrom(shipped.chain(), shipped.pose(), 1).mass;

@@ -1,4 +1,4 @@
-// What a boom's vibration says of its oil at each turn's end, against the machine's own; from one day to another.
+// Oil stiffness shown by a boom's vibration at the end of each revolution, against the true one and from day to day.
 #include "hammer_loads/pipeline/boom_health.h"
 
 #include "pipeline/on_boom_session.h"
@@ -17,7 +17,7 @@ simulation::MachineSettings onSite(double oil, std::array<double, 3> of_cylinder
   return m;
 }
 
-/// Of the turns from 2 s on.
+/// Returns the boom's health at the end of each revolution from 2 s on.
 std::vector<BoomHealth> healthOf(const simulation::MachineSettings& machine, const char* keys = kOilFound) {
   const simulation::Session session = simulation::recordSession(machine);
   const Settings settings = test::withExactHammer(test::settingsWith(keys));
@@ -40,7 +40,7 @@ TEST(BoomHealth, FindsEachCylindersOilAndTheModes) {
       ASSERT_EQ(turn.count, 3);
       EXPECT_TRUE(turn.oil_explains);
       for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR(turn.cylinder[i].joint_angle, kSite[i], 0.1);  // the operator moves it
+        EXPECT_NEAR(turn.cylinder[i].joint_angle, kSite[i], 0.1);  // the operator moves the joint
         EXPECT_NEAR(turn.cylinder[i].stiffness, common * oil[i], 0.06 * common * oil[i]) << i;
         EXPECT_LT(turn.cylinder[i].deviation, 0.06);
         EXPECT_GT(turn.mode[i].deviation, 0.0);
@@ -52,7 +52,7 @@ TEST(BoomHealth, FindsEachCylindersOilAndTheModes) {
   }
 }
 
-/// Another day, another pose, other noise: what has changed is seen, what has not is as before.
+/// On another day, with another pose and other noise, a change is recognised and all else keeps its value.
 TEST(BoomHealth, ShowsWhatHasChangedAndNothingElse) {
   const std::array<double, 3> moved{-0.55, 1.3, -0.85};
   const BoomHealth before = healthOf(onSite(1.0, {1.0, 1.0, 1.0}, 41)).back();
@@ -74,7 +74,7 @@ TEST(BoomHealth, IsNotKnownOfABoomAsItsFileHasIt) {
   EXPECT_TRUE(healthOf(onSite(1.0, {1.0, 1.0, 1.0}, 51), "boom: compliant\nhull_motion: imu\n").empty());
 }
 
-/// Dampers that nobody gave: four times the damping of the boom file.
+/// The machine has additional dampers, with four times the damping of the boom file.
 TEST(BoomHealth, NamesWhereSomethingElseThanOilDamps) {
   simulation::MachineSettings m = onSite(1.0, {1.0, 1.0, 1.0}, 61);
   m.on_boom.damping = 0.2;

@@ -1,5 +1,5 @@
-// What the boom carries while sensors or crank are silent, and after it: close to the truth or with a deviation that
-// says how far it may be.
+// Boom loads while sensors or crank are silent, and afterwards. They are close to the truth, or their deviation states
+// the possible error.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace hammer_loads::test {
 namespace {
 
-/// The hammer went on all the while.
+/// Records a session without crank readings in an interval [s], during which the hammer continues to work.
 Session withGap(double from, double to) {
   simulation::MachineSettings m = disturbedMachine();
   m.crank.drop_outs = {{from, to}};
@@ -40,7 +40,7 @@ TEST(GapOfTheCrank, SensorsFindTheVibrationAtOnce) {
   }
 }
 
-/// Pressures that stop, for a second: the torques go on from the last reading, which says less and less of them.
+/// The pressures stop for a second. The torques continue from the last reading, which becomes less and less valid.
 TEST(PressuresThatStop, AreAnErrorThatGrowsUntilTheyAreBack) {
   for (const bool rock : {false, true}) {
     Session session = simulation::recordSession(disturbedMachine(rock));
@@ -51,7 +51,7 @@ TEST(PressuresThatStop, AreAnErrorThatGrowsUntilTheyAreBack) {
     EXPECT_GT(within(4.0, kDisturbed).covered(), 0.85) << rock;
     const BoomErrors overdue = within(kDisturbed, 5.2), back = within(6.0, 6.2);
     EXPECT_GT(overdue.worstTorque(), 0.1) << rock << ": what there is to say";
-    // On rock, through the bucket linkage, the error outruns its deviation: a known limit.
+    // A known limit: on rock, through the bucket linkage, the error grows faster than its deviation.
     EXPECT_GT(overdue.covered(), rock ? 0.6 : 0.85) << rock;
     EXPECT_GT(overdue.sectionsCovered(), rock ? 0.6 : 0.85) << rock;
     EXPECT_GT(back.covered(), 0.85) << rock;
@@ -59,7 +59,7 @@ TEST(PressuresThatStop, AreAnErrorThatGrowsUntilTheyAreBack) {
   }
 }
 
-/// What the IMU has shown of frequencies and damping goes on without it, and moves the hull under the hammer.
+/// Frequencies and damping identified by the IMU remain in use without it, and move the hull under the hammer.
 TEST(ImuThatStops, LeavesTheHullsMotionToTheModel) {
   Session session = simulation::recordSession(disturbedMachine());
   silence(session.imu, kDisturbed, 6.0);
@@ -73,7 +73,7 @@ TEST(ImuThatStops, LeavesTheHullsMotionToTheModel) {
   EXPECT_GT(e.covered(), 0.85);
 }
 
-/// Of a boom that is no model: what it showed last is soon no longer true.
+/// Without a model of the boom, the last motion that the IMU showed soon becomes invalid.
 TEST(ImuThatStops, IsForgottenWithoutAJump) {
   simulation::MachineSettings m = accuracy::machineOnBoom(7.0);
   m.drive.start_time = 0.1;
@@ -89,7 +89,7 @@ TEST(ImuThatStops, IsForgottenWithoutAJump) {
   EXPECT_EQ(e.refused, 0U);
 }
 
-/// Few readings say how good a measured torque is as well as many.
+/// Few readings determine the deviation of a measured torque as well as many.
 TEST(PressuresThatBegin, HaveATrueDeviationAtOnce) {
   simulation::MachineSettings m = disturbedMachine();
   m.on_boom.pressures.rate = 100.0;
@@ -97,7 +97,7 @@ TEST(PressuresThatBegin, HaveATrueDeviationAtOnce) {
   EXPECT_GT(errorsOf(session, kBoomIdentified, {false, true}, 0.1, 0.6).covered(), 0.9);
 }
 
-/// What was not followed says nothing of how good a measured torque is.
+/// An interval without crank readings gives no information on the deviation of a measured torque.
 TEST(GapOfTheCrank, LeavesTheDeviationOfMeasuredTorquesAsItWas) {
   const Session session = withGap(kDisturbed, kGoesOn);
   const Settings settings = accuracy::shippedBoom(kBoomIdentified);

@@ -1,5 +1,5 @@
-// Shares of a budget against Monte Carlo (JCGM 101): one recording, worked by many hammers drawn from the file's
-// deviations. What each constant does to a figure is the slope of the figures over its draws.
+// Checks the shares of a budget by Monte Carlo (JCGM 101). Many hammers, drawn from the file's standard deviations,
+// play one recording. The effect of a constant on a figure is the slope of the figure over the draws of that constant.
 #include "hammer_loads/pipeline/budget.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ constexpr auto kConstants = static_cast<Eigen::Index>(kHammerConstants.size());
 
 using Draw = Eigen::Matrix<double, 1, kConstants>;
 
-/// Of standard deviations; half a mass is 2 of them.
+/// Returns draws in standard deviations. The limit of -1.9 keeps a mass positive if its deviation is half of it.
 Draw drawn(simulation::NormalNoise& noise) {
   Draw draw;
   for (Eigen::Index i = 0; i < draw.size(); ++i) draw[i] = std::clamp(noise(), -1.9, 3.0);
@@ -46,10 +46,10 @@ HammerParameters off(HammerParameters p, const Draw& draw) {
   return p;
 }
 
-constexpr double kZeroIsKnown = 3.0;  // [s]; before, its prior is part of the deviations, and no hammer's
+constexpr double kZeroIsKnown = 3.0;  // [s]; before, the zero's prior adds to the deviations, but to no drawn hammer
 constexpr const char* kRange = "equivalent range of Fz";
 
-/// What one hammer makes of the recording.
+/// Results of one hammer on the recording.
 struct Work {
   std::vector<BudgetFigure> figures;
   std::vector<double> force_z;  ///< NaN where nothing is published
@@ -72,7 +72,7 @@ Work work(const Settings& settings, const Mechanism& mechanism, const simulation
   return work;
 }
 
-/// Relative, as the life of the hull counts it.
+/// Returns the relative error of the range, as counted for the life of the hull.
 double rangeError(const Work& drawn, const Work& right) {
   accuracy::LifeError error;
   for (std::size_t i = 0; i < right.force_z.size(); ++i)
@@ -81,8 +81,8 @@ double rangeError(const Work& drawn, const Work& right) {
   return error.figure().error;
 }
 
-/// What the constants do to each figure, one standard deviation each: the linear part of a fit to its values. Squares
-/// and the product of the rod's mass and centre, both known to a half, are fitted beside it.
+/// Returns the effect of one standard deviation of each constant on each figure, as the linear part of a fit. Squares
+/// are fitted as well, and the product of the rod's mass and centre, whose deviations are half of their values.
 std::map<std::string, Eigen::VectorXd> slopesOfDraws(const Settings& settings, const simulation::Session& session,
                                                      const Work& right) {
   const HammerParameters drawing = settings.mechanism.parameters();
@@ -119,7 +119,7 @@ TEST(BudgetMonteCarlo, SharesAreThoseOfDrawnHammers) {
   Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   settings.pipeline.level = Level::kLinkage;
   HammerParameters parameters = settings.mechanism.parameters();
-  parameters.rod_std = {};  // the recorded rod is rigid, and draws say nothing of another
+  parameters.rod_std = {};  // the recorded rod is rigid, and no draw has an elastic one
   settings.mechanism = test::mechanismOf(parameters);
   simulation::MachineSettings machine = test::shippedMachine(settings, 6.0, 5);
   machine.level = Level::kLinkage;
@@ -131,7 +131,7 @@ TEST(BudgetMonteCarlo, SharesAreThoseOfDrawnHammers) {
     const auto figure = std::find_if(right.figures.begin(), right.figures.end(),
                                      [name = quantity](const BudgetFigure& f) { return f.quantity == name; });
     ASSERT_NE(figure, right.figures.end());
-    // A restitution's few thousandths are what is left of two speeds.
+    // The deviation of a restitution, some thousandths, is a small difference of two speeds.
     EXPECT_NEAR(figure->deviation, of_draws.norm(), (quantity == "blow/restitution" ? 0.25 : 0.05) * of_draws.norm())
         << quantity;
     if (quantity == "blow/restitution") continue;
@@ -147,7 +147,7 @@ TEST(BudgetMonteCarlo, SharesAreThoseOfDrawnHammers) {
   EXPECT_GE(compared, 15);
 }
 
-/// Of a run of the drawing's own machine.
+/// Returns the figures of a run with a machine of the nominal parameters.
 std::map<std::string, BudgetFigure> figuresOf(const Settings& settings) {
   simulation::MachineSettings machine = test::shippedMachine(settings, 10.0, 77);
   machine.level = Level::kLinkage;
@@ -168,7 +168,7 @@ double variance(const BudgetFigure& figure, const std::string& source) {
   return 0.0;
 }
 
-/// The shipped file says nothing of the rod: what a ring may do to blow and pulse is its share, whatever the readings.
+/// The shipped file gives no rod stiffness. A possible vibration adds its share to blow and pulse with any readings.
 TEST(Budget, ARodThatNoFileGivesIsNoReading) {
   Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   shipped.pipeline.level = Level::kLinkage;
@@ -186,8 +186,8 @@ TEST(Budget, ARodThatNoFileGivesIsNoReading) {
   }
 }
 
-/// Readings of 1024 counts that jitter do not show whether the rod rings: that is most of the range's own deviation, in
-/// the budget as in the ledger.
+/// Jittering readings of 1024 counts do not show whether the rod vibrates. This uncertainty is most of the range's own
+/// deviation, in the budget as in the ledger.
 TEST(Budget, RangesReachAsFarAsInTheLedger) {
   Settings shipped = test::heldHull(*load(configDirectory(), {}).value);
   simulation::MachineSettings machine = test::shippedMachine(shipped, 12.0, 78);

@@ -1,4 +1,4 @@
-/// The papers' own case: a crank at constant speed, whatever it needs. Truth: the wrench of the links alone.
+/// The case of the papers: constant crank speed, whatever torque it needs. The truth is the wrench of the links alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct SteadyPlayed {
   std::size_t samples{}, published{};
   Eigen::Vector3d published_peak{Eigen::Vector3d::Zero()}, true_peak{published_peak};
   double pulse{};                                ///< largest amplitude [N]
-  double least_energy{1e9}, most_energy_part{};  ///< [J]; of what the rocker had [-]
+  double least_energy{1e9}, most_energy_part{};  ///< [J]; part of the rocker's kinetic energy [-]
   double least_restitution{0.0}, most_restitution{};
 };
 

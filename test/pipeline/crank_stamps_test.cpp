@@ -22,7 +22,7 @@ simulation::MachineSettings eightSeconds() {
   return machine;
 }
 
-/// With crank and rod as the settings have them.
+/// Returns the eight-second machine with crank and rod as given by the settings.
 simulation::MachineSettings eightSecondsOf(const Settings& settings) {
   simulation::MachineSettings machine = eightSeconds();
   machine.hammer = settings.mechanism.parameters();
@@ -34,17 +34,17 @@ double secondsOf(StampNs stamp, const simulation::MachineSettings& machine) {
   return seconds(stamp - machine.start_stamp);
 }
 
-/// None: there is none within 30 ms.
+/// Returns the blow within 30 ms of a time [s]; null if there is none.
 const simulation::BlowTruth* blowNear(double time, const simulation::Session& session) {
   const auto near = [time](const auto& each) { return std::abs(each.time - time) < 0.03; };
   const auto found = std::find_if(session.blows.begin(), session.blows.end(), near);
   return found == session.blows.end() ? nullptr : &*found;
 }
 
-/// Of the samples that were taken from an instant on.
+/// Results for the samples that were taken from an instant on.
 struct Instants {
   std::size_t samples{}, accepted{};
-  std::vector<double> errors;  ///< of the accepted samples' stamps [s]
+  std::vector<double> errors;  ///< absolute errors of the accepted samples' stamps [s]
   std::vector<TurnEnd> turns;
   bool steady{};
   double worst() const { return errors.empty() ? 0.0 : *std::max_element(errors.begin(), errors.end()); }
@@ -68,8 +68,8 @@ Instants instantsOf(const simulation::Session& session, const simulation::Machin
   return found;
 }
 
-/// Messages of bursts or of whole milliseconds, some of them twice, without speeds: a reading that a crank that turns
-/// cannot give again is no new one, and one at rest teaches no line of stamps.
+/// Messages come in bursts or on whole milliseconds, some twice, without speeds. A reading that a turning crank cannot
+/// repeat is not a new one. Readings at rest do not contribute to the line through the stamps.
 TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
   for (const bool bursts : {true, false}) {
     simulation::MachineSettings machine = eightSeconds();
@@ -85,11 +85,11 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
   }
 }
 
-/// Which sample of a burst was lost its stamp does not say: where the readings show that it was a later one, the sample
-/// counted too late goes back. Energies were 2 times the true one, forces off by their peak.
+/// The stamp of a burst does not show which of its samples was lost. If the readings show a later loss, the sample that
+/// was counted too late moves back. Before, energies were twice the true ones, and forces were wrong by their peak.
 TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
   const Settings settings = test::settingsWith("{}");
-  // From the fourth on one is lost within the first bursts: all instants stayed wrong.
+  // From the fourth case on, a sample is lost within the first bursts. All later instants used to stay wrong.
   for (const auto& [rate, burst, seed] : {std::tuple{200.0, 3, 1u},
                                           {500.0, 3, 1u},
                                           {1000.0, 3, 1u},
@@ -108,7 +108,7 @@ TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
     const Instants found = instantsOf(session, machine, settings);
     const auto late = std::count_if(found.errors.begin(), found.errors.end(),
                                     [period = 1.0 / rate](double e) { return e > 0.5 * period; });
-    EXPECT_LT(static_cast<double>(late), 0.002 * static_cast<double>(found.accepted));  // until the next shows it
+    EXPECT_LT(static_cast<double>(late), 0.002 * static_cast<double>(found.accepted));  // wrong until the next sample
     std::size_t blows = 0;
     for (const TurnEnd& end : found.turns) {
       const simulation::BlowTruth* truth = blowNear(secondsOf(end.stamp, machine), session);
@@ -120,7 +120,7 @@ TEST(CrankLosses, AreWhereTheReadingsHaveThemWithinBursts) {
   }
 }
 
-/// Single late stamps and single lost samples look alike until the next stamp; the angle tells them apart at once.
+/// Single late stamps and single lost samples look alike until the next stamp; the angle distinguishes them at once.
 TEST(CrankLosses, DifferFromLateStamps) {
   const Settings settings = test::settingsWith("crank_stamps: steady");
   for (const double rate : {200.0, 1000.0}) {
@@ -139,8 +139,8 @@ TEST(CrankLosses, DifferFromLateStamps) {
   }
 }
 
-/// Samples that are wrong by more than four of their deviations and by 5 % of the peak, and the largest deviation over
-/// it.
+/// Returns the number of samples whose error exceeds four of their standard deviations and 5 % of the peak, and the
+/// largest deviation over the peak.
 std::pair<int, double> falseSamples(const simulation::MachineSettings& machine, const Settings& settings, double from) {
   const simulation::Session session = simulation::recordSession(machine);
   const accuracy::SessionRun run =
@@ -188,7 +188,7 @@ TEST(CrankJitter, PublishesNoForceWhoseDeviationExceedsEveryForce) {
     machine.crank.speed = false;
     machine.crank.stamp_noise = 1e-3;
     machine.crank.driver = {0.0, 0.01, 1.9e-3};
-    EXPECT_LT(falseSamples(machine, settings, 8.0).second, 5.0) << seed;  // that at constant speed is 4 times it
+    EXPECT_LT(falseSamples(machine, settings, 8.0).second, 5.0) << seed;  // the peak at constant speed is 4 times it
   }
 }
 
@@ -237,8 +237,8 @@ TEST(CrankTask, IsNamedAndCovered) {
   }
 }
 
-/// One stamp in a hundred is late by some milliseconds, in order: the angle shows that its sample is not, and from a
-/// few of them on all samples get the instants of equal intervals.
+/// One stamp in a hundred is late by some milliseconds, in order. The angle shows that its sample is not late. After a
+/// few such stamps, all samples get the instants of equal intervals.
 TEST(CrankLateStamps, AreRefittedThoughInOrder) {
   simulation::MachineSettings machine = eightSeconds();
   machine.crank.rate = 200.0;
@@ -248,8 +248,8 @@ TEST(CrankLateStamps, AreRefittedThoughInOrder) {
   EXPECT_LT(found.worst(), 5e-4) << " [s]";
 }
 
-/// Where samples are taken at equal intervals a reading ahead shows lost ones, but a rod that rings moves a crank by as
-/// much: instants were half a second off, and blows found where none was.
+/// At equal intervals, a reading ahead of its prediction shows lost samples. A vibrating rod moves a crank by as much.
+/// Instants were wrong by half a second, and blows were found where there was none.
 TEST(CrankOnARodThatGives, LosesNoSamplesToItsVibration) {
   const Settings settings = test::settingsWith("{}");
   simulation::MachineSettings machine = eightSecondsOf(settings);

@@ -1,4 +1,4 @@
-/// What is withheld and named of cranks that are not what the parameters say, on simulated machines and by hand.
+/// Cranks that differ from their parameters, on simulated machines: which loads are withheld and which warnings given.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -22,7 +22,7 @@ simulation::Session workingSession(double rate = 1000.0) {
   return simulation::recordSession(machine);
 }
 
-constexpr double kRecognised = 5.0;  ///< [s]: three of work, in which what is wrong must have shown
+constexpr double kRecognised = 5.0;  ///< [s]; errors must have shown within three seconds of work
 
 struct Played {
   std::size_t wrenches{}, at_rest{}, blows{}, late_blows{}, samples{};
@@ -30,7 +30,7 @@ struct Played {
   SampleCounts counts;
 };
 
-/// change: of each reading. At rest: published before the drive starts, where only weight acts.
+/// change: applied to each reading. At rest: published before the drive starts, where only weight acts.
 Played play(const simulation::Session& session, const std::string& parameters,
             const std::function<void(CrankReading&)>& change) {
   simulation::Session changed = session;
@@ -67,8 +67,8 @@ TEST(CrankTrust, PublishesASoundCrank) {
   }
 }
 
-/// Nothing that moves is published but the quarter of a second in which it is recognised, half a turn from rest; no
-/// blow at all.
+/// Loads of the moving crank are published only until it is recognised: for a quarter of a second, half a revolution
+/// from rest. No blow is published.
 void expectWithheld(const Played& played, const std::string& key) {
   EXPECT_LT(played.wrenches - played.at_rest, 250U) << key;
   EXPECT_EQ(played.blows, 0U) << key;
@@ -123,7 +123,7 @@ TEST(CrankTrust, AnotherUnitIsWithheldAndNamed) {
   }
 }
 
-/// Readings of an encoder that is wrapped at one revolution, or counts on.
+/// The readings of the encoder wrap at one revolution, or continue to count.
 TEST(CrankTrust, NamesAnAngleInTurnsOrCountsWhateverTheSpeeds) {
   const simulation::Session session = workingSession();
   for (const bool wrapped : {true, false}) {
@@ -157,7 +157,7 @@ TEST(CrankTrust, NamesASpeedOfTheWrongSign) {
   EXPECT_TRUE(played.counts.contradictSince({}));
 }
 
-/// What was withheld stays counted; what it was then is not said of the hammer now.
+/// Withheld samples remain counted. The warning of an earlier contradiction does not mention the hammer file any more.
 TEST(CrankTrust, ACrankThatAgreesAgainIsNamedAsThat) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = 14.0;
@@ -178,7 +178,7 @@ simulation::MachineSettings elasticMachine(double stiffness, double damping_rati
   return machine;
 }
 
-/// Such a rod, a coarse encoder and no speeds keep the innovations within what is expected of them.
+/// An elastic rod, a coarse encoder and missing speeds keep the innovations within their expected size.
 TEST(CrankTrust, WithholdsAZeroFarOffOnAMachineWithAnElasticRod) {
   simulation::MachineSettings machine = elasticMachine(8e8, 0.3);
   machine.crank.speed = false;
@@ -195,7 +195,7 @@ TEST(CrankTrust, WithholdsAZeroFarOffOnAMachineWithAnElasticRod) {
   }
 }
 
-/// It runs away, three times as fast as at work.
+/// The machine runs away, three times as fast as at work.
 TEST(CrankTrust, AMachineThatRunsAwayWithoutAToolStrikesNoBlows) {
   simulation::MachineSettings machine = elasticMachine(1e9, 0.2);
   machine.strike.no_tool_from = 4.0;
@@ -217,8 +217,8 @@ TEST(CrankTrust, AMachineThatRunsAwayWithoutAToolStrikesNoBlows) {
   EXPECT_LT(hardest, 1500.0);
 }
 
-/// The first stroke that finds no tool, on a machine whose rod gives: near the dead centre readings speak for either
-/// branch by turns, half a radian behind it for the right one.
+/// First blank firing of a machine with an elastic connecting rod. Near the dead centre the readings support either
+/// branch alternately; half a radian behind it they support the right one.
 TEST(CrankTrust, TheFirstStrokeWithoutAToolIsFollowedOnTheRightBranch) {
   for (const double stiffness : {4e8, 1e9, 4e9}) {
     const double tool_lost = 4.2;

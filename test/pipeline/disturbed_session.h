@@ -1,4 +1,4 @@
-/// A machine that works for 8 s, its recording disturbed, and what the boom's loads are off by then.
+/// A machine that works for 8 s, its disturbed recording, and the resulting errors of the boom's loads.
 #pragma once
 
 #include <algorithm>
@@ -32,14 +32,14 @@ inline BoomErrors errorsOf(const Session& session, const char* keys, const Senso
   return accuracy::boomErrors(session, settings, sensors, from, to);
 }
 
-/// Loads are withheld, or within their deviations.
+/// Expects loads that are withheld or within their deviations.
 inline void expectHonest(const BoomErrors& e) {
   if (e.withheld == e.samples) return;
   EXPECT_GT(e.covered(), 0.85);
   EXPECT_GT(e.sectionsCovered(), 0.85);
 }
 
-/// Readings that follow an instant.
+/// Returns the first reading from an instant [s] on; later readings follow it.
 template <typename Reading>
 Reading* after(std::vector<Reading>& readings, double time) {
   const auto start = simulation::workingMo100().start_stamp;

@@ -1,4 +1,4 @@
-// A machine that is not the one of its drawing: deviations hold what the drawing does not say.
+// A machine that differs from its nominal parameters: the standard deviations must cover the difference.
 #include <gtest/gtest.h>
 
 #include "hammer_loads/bench/drawing_table.h"
@@ -12,7 +12,7 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
   Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   settings.pipeline.level = Level::kLinkage;
   HammerParameters parameters = settings.mechanism.parameters();
-  // The drawn machines have no such forces after a blow.
+  // The drawn machines have no joint clearance, pin friction or rod damping that acts after a blow.
   parameters.rod_std.play = parameters.rod_std.friction_radius = parameters.rod_std.damping_ratio = 0.0;
   settings.mechanism = test::mechanismOf(parameters);
   double covered[3]{}, energy = 0.0, impulse = 0.0, amplitude = 0.0;
@@ -32,9 +32,9 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
   }
   for (const double part : covered) {
     EXPECT_GT(part, 0.88);
-    EXPECT_LT(part, 0.995);  // nor are they too large
+    EXPECT_LT(part, 0.995);  // the deviations are not too large either
   }
-  // A drawing's errors are alike in all its turns: one of six may be beyond two deviations.
+  // A machine's errors are alike in all its revolutions, so that one in six may exceed two standard deviations.
   EXPECT_LE(low, kDrawings / 6);
   for (const double part : {energy, impulse, amplitude}) EXPECT_GT(part, 0.8);
   EXPECT_GE(ranges, kDrawings - 1);

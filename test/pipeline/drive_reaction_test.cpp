@@ -11,7 +11,7 @@ using test::kSessionWorks;
 using test::Player;
 using test::settingsWith;
 
-/// Sum of the drive's part times interval, and the crank's gain of speed between blows.
+/// Compares the impulse of the drive's part with the crank's gain in speed between the blows.
 TEST(DrivesPart, IsTheRotorsChangeOfSpeedBetweenTheBlowsForMeans) {
   Player player(settingsWith("output: mean\n"));
   double impulse = 0.0, smooth = 0.0, inertia = 0.0, begin = 0.0, end = 0.0, jumps = 0.0;
@@ -29,7 +29,7 @@ TEST(DrivesPart, IsTheRotorsChangeOfSpeedBetweenTheBlowsForMeans) {
     inertia = player.pipeline.crank().tracker().driveInertia();
   });
   smooth = end - begin - jumps;
-  // Jc is learned on meanwhile and each correction by a sample moves the speed: some 0.1 % of the sum of all changes.
+  // Jc is still being estimated, and each sample corrects the speed: some 0.1 % of the sum of all changes.
   EXPECT_NEAR(impulse, -inertia * smooth, 0.05 * inertia * std::abs(jumps) + 0.5);
 }
 

@@ -1,4 +1,4 @@
-/// What must not change a value: samples that are refused, stamps beyond every clock, sensors in degrees.
+/// Input that must not change a value: refused samples, stamps beyond every clock, sensors in degrees.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ const std::vector<std::string> kJoints{"swing_joint", "boom_joint", "arm_joint",
 
 Pipeline pipelineOf(const Settings& settings) { return Pipeline(settings.mechanism, settings.pipeline, settings.boom); }
 
-/// Plays the session; what each crank reading becomes: each(pipeline, reading) gives the result that counts.
+/// Plays the session and returns its wrenches; each(pipeline, reading, wrenches) adds those of one crank reading.
 template <typename Each>
 std::vector<HullWrench> wrenchesOf(const Settings& settings, const Each& each, double boom_unit = 1.0) {
   Pipeline pipeline(settings.mechanism, settings.pipeline, settings.boom);
@@ -99,7 +99,7 @@ using test::kSessionEnd;
 using test::Player;
 using test::settingsWith;
 
-/// The whole session: before it works the crank falls back on the tool.
+/// Covers the whole session, since before work the crank falls back on the tool.
 class EncoderZero : public testing::TestWithParam<double> {};
 
 TEST_P(EncoderZero, NoMeanAndNoVibrationIsAKick) {

@@ -1,5 +1,5 @@
-// Where level elastic follows an elastic connecting rod, and strokes that find no tool: near the dead centre the ring
-// hides which branch the crank is on.
+// Level elastic with an elastic connecting rod, and blank firings. Near the dead centre the vibration hides the branch
+// of the crank.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,15 +20,15 @@ simulation::Session sessionOf(double stiffness, double duration) {
   return simulation::recordSession(machine);
 }
 
-/// each(pipeline, result) after each sample.
+/// Plays a session at level elastic and calls each(pipeline, result) after each sample.
 template <typename Each>
 void playElastic(const simulation::Session& session, const Each& each) {
   accuracy::SessionPlayer player = test::shippedPlayer(session, Level::kElastic);
   player.playTo(1e9, [&](double, const SampleResult& result) { each(player.pipeline, result); });
 }
 
-/// Where the tool is met is not known to a hundredth of a degree: a reading just after that has the force of the run-up
-/// before it.
+/// The angle of tool contact is not known to a hundredth of a degree. A reading just after contact would get the force
+/// of the run-up before it.
 TEST(ElasticLevel, WithholdsAReadingWhereTheToolMayBeMet) {
   const simulation::Session session = sessionOf(1e9, 16.0);
   const auto sinceBlow = [&](double time) {
@@ -69,7 +69,7 @@ struct FarFromBlow {
   int published{}, withheld{}, wrong{};  ///< samples
 };
 
-/// From 60 deg behind the blow to 60 deg before the next, after 3 s. Wrong: by more than 2 kN and four deviations.
+/// Counts from 60 deg after a blow to 60 deg before the next, after 3 s. Wrong: by more than 2 kN and four deviations.
 FarFromBlow farFromBlow(const simulation::MachineSettings& machine) {
   const simulation::Session session = simulation::recordSession(machine);
   FarFromBlow counted;
@@ -86,9 +86,9 @@ FarFromBlow farFromBlow(const simulation::MachineSettings& machine) {
   return counted;
 }
 
-/// The ring speaks against the branch without contact until that is given up; followed on the other one, the crank
-/// needs ten times the torque of its supply. Six machines that published 5 to 15 kN too much for a turn, or withheld
-/// half of what they had.
+/// The vibration contradicts the branch without contact until that branch is dropped. On the other branch the crank
+/// needs ten times the torque of its supply. These six machines published 5 to 15 kN too much for a revolution, or
+/// withheld half of their samples.
 TEST(BlankStrokes, OneThatIsMissedIsFoundByTheTorque) {
   int published = 0, withheld = 0;
   for (const std::uint64_t seed : {1, 2, 10, 11, 12, 14}) {
@@ -106,8 +106,8 @@ TEST(BlankStrokes, OneThatIsMissedIsFoundByTheTorque) {
   EXPECT_LT(20 * withheld, published);
 }
 
-/// A long ring looks like the torque of a stroke without tool: one stroke of 50 is taken for that, by up to 5 kN. Its
-/// deviation leaves the question open.
+/// A long vibration resembles the torque of a blank firing. One stroke in 50 is mistaken for that, with an error of up
+/// to 5 kN. The deviation includes both branches.
 TEST(BlankStrokes, ARodThatRingsLongLeavesTheBranchOpen) {
   simulation::MachineSettings machine = test::machineWithRod({5e8, 0.15, 0.0}, 4002);
   machine.crank.counts = 20000;

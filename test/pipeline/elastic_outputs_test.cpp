@@ -1,5 +1,5 @@
-// Level elastic where outputs are not at the samples: means, and instants between samples. Their truth is integrated
-// by equations of its own.
+// Level elastic with outputs that are not at the samples: means, and instants between samples. The truth is integrated
+// by independent equations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ Eigen::Vector3d loadOf(const simulation::CrankTruth& t) {
   return {t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
 }
 
-/// Without the ring a mean of 1/60 s is off by 3 % of its peak; the sum over the turn, which is right, does not show
-/// it.
+/// Without the vibration, a mean over 1/60 s is wrong by 3 % of its peak. The sum over the revolution is right and does
+/// not show it.
 TEST(ElasticOutputs, MeansContainTheVibration) {
   std::uint64_t seed = 810;
   for (const simulation::RodSettings& rod :
@@ -58,7 +58,7 @@ SumOfMeans sumOfMeans(const simulation::Session& session, double rate) {
   return sum;
 }
 
-/// From momentum to momentum, with the jump at the blow left out wherever an interval ends.
+/// Means are differences of momentum without the jump at the blow, wherever an interval ends.
 TEST(ElasticOutputs, MeansLoseNoImpulseAtAnyRate) {
   const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.3, 0.0}, 821));
   const SumOfMeans at_samples = sumOfMeans(session, 0.0);
@@ -67,11 +67,11 @@ TEST(ElasticOutputs, MeansLoseNoImpulseAtAnyRate) {
   for (const double rate : {3000.0, 200.0, 50.0}) {
     const SumOfMeans sum = sumOfMeans(session, rate);
     EXPECT_NEAR(sum.time, 5.0, 1e-6) << rate;
-    EXPECT_LT((sum.impulse - at_samples.impulse).norm(), 1e-6 * 500.0 * 25) << rate;  // of 25 turns of 500 N s
+    EXPECT_LT((sum.impulse - at_samples.impulse).norm(), 1e-6 * 500.0 * 25) << rate;  // 25 revolutions of 500 N s
   }
 }
 
-/// Outputs at 2300 Hz on samples at 1000 Hz, up to 40 ms after a blow, tool and retainer not touched.
+/// Checks outputs at 2300 Hz on samples at 1000 Hz, up to 40 ms after a blow, without contact with tool or retainer.
 TEST(ElasticOutputs, TakeTheRodAsASpringBetweenSamplesToo) {
   const simulation::MachineSettings machine = test::machineOfOutputs({8e8, 0.3, 0.0}, 831);
   const simulation::Session session = simulation::recordSession(machine);
@@ -106,14 +106,14 @@ TEST(ElasticOutputs, TakeTheRodAsASpringBetweenSamplesToo) {
   EXPECT_GT(ringErrors(Level::kLinkage), 0.7);
 }
 
-/// The rod's force is its spring's, by the size of that in C, which the rod's own mass hardly changes: 6 to 40 ms after
-/// a blow, and before the blow from half a turn on.
+/// The magnitude of the force in C is compared with the spring's force, since the rod's own mass hardly changes it.
+/// This covers 6 to 40 ms after a blow, and the half revolution before a blow.
 TEST(ElasticOutputs, PinForcesContainTheVibration) {
   const simulation::MachineSettings machine = test::machineOfOutputs({8e8, 0.3, 0.0}, 851);
   const simulation::Session session = simulation::recordSession(machine);
   struct Errors {
     accuracy::FigureErrors ring, before;
-    double size{};  ///< of the ring's force, squares [N2]
+    double size{};  ///< sum of the squares of the rod's force in `ring` [N2]
   };
   const auto errorsOf = [&](Level level) {
     accuracy::SessionPlayer player = test::shippedPlayer(session, level);
@@ -140,7 +140,7 @@ TEST(ElasticOutputs, PinForcesContainTheVibration) {
   EXPECT_LT(elastic.before.result().rms, 0.5 * linkage.before.result().rms);
 }
 
-/// In the ring the rocker swings by radians a second beside a rigid linkage's.
+/// During the vibration the rocker's speed differs by radians per second from that of a rigid linkage.
 TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
   const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.3, 0.0}, 861));
   const auto errorOf = [&](Level level) {
@@ -177,8 +177,8 @@ accuracy::FigureErrors peaksOf(const simulation::MachineSettings& machine, Level
   return peak;
 }
 
-/// Rock that throws the rocker back lets the rod ring with more than the strike: the turn's peak is the ring's, by a
-/// half.
+/// Rock that throws the rocker back makes the rod vibrate with more force than the strike. The peak of the revolution
+/// is that of the vibration, larger by a half.
 TEST(ElasticOutputs, ThePeakOfATurnMayBeTheVibrations) {
   simulation::MachineSettings machine = test::machineOfOutputs({9e8, 0.5, 0.0}, 871);
   machine.strike.contact_stiffness = 1e8, machine.strike.rock_strength = 3e5;
@@ -195,7 +195,7 @@ TEST(ElasticOutputs, ThePeakOfATurnMayBeTheVibrations) {
   }
 }
 
-/// Where much damping lets worn pins meet hard, the peak lasts for a third of the time between samples.
+/// With much damping worn pins meet hard, and the peak lasts for a third of the time between samples.
 TEST(ElasticOutputs, ThePeakOfATurnMayBeAnImpactsBetweenSamples) {
   for (const std::uint64_t seed : {875, 876}) {
     double largest_force = 0.0;
@@ -207,9 +207,9 @@ TEST(ElasticOutputs, ThePeakOfATurnMayBeAnImpactsBetweenSamples) {
   }
 }
 
-/// The hull's retainer, 5 mm below the tool's place and soft, throws the rocker back with half its speed: a rigid crank
-/// takes that for a usual blow. What two bodies on a tool do not explain has any restitution; after three such blows
-/// they do.
+/// The hull's soft retainer, 5 mm below the tool's place, throws the rocker back with half its speed. A rigid crank
+/// takes that for a usual blow. A blow that two bodies on a tool do not explain may have any restitution. After three
+/// such blows they explain it.
 TEST(ElasticOutputs, ABlowThatNothingExplainsHasAnyRestitution) {
   for (const std::uint64_t seed : {891, 892}) {
     SCOPED_TRACE(seed);

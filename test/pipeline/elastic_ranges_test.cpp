@@ -1,5 +1,5 @@
-// Ranges that a ledger counts of machines whose rod gives. Their truth is integrated by equations of its own, each
-// 0.1 ms.
+// Ranges that a ledger counts on machines with an elastic connecting rod. The truth is integrated by independent
+// equations every 0.1 ms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 namespace hammer_loads {
 namespace {
 
-/// At 200 Hz a ring of 150 to 250 Hz has all its peaks between samples: of the true loads the samples alone have ranges
-/// that are a tenth to a fifth too small.
+/// At 200 Hz a vibration of 150 to 250 Hz has all its peaks between samples. The true loads at the samples alone have
+/// ranges that are a tenth to a fifth too small.
 TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
   std::uint64_t seed = 840;
   for (const simulation::RodSettings& rod : {simulation::RodSettings{8e8, 0.2, 0.0}, {1.3e9, 0.25, 0.0}}) {
@@ -32,7 +32,7 @@ TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
     counted.period = 1;
     constexpr double kFrom = 4.0, kTo = 10.0;
     std::size_t allocated = 0;
-    std::optional<LifeFollower> follower;  // from kFrom on: what was before would stay in the residue
+    std::optional<LifeFollower> follower;  // from kFrom on, since earlier loads would stay in the residue
     player.playTo(kTo, [&](double time, const SampleResult&) {
       if (time < kFrom) return;
       if (!follower) follower.emplace(player.pipeline, counted);
@@ -62,7 +62,7 @@ TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
   }
 }
 
-/// What a blow leaves open, a vibration and unknown forces, is not in the deviation of a load in front of it.
+/// A vibration and unknown forces after a blow do not add to the deviation of a load before it.
 TEST(ElasticRanges, ALoadInFrontOfABlowIsMoreCertainThanThoseBehindIt) {
   const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.25, 0.0}, 890));
   for (const Level level : {Level::kLinkage, Level::kElastic}) {
@@ -95,7 +95,7 @@ TEST(ElasticRanges, ALoadInFrontOfABlowIsMoreCertainThanThoseBehindIt) {
   }
 }
 
-/// Where much damping lets worn pins meet hard, for 0.3 ms, the samples hardly show when, but the two bodies how
+/// With much damping worn pins meet hard for 0.3 ms. The samples hardly show the moment, but the two bodies show how
 /// hard.
 TEST(ElasticRanges, ImpactsInWornPinsAreCountedByTheirSizeNotByTheirMoment) {
   constexpr std::uint64_t kSeeds[] = {881, 882, 883};
@@ -110,7 +110,7 @@ TEST(ElasticRanges, ImpactsInWornPinsAreCountedByTheirSizeNotByTheirMoment) {
   EXPECT_LT(std::abs(mean), 0.2);
 }
 
-/// Of a level without the spring an extreme is that of a ring whose phase is not known: its crest.
+/// At a level without the spring the phase of the vibration is unknown. The deviation of an extreme is then its crest.
 TEST(ElasticRanges, ARigidLevelsRangesHaveTheVibrationsCrestInTheirDeviation) {
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{8e8, 0.3, 0.0}, {8e8, 0.3, 2e-4}, {1e9, 0.3, 5e-4}}) {

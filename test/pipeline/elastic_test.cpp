@@ -1,4 +1,4 @@
-// Machines whose rod gives, at level elastic through the whole pipeline: rods that no constant was set by.
+// Machines with an elastic connecting rod, at level elastic through the pipeline. No constant was tuned on these rods.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ accuracy::ElasticErrors rodErrors(const simulation::MachineSettings& machine, Le
   return accuracy::elasticErrors(test::shippedDrawing(), {"", machine}, level);
 }
 
-/// Issue: 0.40 of the truth, the whole turn 3.5 %. The rigid level shows once that the flaw is there.
+/// Issue: 0.40 of the truth, 3.5 % over the whole revolution. The rigid level shows once that the flaw exists.
 TEST(ElasticSession, PublishesTheVibrationAfterTheBlow) {
   EXPECT_GT(rodErrors(test::machineWithRod({6e8, 0.35, 0.0}, 701), Level::kLinkage).after.rms[1], 0.6);
   std::uint64_t seed = 700;
@@ -32,8 +32,8 @@ TEST(ElasticSession, PublishesTheVibrationAfterTheBlow) {
   }
 }
 
-/// Rock that throws the rocker back with two thirds of its speed: the rod takes it up 0.05 rad beside its rigid place,
-/// and turns the crank by more than any torque does within a sample. Such samples are published as any others.
+/// Rock throws the rocker back with two thirds of its speed. The rod stops it 0.05 rad beside its rigid position, and
+/// turns the crank by more than any torque does within a sample. Such samples are published like any others.
 TEST(ElasticSession, LivelyRockThrowsTheRockerFar) {
   simulation::MachineSettings machine = test::machineWithRod({8e8, 0.5, 0.0}, 705);
   machine.strike.contact_stiffness = 6e7, machine.strike.rock_strength = 3e5;
@@ -47,7 +47,7 @@ TEST(ElasticSession, LivelyRockThrowsTheRockerFar) {
   EXPECT_GT(e.after.count, 0.95 * rodErrors(test::machineWithRod({8e8, 0.5, 0.0}, 705), Level::kElastic).after.count);
 }
 
-/// 1024 counts and an encoder whose place is not known: deviations must hold, and they are those of a rigid rod.
+/// With 1024 counts and an unknown zero of the encoder, the deviations must hold. They are those of a rigid rod.
 TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
   simulation::MachineSettings machine = test::machineWithRod({8e8, 0.3, 0.0}, 731);
   machine.crank.counts = 1024;
@@ -58,7 +58,7 @@ TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
   EXPECT_GT(e.whole.covered[1], 0.85);
 }
 
-/// All stamps are up to a millisecond early, which is a seventh of a ring.
+/// All stamps are up to a millisecond early, which is a seventh of a vibration period.
 TEST(ElasticSession, StampsOfWholeMillisecondsAreInTheDeviation) {
   simulation::MachineSettings machine = test::machineWithRod({6e8, 0.25, 0.0}, 741);
   machine.crank.stamp_step = 1e-3;
@@ -68,15 +68,15 @@ TEST(ElasticSession, StampsOfWholeMillisecondsAreInTheDeviation) {
   EXPECT_GT(e.after.covered[2], 0.90);
 }
 
-/// The pins' play is not given.
+/// The joint clearance of the pins is not given.
 TEST(ElasticSession, LearnsTheJointClearance) {
   const accuracy::ElasticErrors e = rodErrors(test::machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
   EXPECT_LT(e.after.rms[1], 0.5);
   EXPECT_GT(e.after.covered[1], 0.80);
 }
 
-/// A machine of other equations than ours (rod of three bodies, tool on rock): dead rod, 0.2 mm of play. Tight pins
-/// imitate worn ones there by a soft rod with much damping. Its crank and rod have no mass.
+/// A machine of other equations than ours (rod of three bodies, tool on rock): dead rod, joint clearance of 0.2 mm.
+/// Tight pins imitate worn ones there by a soft rod with much damping. Its crank and rod have no mass.
 TEST(ElasticSession, TightPinsDoNotPassForWornOnes) {
   HammerParameters hammer = test::shippedDrawing().mechanism.parameters();
   hammer.crank_mass = hammer.crank_inertia_about_com = hammer.rod_mass = hammer.rod_inertia_about_com = 0.0;
@@ -104,7 +104,7 @@ TEST(ElasticSession, TightPinsDoNotPassForWornOnes) {
   EXPECT_GT(worn, 0.8 * samples) << samples;
   EXPECT_GT(covered, 0.85 * samples) << samples;
   EXPECT_LT(surprising, 0.015 * samples);
-  EXPECT_LT(largest, 20000.0);  // when the pins meet is not known; they do so with up to 30 kN
+  EXPECT_LT(largest, 20000.0);  // the instant at which the pins meet is unknown; the impact has up to 30 kN
 }
 
 std::vector<accuracy::WrenchAt> rodWrenches(const simulation::MachineSettings& machine, Level level) {
@@ -115,7 +115,7 @@ std::vector<accuracy::WrenchAt> rodWrenches(const simulation::MachineSettings& m
       .wrenches;
 }
 
-/// A rod stiffer than the readings show is a rigid one: to the bit.
+/// A rod too stiff for the readings to show is treated as rigid. The results are equal to the bit.
 TEST(ElasticSession, UsesLinkageForARigidMachine) {
   const simulation::MachineSettings machine = test::machineWithRod({}, 720);
   const auto elastic = rodWrenches(machine, Level::kElastic), linkage = rodWrenches(machine, Level::kLinkage);
@@ -142,13 +142,13 @@ TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
       before = test::allocations;
     });
     EXPECT_TRUE(ran);
-    EXPECT_LT(allocated, 10U);  // the player's own texts
+    EXPECT_LT(allocated, 10U);  // strings of the player
     return forces;
   };
   EXPECT_EQ(play(), play());
 }
 
-/// Without a tool nothing strikes: the rod's model is contradicted, and the machine is a rigid one.
+/// A blank firing contradicts the rod's model, and the machine is then treated as rigid.
 TEST(ElasticSession, AMissedToolIsNoVibration) {
   simulation::MachineSettings machine = test::machineWithRod({1e9, 0.3, 0.0}, 740);
   machine.blow.blank_share = 0.2;
@@ -157,8 +157,8 @@ TEST(ElasticSession, AMissedToolIsNoVibration) {
   EXPECT_GT(e.whole.covered[1], 0.85);
 }
 
-/// The drive has stopped, the crank stands within three degrees of the dead centre and the rocker on its tool, which
-/// carries it: half of its weight is not on the hull.
+/// The drive has stopped. The crank stands within three degrees of the dead centre, and the tool carries the rocker.
+/// Half of the rocker's weight is not on the hull.
 TEST(ElasticSession, AToolThatCarriesTheRockerIsInTheDeviation) {
   int samples = 0, covered_force = 0, covered_torque = 0, less = 0;
   for (std::uint64_t seed = 760; seed < 772; ++seed) {

@@ -1,14 +1,14 @@
-// The hull's motion where no IMU follows it, by the vibration of its boom or by readings that come too rarely: how far
-// the wrench is said to be off by it.
+// Hull motion that no IMU follows, from the vibration of the boom or from readings that come too rarely. The deviations
+// of the wrench must cover the resulting errors.
 #include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {
 namespace {
 
 using accuracy::BoomErrors;
-constexpr double kJudgedFrom = 4.0, kJudgedTo = 8.0;  ///< [s]: what is judged without pressures
+constexpr double kJudgedFrom = 4.0, kJudgedTo = 8.0;  ///< [s]; interval judged without pressures
 
-/// Hammer and level as the truth has them: what is off is the hull's motion.
+/// Uses hammer and level of the truth, so that only the hull's motion is wrong.
 BoomErrors byPressuresAlone(const simulation::MachineSettings& machine, const char* name) {
   return test::errorsOf(name, simulation::recordSession(machine),
                         "boom_stiffness: identified\nlevel: rocker\nhull_motion: model\n", {false, true});
@@ -23,8 +23,8 @@ TEST(HullByBoom, DeviationsIncludeTheUncertaintyOfItsVibration) {
   }
 }
 
-/// A rock that lands and lets go again between two readings of the pressures is the most of it: 6 to 15 % of Fz, of
-/// which 14 to 22 % was covered before its doubt was published.
+/// Rock contact that begins and ends between two pressure readings causes most of the error: 6 to 15 % of Fz. Before
+/// its uncertainty was published, 14 to 22 % of the errors were within two standard deviations.
 TEST(HullByBoom, DeviationsHoldTheLargerErrorsOnRock) {
   double covered = 0.0;
   const std::array<simulation::RockSettings, 3> rocks{{{1.5e7, 3.0, 4e3}, {3e7, 3.0, 5e3}, {5e7, 3.0, 3.5e3}}};
@@ -42,7 +42,7 @@ TEST(HullByBoom, DeviationsHoldTheLargerErrorsOnRock) {
 const std::array<test::Pose, 4> kPoses{
     {{-0.45, 1.00, -0.50}, {-0.70, 1.55, -0.75}, {-0.35, 1.20, -0.90}, {-0.20, 0.80, -0.60}}};
 
-/// Means over poses of what is covered of force x and z, without a sensor on hull or boom.
+/// Returns the parts of force x and z within two standard deviations, means over poses, without hull or boom sensors.
 std::array<double, 2> coveredWithoutSensors(const std::string& keys, double oil) {
   const Settings settings = test::withExactHammer(test::settingsWith("boom: compliant\nlevel: rocker\n" + keys));
   std::array<double, 2> covered{};
@@ -57,7 +57,7 @@ std::array<double, 2> coveredWithoutSensors(const std::string& keys, double oil)
   return covered;
 }
 
-/// A hull on oil swings by more than its load makes at once: some 4 to 10 % of the peak, along x more than along z.
+/// A hull on oil swings by more than its immediate response to the load: 4 to 10 % of the peak, more along x than z.
 TEST(HullByBoom, DeviationsHoldForAnImuThatNeverPublishes) {
   const auto [x, z] = coveredWithoutSensors("hull_motion: imu\n", 1.0);
   EXPECT_GT(x, 0.75);
@@ -65,7 +65,7 @@ TEST(HullByBoom, DeviationsHoldForAnImuThatNeverPublishes) {
   EXPECT_LT(z, 0.995);
 }
 
-/// By the oil of a boom file, which is good to 30 %: 17 to 50 % were covered before its doubt was in the wrench.
+/// Oil of a boom file is good to 30 %. Before the wrench included this, 17 to 50 % were within two deviations.
 TEST(HullByBoom, DeviationsHoldForOilThatIsGiven) {
   for (const double oil : {0.75, 1.3}) {
     const auto [x, z] = coveredWithoutSensors("hull_motion: model\nboom_stiffness: given\n", oil);
@@ -74,8 +74,8 @@ TEST(HullByBoom, DeviationsHoldForOilThatIsGiven) {
   }
 }
 
-/// Rock shakes a hull at 25 to 60 Hz, which 100 readings a second do not follow; what the hull's mass is they do not
-/// show either, and no force of several times the peak is made of it.
+/// Rock shakes a hull at 25 to 60 Hz, which 100 readings per second do not follow. They do not show the hull's mass
+/// either, and must not result in a force of several times the peak.
 TEST(HullByBoom, DeviationsHoldForAnImuThatIsReadTooRarelyOnRock) {
   for (const double oil : {0.85, 1.2}) {
     for (const double rate : {100.0, 200.0}) {

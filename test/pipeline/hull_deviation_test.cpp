@@ -21,7 +21,7 @@ using Coverage = Eigen::Array4d;
 
 const Eigen::Vector3d kElsewhere{0.3, -0.4, 1.0};  ///< moment about a point (0.4, 0.3) m away, of (Fx, Fz, My)
 
-/// Standard deviation of that moment by the deviations and correlations of a wrench.
+/// Returns the standard deviation of that moment from the deviations and correlations of a wrench.
 double deviationElsewhere(const HullDeviation& deviation) {
   const Eigen::Vector3d by = kElsewhere.cwiseProduct(vectorOf(deviation.wrench())), r = deviation.correlation();
   return std::sqrt(by.squaredNorm() + 2.0 * (r[0] * by[0] * by[1] + r[1] * by[0] * by[2] + r[2] * by[1] * by[2]));
@@ -63,7 +63,7 @@ TEST_P(Deviations, HoldTheErrorsAsOftenAsTheyShould) {
   const Coverage inside = coverage(machine);
   for (Eigen::Index k = 0; k < inside.size(); ++k) {
     EXPECT_GE(inside[k], 0.90) << k;
-    if (machine.crank.rate <= 50.0) continue;  // lag and scale stay in doubt there: wider than they need be
+    if (machine.crank.rate <= 50.0) continue;  // wider there, since lag and scale stay uncertain
     EXPECT_LE(inside[k], 0.99) << k;
   }
 }

@@ -31,7 +31,7 @@ TEST(HullGravity, TakesTheBasesPitchLikeAJoints) {
 TEST(HullGravity, SwingCountsWithADescriptionAlone) {
   HullGravity with = gravityWith("base_roll_rad: 0.2\n", true), without = gravityWith("base_roll_rad: 0.2\n", false);
   for (HullGravity* g : {&with, &without}) g->joints(kFour, {1.5707963267948966, 0.0, 0.0, 0.0});
-  // Swung by a quarter turn to the left, what rolls the machine to its right pitches the hull back.
+  // After a swing of 90 deg to the left, a roll of the machine to its right pitches the hull back.
   EXPECT_NEAR(with.gravity().x, -kG * std::sin(0.2), 1e-12);
   EXPECT_NEAR(without.gravity().x, 0.0, 1e-12);
   EXPECT_NEAR(with.gravity().z, -kG * std::cos(0.2), 1e-12);
@@ -45,7 +45,7 @@ TEST(HullGravity, IsThatOfThePitchUntilEveryJointIsReceived) {
   EXPECT_NEAR(gravity.gravity().x, kG * std::sin(0.6), 1e-12);
 }
 
-/// Rotation about a coordinate axis, written down.
+/// Returns the rotation matrix about a coordinate axis.
 Eigen::Matrix3d turned(int axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -54,8 +54,8 @@ Eigen::Matrix3d turned(int axis, double angle) {
   return R;
 }
 
-/// A machine as its maker drew it: own names, joints about -y or +y with own zeros, no masses. ends_in_hull: the link
-/// beyond the last joint carries hammer_hull, turned by 0.25 rad.
+/// Returns a description by a machine's maker: own names, joints about -y or +y with own zeros, no masses.
+/// ends_in_hull: the link beyond the last joint carries hammer_hull, turned by 0.25 rad.
 std::string strangersUrdf(bool ends_in_hull) {
   std::string urdf = R"(<robot name="other">
   <link name="chassis"/><link name="tower"/><link name="lift"/><link name="stick"/><link name="plate"/>
@@ -89,7 +89,7 @@ TEST(HullGravity, AStrangersDescriptionGivesAxesAndZerosWithoutABoomFile) {
   const Eigen::Matrix3d R_CP = turned(2, slew) * turned(1, -0.6 - lift) * turned(1, 1.9 - stick) * turned(1, tool);
   for (const bool boom_none : {false, true}) {
     for (const bool ends_in_hull : {false, true}) {
-      const std::string offset = "pitch_offset_rad: 0.25\n";  // what the link hammer_hull says by itself
+      const std::string offset = "pitch_offset_rad: 0.25\n";  // which the link hammer_hull gives by itself
       const Settings settings =
           strangersSettings(kStrangersJoints + offset + (boom_none ? "boom: none\n" : ""), strangersUrdf(ends_in_hull));
       ASSERT_FALSE(settings.boom);

@@ -22,7 +22,7 @@ HullImuSettings atD() {
   return s;
 }
 
-/// Channel first: good readings in a row give a motion, then the bad one, then good ones again.
+/// Adds good readings until they give a motion, then the bad one, then good ones again.
 void expectRefused(const ImuReading& bad, StampNs stamp, ImuRefusal why) {
   HullImu imu(atD());
   EXPECT_FALSE(imu.update(0, kUpright));
@@ -75,8 +75,8 @@ struct SessionErrors {
   ForceError at_readings, between, fixed;
 };
 
-/// Three seconds of work of a 400 kg hull on its boom, readings at 1 kHz. The crank is known, so that all error is the
-/// hull's. The two readings after a blow are left out: what jumps there no line follows.
+/// Plays three seconds of work of a 400 kg hull on its boom with readings at 1 kHz. The crank is known, so that all
+/// error is the hull's. The two readings after a blow are left out, since no line follows the jump.
 SessionErrors session(bool noise) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const test::FreeHull system(mechanism, Level::kRocker, test::onBoom());
@@ -106,7 +106,7 @@ SessionErrors session(bool noise) {
   return errors;
 }
 
-/// Half an interval's delay of the turning's acceleration, a line for a curve between readings, and noise.
+/// Errors: half an interval's delay of the angular acceleration, linear interpolation between readings, and noise.
 TEST(HullImu, GivesTheWrenchOfAMovingHullFromAnywhereOnIt) {
   const SessionErrors exact = session(false), noisy = session(true);
   EXPECT_NEAR(exact.fixed.peak, 8800.0, 50.0);

@@ -1,4 +1,4 @@
-// The hull's motion by its IMU, blows included, against the machine on its oil, whose equations are its own.
+// Hull motion from the IMU, blows included, against the simulated machine on its oil, which has independent equations.
 #include "hammer_loads/pipeline/hull_motion_filter.h"
 
 #include <gtest/gtest.h>
@@ -25,11 +25,11 @@ TEST(WrenchPath, GivesTheProbabilityOfTheOtherSideAndTheLoadAddedThere) {
   step.count = 1;
   step.pieces[0] = {1e-3, {0.0, 300.0, 0.0}, {0.0, 300.0, 0.0}, {0.0, 300.0, 0.0}, true, {0.0, 3.0, 0.0}, 1e-4};
   path.add(test::kMs, step, {}, {});
-  EXPECT_EQ(path.otherSide(test::kMs).probability, 0.0);  // what follows is not known yet
+  EXPECT_EQ(path.otherSide(test::kMs).probability, 0.0);  // the load after the blow is not known yet
   step.pieces[0] = {1e-3, {0.0, -50.0, 0.0}, {0.0, -50.0, 0.0}, {0.0, -50.0, 0.0}, false, {}, 0.0};
   path.add(2 * test::kMs, step, {}, {});
   const auto before = path.otherSide(test::kMs - 100000), after = path.otherSide(test::kMs + 100000);
-  EXPECT_NEAR(before.probability, 0.15866, 1e-5);  // of a normal distribution beyond one deviation
+  EXPECT_NEAR(before.probability, 0.15866, 1e-5);  // normal distribution beyond one standard deviation
   EXPECT_NEAR(after.probability, 0.15866, 1e-5);
   EXPECT_NEAR(before.load[1], -350.0, 1e-9);
   EXPECT_NEAR(after.load[1], 350.0, 1e-9);
@@ -42,12 +42,12 @@ struct VectorErrors {
   double rms{}, worst{}, covered[3]{};
 };
 
-/// What the hull's file says of the unit's place [m].
+/// Errors of the IMU's position in the parameters, and the standard deviation given there [m].
 struct PlaceByFile {
   double off_x{}, off_z{}, deviation{};
 };
 
-/// Of published wrenches; the crank's side of the blow is judged elsewhere.
+/// Returns the errors of the published wrenches. The crank's side of the blow is judged elsewhere.
 VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise, double x, double z, double from,
                           double to, const PlaceByFile& file = {}) {
   simulation::MachineSettings m = accuracy::machineOnBoom(to);
@@ -109,7 +109,7 @@ TEST(HullMotionFilter, GivesTheForcesVectorRightAfterBlowsTooAndHonestDeviations
   EXPECT_LT(all, 0.99);
 }
 
-/// Its turning moves a unit that is not where the file has it otherwise than said; no reading shows that.
+/// Rotation of the hull moves a unit at a wrong position differently than predicted. No reading shows that.
 TEST(HullMotionFilter, APlaceThatIsOffIsInTheDeviation) {
   const auto meanCover = [](double deviation) {
     double mean = 0.0;
@@ -124,8 +124,8 @@ TEST(HullMotionFilter, APlaceThatIsOffIsInTheDeviation) {
   EXPECT_GT(meanCover(0.03), 0.95) << "one deviation off";
 }
 
-/// Until a blow has shown how the hull yields: learned from a run-up alone it is half of what it is, 4.7 to 5.9 % of
-/// the peak in the first sample after the blow.
+/// Before the first blow the description gives the hull's mobility. Estimated from a run-up alone it is half the true
+/// one, an error of 4.7 to 5.9 % of the peak in the first sample after the blow.
 TEST(HullMotionFilter, KnowsTheHullBeforeItsFirstBlowByItsDescription) {
   const struct {
     unsigned seed;
@@ -134,7 +134,7 @@ TEST(HullMotionFilter, KnowsTheHullBeforeItsFirstBlowByItsDescription) {
   for (const auto& m : machines) EXPECT_LT(vectorErrors(m.seed, m.rate, m.noise, 0.0, 0.0, 2.2, 3.0).worst, 0.045);
 }
 
-/// Against the vibration's modes, which reduce the hull to a mass along one direction.
+/// Compares with the modes of the vibration, which reduce the hull to a mass along one direction.
 TEST(HullMobility, IsTheInverseOfTheMassThatTheBoomsModesGive) {
   Boom boom = *accuracy::shippedBoom("{boom: compliant}").boom;
   JointMotion at;
@@ -150,13 +150,13 @@ TEST(HullMobility, IsTheInverseOfTheMassThatTheBoomsModesGive) {
   const double s = std::sqrt(0.5);
   EXPECT_NEAR(0.5 * (d(0, 0) + d(0, 1) + d(1, 0) + d(1, 1)), 1.0 / massAlong(s, s), 1e-9 * d(0, 0));
   EXPECT_NEAR(d(0, 2), d(2, 0), 1e-9 * d(2, 2));
-  // A unit above D goes along x as the hull turns about y, one beyond it against z.
+  // Rotation about y moves a unit above D along x, and a unit at positive x against z.
   EXPECT_NEAR(unit(0, 2), d(0, 2) + 0.3 * d(2, 2), 1e-9 * d(2, 2));
   EXPECT_NEAR(unit(1, 2), d(1, 2) - 0.2 * d(2, 2), 1e-9 * d(2, 2));
   EXPECT_FALSE(at_d.movedTo(at.position)) << "has not moved";
 }
 
-/// Before work the crank falls on its tool: what stops it is the tool's force, which the model takes for the hull's.
+/// Before work the crank falls on its tool. The model attributes the tool's force, which stops it, to the hull.
 TEST(HullMotionFilter, DeviationsHoldTheForceOfACrankThatLandsOnItsTool) {
   double worst = 0.0;
   for (const unsigned seed : {240U, 304U}) {

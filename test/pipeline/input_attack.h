@@ -1,4 +1,4 @@
-/// A pipeline at work, hostile input for it, and what it gives meanwhile and afterwards.
+/// A pipeline at work, hostile input to it, and its output meanwhile and afterwards.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ using Numbers = std::vector<double>;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
 constexpr double kUndisturbedFrom = 3.0, kAttack = 4.0, kSoundFrom = 4.1, kUntil = 5.0;  // [s] of the session
-constexpr double kOneTurn = 0.25;           // [s]: the machine makes some 4.6 in a second
-constexpr double kUndisturbedError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
+constexpr double kOneTurn = 0.25;           // [s]; the machine makes some 4.6 revolutions per second
+constexpr double kUndisturbedError = 0.02;  // error of Fz over its peak; undisturbed sessions stay within 0.012
 inline const Names kBoom{"boom_joint", "arm_joint", "hammer_joint"};
 inline const Numbers kBoomAngles{-0.35, 1.20, -0.85};
 
@@ -42,14 +42,14 @@ inline const Session& attacked() {
   return recorded;
 }
 
-/// A pipeline at work and what it gives.
+/// A pipeline at work and its output.
 class Victim {
  public:
   explicit Victim(const PipelineSettings& settings) : pipeline_(mechanismOf(attackedMachine().hammer), settings) {
     for (const auto& truth : attacked().truth) peak_ = std::max(peak_, std::abs(truth.load.force_z));
   }
 
-  /// Good samples of [from, to) [s].
+  /// Plays the good samples of [from, to) [s], or passes them to `instead`.
   void work(double from, double to, const std::function<void(const CrankReading&)>& instead = {}) {
     boom(kBoom, kBoomAngles);
     for (std::size_t i = 0; i < attacked().crank.size(); ++i) {

@@ -1,5 +1,5 @@
-// Hostile input of the crank: whatever comes, loads are finite or refused and counted, and one turn after it all is
-// well again.
+// Hostile input of the crank. Loads are always finite, or refused and counted. One revolution after the attack they are
+// correct again.
 #include "pipeline/input_attack.h"
 
 namespace hammer_loads::test {
@@ -7,7 +7,7 @@ namespace {
 
 struct Attack {
   const char* name;
-  std::optional<Refusal> refusal;  ///< of every hostile message; none: it may be taken
+  std::optional<Refusal> refusal;  ///< of every hostile message; none: it may be accepted
   std::function<void(Victim&, const CrankReading&)> strike;
 };
 
@@ -99,7 +99,7 @@ std::vector<Attack> shapeAttacks() {
   return attacks;
 }
 
-/// Equal stamps are duplicates where header stamps hold, else a burst, whose angles must then fit.
+/// Equal stamps are duplicates where header stamps are used. Otherwise they are a burst, whose angles must then fit.
 std::vector<Attack> timeAttacks(CrankStamps stamps) {
   std::vector<Attack> attacks;
   const Refusal same_stamp = stamps == CrankStamps::kHeader ? Refusal::kDuplicate : Refusal::kImplausible;
@@ -149,7 +149,7 @@ std::vector<Attack> timeAttacks(CrankStamps stamps) {
   return attacks;
 }
 
-/// Good, attack, good.
+/// Plays good readings, the attack, and good readings again.
 void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   SCOPED_TRACE(testing::Message() << attack.name << ", level " << static_cast<int>(settings.level));
   Victim victim(settings);
@@ -169,9 +169,9 @@ void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   victim.forgetErrors();
   victim.work(kSoundFrom + kOneTurn, kUntil);
   EXPECT_TRUE(victim.finite());
-  // 900 samples; what contradicted the model is withheld until a whole half turn before the blow agrees (CrankTrust).
+  // Of 900 samples, those after a contradiction are withheld until a half revolution before a blow agrees (CrankTrust).
   EXPECT_GT(victim.accepted(), accepted + 500u);
-  if (settings.level == Level::kRocker) {  // once the attack is a turn ago
+  if (settings.level == Level::kRocker) {  // one revolution after the attack
     EXPECT_LE(victim.worst(), kUndisturbedError);
   }
 }

@@ -26,7 +26,7 @@ using test::kFour;
 
 class Joints : public testing::Test {
  protected:
-  /// Motion that must be known.
+  /// Returns the motion at a stamp, which must be known.
   JointMotion at(StampNs stamp) const {
     JointMotion motion;
     const auto fault = buffer_.at(stamp, motion);
@@ -49,7 +49,7 @@ TEST_F(Joints, AreHeldBeyondTheNewestStateAndLinearBetweenStates) {
   EXPECT_TRUE(between.acceleration.isApprox(test::joints({0.0, 20.0, 10.0, -10.0}), 1e-12));
 }
 
-/// By two that republish one joint state, or out of one buffer: a count of 1 mrad in 10 us is no 100 rad/s.
+/// Two publishers repeat one joint state, or one buffer releases two: a count of 1 mrad in 10 us is not 100 rad/s.
 TEST_F(Joints, MoveAsBeforeIfTheyCameTogether) {
   for (int i = 0; i < 5; ++i) {
     const double angle = 0.01 * i;
@@ -84,7 +84,7 @@ TEST_F(Joints, DifferencesFollowAParabolaExactlyWithoutVelocities) {
   const int stamps[] = {0, 20, 50, 60, 100};
   for (int ms : stamps) buffer_.update(ms * kMs, kFour, {0.0, 0.0, position(1e-3 * ms), 0.0}, {});
   const JointMotion between = at(80 * kMs);
-  EXPECT_NEAR(between.velocity[2], v + a * 0.080, 1e-14);  // of a chord: exact at its middle
+  EXPECT_NEAR(between.velocity[2], v + a * 0.080, 1e-14);  // slope of a chord, exact at its middle
   EXPECT_NEAR(between.acceleration[2], a, 1e-12);
   EXPECT_NEAR(between.position[2], position(0.080), 0.125 * a * 0.04 * 0.04 * 1.01);
   EXPECT_EQ(between.velocity[1], 0.0);
@@ -98,7 +98,7 @@ TEST_F(Joints, BadValuesAreRefusedAndCounted) {
   EXPECT_FALSE(buffer_.update(10 * kMs, {"arm_joint"}, {}, {}));
   EXPECT_EQ(buffer_.refusals().short_array, 1U);
   EXPECT_EQ(at(10 * kMs).position[2], 1.0);
-  // A bad or absent velocity leaves the position.
+  // A position with a bad or absent velocity is still used.
   EXPECT_TRUE(buffer_.update(20 * kMs, {"arm_joint"}, {1.02}, {kNaN}));
   EXPECT_EQ(buffer_.refusals().not_finite, 3U);
   EXPECT_NEAR(at(20 * kMs).velocity[2], 1.0, 1e-12);
@@ -107,7 +107,7 @@ TEST_F(Joints, BadValuesAreRefusedAndCounted) {
   EXPECT_NEAR(at(30 * kMs).velocity[2], 1.0, 1e-12);
 }
 
-/// One is a damaged message, two are a joint that was elsewhere all the while.
+/// One jump is a damaged message. Two in a row mean that the joint was elsewhere all the time.
 TEST_F(Joints, AcceptAJumpFromTheSecondReadingOn) {
   ASSERT_TRUE(buffer_.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {}));
   EXPECT_FALSE(buffer_.update(20 * kMs, {"arm_joint"}, {1.3}, {}));
@@ -128,7 +128,7 @@ TEST_F(Joints, RefuseALateStateAndAcceptTimeRunningBack) {
   EXPECT_FALSE(buffer_.update(0, kFour, {0.0, 0.0, 2.0, 0.0}, {}));
   EXPECT_TRUE(buffer_.update(10 * kMs, kFour, {0.0, 0.0, 2.1, 0.0}, {}));
   EXPECT_EQ(at(10 * kMs).position[2], 2.1);
-  EXPECT_EQ(at(10 * kMs).velocity[2], 0.0);  // nothing of before is differentiated
+  EXPECT_EQ(at(10 * kMs).velocity[2], 0.0);  // no difference across the jump in time
   EXPECT_EQ(buffer_.refusals().out_of_order, 8U);
 }
 
@@ -149,7 +149,7 @@ TEST_F(Joints, AJointThatTurnsFreelyTakesTheShorterWay) {
 TEST_F(Joints, ACrankSampleMayLieFarBehind) {
   for (int i = 0; i < 1000; ++i) buffer_.update(i * kMs, kFour, {0.0, 0.0, 1.0 + 1e-3 * i, 0.0}, {});
   EXPECT_NEAR(at(940 * kMs + kMs / 2).position[2], 1.9405, 1e-12);
-  EXPECT_NEAR(at(900 * kMs).position[2], 1.936, 1e-12);  // older than all that is kept: the oldest
+  EXPECT_NEAR(at(900 * kMs).position[2], 1.936, 1e-12);  // older than all stored states: the oldest
 }
 
 }  // namespace

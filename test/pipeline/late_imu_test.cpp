@@ -10,7 +10,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Largest acceleration of the hull that a pipeline states, with readings that come `late` [s].
+/// Returns the largest hull acceleration that a pipeline states, with readings that come `late` [s].
 double greatestMotion(const simulation::Session& session, double late) {
   const Settings settings = test::settingsWith("boom: none\nhull_motion: imu\ndrive_reaction_ratio: 1.0\n", false);
   Pipeline pipeline(settings.mechanism, settings.pipeline);

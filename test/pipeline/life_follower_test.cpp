@@ -1,4 +1,4 @@
-/// Turn loads and cycles of a session against what the pipeline itself knows at every instant.
+/// Loads per revolution and cycles of a session, against the pipeline's own values at every instant.
 #include "hammer_loads/pipeline/life_follower.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ using test::kNothing;
 using test::run;
 using test::sessionAt;
 
-/// Speeds through a low-pass, stamps that jitter but keep their order: a filter that trusts both is led astray, and
-/// what lies between two of its samples may be of neither.
+/// Speeds pass a low-pass, and stamps jitter but keep their order. A filter that accepts both goes wrong, and its
+/// values between two samples may fit neither of them.
 simulation::Session disturbed(double lag, double jitter, unsigned seed) {
   simulation::Session session = sessionAt(1000.0);
   std::mt19937 random(seed);
@@ -100,7 +100,7 @@ TEST(LoadCycles, AGapIsCountedAndItsTurnIsNotWhole) {
   EXPECT_EQ(piece.turns, whole.size());
 }
 
-/// (range, mean, count) of the hull's force along the tool, counted from a series.
+/// Returns (range, mean, count) of the counted cycles.
 std::vector<std::array<double, 3>> cyclesOf(const life::CycleCount& count) {
   std::vector<std::array<double, 3>> cycles;
   for (const life::RangeMean& c : life::rangesAndMeans(count)) cycles.push_back({c.range, c.mean, c.count});

@@ -1,4 +1,4 @@
-/// Sessions played into a pipeline and what counts its loads.
+/// Sessions played into a pipeline and into a counter of its loads.
 #pragma once
 
 #include "hammer_loads/pipeline/life_follower.h"
@@ -6,7 +6,7 @@
 
 namespace hammer_loads::test {
 
-constexpr double kPeak = 8.6e3;  // [N], about, of the session's turns
+constexpr double kPeak = 8.6e3;  // [N]; approximate peak of the session's revolutions
 
 inline simulation::Session sessionAt(double rate,
                                      const std::vector<simulation::CrankSensorSettings::Interval>& drop_outs = {}) {
@@ -17,7 +17,7 @@ inline simulation::Session sessionAt(double rate,
   return simulation::recordSession(machine);
 }
 
-/// Plays a session into pipeline and follower; each(result, follower) after every sample. The count of all of it.
+/// Plays a session into pipeline and follower, with each(result, follower) after every sample. Returns the total count.
 template <typename Each>
 life::LifePiece run(const Settings& settings, const simulation::Session& session, const Each& each) {
   Player player(settings, true, session);
