@@ -89,7 +89,8 @@ TEST(PinForces, AreNoNumberWithinTheAnglesErrorOfTheBlow) {
   for (const double offset : {-2e-3, -5e-4, 5e-4, 2e-3}) {
     const CrankMotion crank{CrankAngle::fromOffset(offset), 31.0, 500.0};
     EXPECT_FALSE(anyIsNaN(pinForces(mechanism, Level::kLinkage, crank, {}, NearBlow(0.01)))) << offset;
-    EXPECT_EQ(anyIsNaN(pinForces(mechanism, Level::kLinkage, crank, {}, NearBlow(0.01, 1e-3))), std::abs(offset) < 1e-3)
+    EXPECT_EQ(anyIsNaN(pinForces(mechanism, Level::kLinkage, crank, {}, NearBlow(0.01).withAngleError(1e-3))),
+              std::abs(offset) < 1e-3)
         << offset;
   }
 }

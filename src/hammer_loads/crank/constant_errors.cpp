@@ -22,7 +22,7 @@ constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen les
 bool ConstantErrors::isKnown() const noexcept { return turns_ >= kTurnsToKnow; }
 
 double ConstantErrors::zeroDeviation() const noexcept {
-  return std::hypot(std::sqrt(moment_(kZero, kZero)), kUnknowns[kZero].unmodelled);
+  return std::sqrt(moment_(kZero, kZero) + square(kUnknowns[kZero].unmodelled));
 }
 
 void ConstantErrors::shiftSupply(double change) noexcept {

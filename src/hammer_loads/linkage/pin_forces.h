@@ -61,14 +61,19 @@ HAMMER_LOADS_INLINE double overSine(double divided, double s) noexcept {
 /// of its angle [rad].
 class NearBlow {
  public:
-  explicit NearBlow(double transmission_angle, double angle_error = 0.0)
-      : sine_(std::sin(transmission_angle)), least_(std::max(detail::kLeastSine, 0.5 * angle_error)) {}
+  explicit NearBlow(double transmission_angle) : sine_(std::sin(transmission_angle)) {}
+  /// Returns the same region for another error of the angle [rad].
+  NearBlow withAngleError(double angle_error) const noexcept {
+    NearBlow other = *this;
+    other.least_ = std::max(detail::kLeastSine, 0.5 * angle_error);
+    return other;
+  }
   bool operator()(const LinkMotion& l) const noexcept { return l.sin_mu < sine_ && l.cos_mu > 0.0; }
   /// s as it divides.
   double sine(double s) const noexcept { return s < least_ ? detail::kNoSine : s; }
 
  private:
-  double sine_, least_;
+  double sine_, least_{detail::kLeastSine};
 };
 
 /// Transmission angle psi - beta [rad], in [0, pi]; 0 at the blow only.

@@ -59,9 +59,8 @@ class ElasticFollower {
   RodLoads rodLoads(const DriveReaction& drive, double ring) noexcept;
   /// Acceleration of the rocker beside that of a rigid rod at the last rodLoads() [rad/s2].
   double vibration() const noexcept { return vibration_; }
-  /// While it runs: with links as the spring has them. near_blow: transmission angle below which they are flagged
-  /// [rad]; angle_std: of the crank [rad].
-  PinReactions pins(const HullMotion& hull, double near_blow, double angle_std) const noexcept;
+  /// While it runs: pin forces with the links' motion as the spring determines it.
+  PinReactions pins(const HullMotion& hull, const NearBlow& near) const noexcept;
   /// While it runs: of a crank whose rigid rod moves the rocker as it is before the blow [rad/s].
   double strikingSpeed() const noexcept;
   /// Blow that was struck while it runs: the rocker's speed at the tool and its restitution, as a crank would feel them

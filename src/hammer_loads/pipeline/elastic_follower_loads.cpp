@@ -111,7 +111,7 @@ ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, bool
   return instant;
 }
 
-PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, double angle_std) const noexcept {
+PinReactions ElasticFollower::pins(const HullMotion& hull, const NearBlow& near) const noexcept {
   const RodMotion& m = filter().motion();
   const TwoBodies& bodies = filter().bodies();
   const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
@@ -119,7 +119,6 @@ PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, dou
   const double beside = besideRigidly(m.state, a, rigid);
   a.crank -= gain_[kCrank] * beside;
   a.rocker -= (rigid.rocker.u * gain_[kCrank] + gain_[kBesideRigid]) * beside;
-  const NearBlow near(near_blow, angle_std);
   PinReactions pins =
       pinForcesOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), hull.gravity, near);
   if (hull.turns()) addTurningLinkage(model_->mechanism(), rigid, m.state.speed, hull, near, pins);

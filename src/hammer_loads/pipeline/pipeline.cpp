@@ -53,6 +53,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       elastic_(model_, settings_.level),
       turn_(model_, columns_, crank_.step(), crank_.tracker(), rod_, elastic_, hull_.prior()),
       sampler_(model_, columns_, crank_.step(), crank_.tracker(), elastic_, settings_),
+      near_blow_(settings_.near_blow),
       nominal_force_(
           pulseAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
       peak_at_speed_(peakAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate)),
@@ -180,9 +181,10 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive,
   result_.rocker_beside_speed = elastic_.runs() ? bodies.beside_speed : 0.0;
   result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
   result_.crank.acceleration += rod.crank;
-  result_.pins = elastic_.runs() ? elastic_.pins(result_.hull.motion, settings_.near_blow, result_.deviation.angle)
-                                 : pinForces(mechanism_, model_.level(), links.here.links, motion, result_.hull.motion,
-                                             NearBlow(settings_.near_blow, result_.deviation.angle));
+  const NearBlow near = near_blow_.withAngleError(result_.deviation.angle);
+  result_.pins = elastic_.runs()
+                     ? elastic_.pins(result_.hull.motion, near)
+                     : pinForces(mechanism_, model_.level(), links.here.links, motion, result_.hull.motion, near);
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
                 result_.deviation);
 }

@@ -116,6 +116,7 @@ class Pipeline {
   MisuseFollower misuse_;
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
+  NearBlow near_blow_;
   double nominal_force_;  ///< peak of Fz at turn_rate_Hz and constant speed [N]; see isPlausible()
   double peak_at_speed_;  ///< largest component of the force there [N]
   bool settled_{};        ///< the last sample's estimate is accurate enough to be published, independent of CrankTrust

@@ -30,7 +30,7 @@ WrenchSampler::WrenchSampler(const HullModel& model, const WrenchColumns& column
       kind_(settings.output),
       rate_(settings.output_rate),
       longest_gap_(settings.stale_after),
-      cos_near_blow_(std::cos(settings.near_blow)),
+      near_blow_(settings.near_blow),
       torque_part_(settings.torque_std_part) {}
 
 std::size_t WrenchSampler::mostOutputs() const noexcept {
@@ -139,14 +139,14 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   }
   last_output_ = stamp;
   if (at_sample) {
-    output.near_blow = links.here.links.cos_mu > cos_near_blow_;
+    output.near_blow = near_blow_(links.here.links);
     output.deviation = result.deviation;
     boundMean(links, result.doubt.own, result, output);
     return output;
   }
   const CrankUncertainty doubt = tracker_->uncertaintyBetween(time, torque_part_);
   const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
-  output.near_blow = there.here.links.cos_mu > cos_near_blow_;
+  output.near_blow = near_blow_(there.here.links);
   output.deviation = deviation(output.crank, doubt, there, hull, result);
   boundMean(there, doubt.own, result, output);
   return output;

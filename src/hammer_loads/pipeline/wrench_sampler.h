@@ -52,10 +52,10 @@ class WrenchSampler {
   const CrankFilter* tracker_;
   const ElasticFollower* elastic_;
   OutputKind kind_;
-  double rate_;           ///< [Hz]; 0: at each sample
-  double longest_gap_;    ///< between samples [s]
-  double cos_near_blow_;  ///< cosine of the transmission angle below which a wrench is near the blow
-  double torque_part_;    ///< PipelineSettings::torque_std_part
+  double rate_;         ///< [Hz]; 0: at each sample
+  double longest_gap_;  ///< between samples [s]
+  NearBlow near_blow_;
+  double torque_part_;  ///< PipelineSettings::torque_std_part
   bool begun_{};
   StampNs origin_{};       ///< origin of the grid
   std::uint64_t index_{};  ///< index of the next output on the grid
