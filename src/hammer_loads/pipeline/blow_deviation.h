@@ -1,4 +1,4 @@
-/// Uncertainty of a measured blow, by readings and by constants of sensor and hammer.
+/// Uncertainty of a measured blow, due to readings and to constants of sensor and hammer.
 #pragma once
 
 #include "hammer_loads/crank/crank_estimate.h"
@@ -7,18 +7,18 @@
 
 namespace hammer_loads {
 
-/// Errors of a CrankBlow by independent errors of constants, one standard deviation each, in the order of
-/// ConstantErrors: rows speed [rad/s], factor [-], drive inertia (relative).
+/// Errors of a CrankBlow due to independent errors of constants, one standard deviation each. Columns are in the order
+/// of ConstantErrors; rows: speed [rad/s], factor [-], drive inertia (relative).
 using BlowColumns = ByConstants<3, ConstantErrors::kSize>;
 
-/// blow: measuredBlow() of `crank`, whose deviations get the part of constants. Each cause by a difference.
+/// Returns the errors of `blow`, measuredBlow() of `crank`, one difference per constant; adds them to its deviations.
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
                       const BlowColumns& columns, RockerBlow& blow) noexcept;
 
-/// Part of these deviations by readings.
+/// Returns the part of these errors that is due to readings.
 BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow) noexcept;
 
-/// Adds to the impulses the difference to another blow that cannot be ruled out; it is independent of all else.
+/// Adds the difference to another possible blow to the impulse errors. It is independent of all other errors.
 void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept;
 
 }  // namespace hammer_loads

@@ -53,7 +53,7 @@ Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
   return {{w.force_x, 0.0, w.force_z}, {0.0, w.torque_y, 0.0}};
 }
 
-/// Joint torques of a wrench w on the hull, as Boom::hammerTorque() of onTip(); w lies in the boom's plane.
+/// Returns the joint torques of a wrench w on the hull, as Boom::hammerTorque() of onTip(). w lies in the boom's plane.
 JointVector BoomFollower::hammerTorque(const HullWrench& w) const noexcept {
   JointVector torque = JointVector::Zero(boom_.chain().joints());
   addHammerTorque(w, torque);
@@ -67,7 +67,7 @@ void BoomFollower::addHammerTorque(const HullWrench& w, JointVector& torque) con
 }
 
 Wrench BoomFollower::wrenchAtLink(int link, const HullWrench& load) const noexcept {
-  ChainPose pose;  // by the joints' sensors, as other nodes have it
+  ChainPose pose;  // from the joints' sensors, as in other nodes
   forwardKinematics(boom_.chain(), motion_.position, pose);
   return hammer_loads::wrenchAtLink(pose, link, onTip(load));
 }
@@ -78,7 +78,7 @@ bool BoomFollower::usesCompliant() const noexcept {
   return model_ == BoomModel::kCompliant || !choice.judged || choice.rigid_error > choice.rigid_tolerance;
 }
 
-/// Corrects the pose for a joint state that arrived after the sample.
+/// Returns the joints' complaints. If there are none, the joint states arrived after the sample.
 std::vector<std::string> BoomFollower::complaints() const {
   if (!state_.fault || state_.fault->kind == JointFault::Kind::kRunAway) return {};
   std::vector<std::string> lines = joints_.complaints(state_.stamp);
@@ -99,7 +99,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   forgetWrongReadings(sample.imu_lost);
   const double since = seconds(sample.stamp - last_stamp_);
   if (follow_vibration_) {
-    const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
+    const bool swung = known_ && last_stamp_ == sample.stamp;  // the vibration is at this stamp already
     const bool continued = swung || (known_ && step.count > 0);
     if (!continued) boom_.vibration().reset(), spread_.reset(), bound_.reset(), beside_modes_.setZero();
     pose(since);
@@ -158,7 +158,7 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
 }
 
-/// displaced_links: at the step's end; linear over the step.
+/// Advances the vibration over the step. displaced_links: at the step's end; interpolated linearly over the step.
 void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displaced_links,
                            const WrenchSpread& spread) noexcept {
   const LoadSpread errors = spread_.waits() ? LoadSpread() : boom_.spreadTorque(spread);
@@ -201,7 +201,7 @@ bool BoomFollower::runsAway(double step) noexcept {
   return withheld_for_ > 0.0;
 }
 
-/// Possible vibration after a gap: the amplitude before it, or otherwise that by the hammer's peak alone.
+/// Begins with the possible vibration after a gap: the amplitude before it or else that due to the hammer's peak alone.
 void BoomFollower::beginUnseen(double peak) noexcept {
   const Vibration& vibration = boom_.vibration();
   JointVector swing = vibration.usualSwing();

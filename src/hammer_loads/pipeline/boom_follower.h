@@ -26,8 +26,8 @@
 namespace hammer_loads {
 
 enum class Known {
-  kGiven,     ///< the vibration is that of the file's oil under the hammer's load
-  kFollowed,  ///< readings show the vibration
+  kGiven,     ///< vibration computed with the boom file's oil and the hammer's load
+  kFollowed,  ///< vibration estimated from readings
   kMeasured,  ///< pressures in all cylinders give torques and the rock's force as well
 };
 
@@ -37,19 +37,19 @@ struct BoomSample {
   HullWrench motion_wrench;  ///< wrench at the end of the step's last piece, from the links' motion relative to the
                              ///< hull: no weight, no hull motion
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
-  /// Errors of constants, equal in all samples, as by constantErrors() and hammerErrors(); zero: exact.
+  /// Errors of constants from constantErrors() and hammerErrors(), equal in all samples. Zero means exact.
   Eigen::Matrix3d constants = Eigen::Matrix3d::Zero(), of_hammer = Eigen::Matrix3d::Zero();
   std::optional<StampedImuReading> imu{};  ///< a new reading, in the hull's axes
   bool imu_lost{};                         ///< earlier readings cannot be used
-  HullWrench displaced_links{};            ///< DisplacedLinks, at the sample; counts for a boom that vibrates
+  HullWrench displaced_links{};            ///< DisplacedLinks at the sample; used for a compliant boom
   double stamp_noise{};                    ///< standard deviation of the stamp, from sample to sample [s]
-  double unseen_peak{};                    ///< peak of Fz of a hammer that may have worked unobserved before [N]
+  double unseen_peak{};                    ///< peak Fz if the hammer may have worked unobserved before, otherwise 0 [N]
 };
 
-/// Reasons for which the boom is taken as rigid or compliant.
+/// Reasons for which the boom is modelled as rigid or compliant.
 struct BoomChoice {
   bool compliant{};           ///< published loads include vibration
-  bool judged{};              ///< true once a turn has ended; the figures below are those of the last turn
+  bool judged{};              ///< true once a revolution has ended; the figures below are those of the last one
   double pulse_length{};      ///< pi/mu of its pulse [s]
   double lowest_frequency{};  ///< lowest natural frequency of the boom at its end [Hz], 0 without modes
   double rigid_error{};       ///< error of a rigid boom's joint torques for such a pulse, over the largest [-]; see
@@ -64,31 +64,31 @@ struct BoomState {
   BoomLoads loads;
   SteelLoads steel;           ///< sections and joints as Boom orders them
   BoomDeviations deviations;  ///< standard deviations of loads and steel; NaN where the crank has no covariance
-  BoomDeviations common;      ///< the part of them by constants of crank sensor, hammer and boom
+  BoomDeviations common;      ///< part of `deviations` due to constants of crank sensor, hammer and boom
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
-  bool zero_moment_arm{};      ///< a cylinder does not hold its joint: no modes, taken as rigid
+  bool zero_moment_arm{};      ///< a cylinder does not hold its joint: no modes, modelled as rigid
   JointVector frequency;       ///< natural frequencies, per mode [Hz]; none when vibration is not followed
-  JointVector frequency_std;   ///< standard [Hz]
+  JointVector frequency_std;   ///< standard deviations of the frequencies [Hz]
   JointVector damping;         ///< damping ratio of each mode [-]
   bool identified{};           ///< frequencies and damping follow the sensors
   JointVector contact_torque;  ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
   Wrench contact;              ///< contact load BY the rock ON the tip, axes of the tip; zero where it is not measured
   bool measured{};             ///< the cylinders' forces are those of measured pressures
   bool contact_unknown{};      ///< the IMU shows contact with the rock, but no pressures measure its force
-  /// Pressures or an IMU leave standard deviations as large as the torques: the loads are not published (TorqueWorth).
+  /// True if, with pressures or an IMU, torques are too uncertain to publish any loads (TorqueWorth).
   bool useless{};
   bool hold_down_force_lost{};  ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;          ///< along hull z; infinite without modes
   Boom::TipVibration tip;       ///< zero for a rigid boom
-  /// By vibration (a rigid boom has none), mean of before and after the step's last blow; none: no blow.
+  /// Velocity due to vibration, mean of before and after the step's last blow; zero for a rigid boom, empty: no blow.
   std::optional<TipVelocity> at_blow;
   BoomChoice choice;
-  std::optional<HoldDown> hold_down;  ///< against the mean hold-down force of the last turn that had one
+  std::optional<HoldDown> hold_down;  ///< against the mean hold-down force of the last revolution that had one
 };
 
 /// Owns the boom and its joints' states. The vibration is computed from the first sample on if it may be needed later,
-/// so that loads do not jump. With `boom: auto` a boom with cylinders is compliant until the first turn has ended. No
-/// allocation after construction.
+/// so that loads do not jump. With `boom: auto` a boom with cylinders is compliant until the first revolution has
+/// ended. No allocation after construction.
 class BoomFollower {
  public:
   /// settings.boom must not be kNone. striking_distance: from D to the tool's axis, at -x of the hull [m].
@@ -103,43 +103,43 @@ class BoomFollower {
     const double offset = chamber == Chamber::kBore ? boom_.cylinders()[cylinder].parameters().pressure_offset : 0.0;
     return pressures_.update(stamp, cylinder, chamber, pressure - offset);
   }
-  /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
-  /// until the next call.
+  /// Computes the loads at a sample. step: since the previous sample; without pieces (after a restart or a gap) the
+  /// boom is at rest. The result is valid until the next call.
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Advances over a crank sample without loads: the boom continues to vibrate, freely if the step has no pieces.
   void advanceWithoutLoads(StampNs stamp, const WrenchHistory& step) noexcept;
-  /// Covariance of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], by the sensors or,
-  /// without identification, by the boom file; zero for a rigid boom.
+  /// Returns the covariance of the tip's acceleration due to vibration, along x and z [m/s2] and about y [rad/s2]. It
+  /// follows from the sensors or, without identification, from the boom file; zero for a rigid boom.
   Eigen::Matrix3d tipCovariance() const noexcept;
-  /// Velocity of the tip by the operator at the last blow, without vibration.
+  /// Returns the tip's velocity at the last blow due to the operator's motion, without vibration.
   TipVelocity drivenTip() const noexcept;
-  /// Force along z that would explain the IMU's residuals, root mean square over a second [N].
+  /// Returns the force along z that would explain the IMU's residuals, root mean square over a second [N].
   double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
-  /// Largest standard deviation of a joint torque over the torque, root mean squares over the last turn [-].
+  /// Returns the largest ratio of standard deviation to joint torque, root mean squares over a revolution [-].
   double torqueUncertainty() const noexcept { return worth_.ratio(); }
   std::uint64_t useless() const noexcept { return useless_; }  ///< samples whose loads were useless
-  /// Call once per turn, with the crank's deviations.
+  /// Takes the crank's standard deviations. Call once per revolution.
   void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }
-  /// Call once per turn, with its pulse and its mean hold-down force [N]. It takes some 0.1 ms.
+  /// Ends a revolution with its pulse and its mean hold-down force [N]. Call once per revolution; it takes some 0.1 ms.
   void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_hold_down_force) noexcept;
 
-  /// Index in the chain, for wrenchAtLink(); nothing for what is another TF frame.
+  /// Returns the index in the chain, for wrenchAtLink(); empty for other TF frames.
   std::optional<int> linkIndex(const std::string& link) const noexcept { return boom_.chain().linkIndex(link); }
-  /// Transforms a load on the hull about D to the origin and axes of a link, at the last sample's pose by the joints'
+  /// Transforms a load on the hull about D to the origin and axes of a link, at the last sample's pose from the joints'
   /// sensors.
   Wrench wrenchAtLink(int link, const HullWrench& load) const noexcept;
 
   const BoomState& state() const noexcept { return state_; }
   bool known() const noexcept { return known_; }  ///< the last sample had no fault
-  /// Source of the last sample's loads.
+  /// Returns the source of the last sample's loads.
   Known source() const noexcept {
     if (tip_) return Known::kMeasured;
     return boom_.vibration().followsReadings() ? Known::kFollowed : Known::kGiven;
   }
-  /// Measured pressures show the rock's force on the hull.
+  /// Returns true if measured pressures show the rock's force on the hull.
   bool contactKnown() const noexcept { return known_ && source() == Known::kMeasured && !state_.useless; }
   const Boom& boom() const noexcept { return boom_; }
-  /// Angle of a cylinder's joint at the last sample [rad].
+  /// Returns the angle of a cylinder's joint at the last sample [rad].
   double jointAngle(std::size_t cylinder) const noexcept {
     return motion_.position[boom_.cylinders()[cylinder].joint()];
   }
@@ -150,14 +150,14 @@ class BoomFollower {
     return identifier && identifier->imuStampsJitter();
   }
   const PressureTrust& pressureTrust() const noexcept { return trust_; }
-  std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
-  /// Reasons why the joints were not known at the last sample, one text for each joint; empty where they were.
+  std::uint64_t faults() const noexcept { return faults_; }  ///< number of crank samples with unknown joints
+  /// Returns the reasons why the joints were not known at the last sample, one text per joint; empty where they were.
   std::vector<std::string> complaints() const;
-  /// Number of times that the vibration was implausibly large and was reset. Its loads are withheld until the effect of
+  /// Returns how often the vibration was implausibly large and was reset. Its loads are withheld until the effect of
   /// the fault has decayed.
   std::uint64_t runaways() const noexcept { return runaways_; }
-  /// Name of the contact to which state().hold_down.least belongs, such as "front edge" or a cylinder's name; empty
-  /// when unknown.
+  /// Returns the name of the contact to which state().hold_down.least belongs, such as "front edge" or a cylinder's
+  /// name; empty when unknown.
   const std::string& firstToGive() const noexcept;
   /// Returns true while pressures of the cylinders are in use.
   bool pressuresCount() const noexcept { return pressures_.accepted() > 0 && !trust_.isLost(); }
@@ -209,18 +209,18 @@ class BoomFollower {
   BoomState state_;
   JointMotion motion_;
   TorqueStep torque_;
-  HullWrench displaced_links_;  ///< at the last sample
-  JointVector beside_modes_;    ///< torque of inertia that modes at a fixed pose neglect: its change by the vibration
-  std::optional<InPlaneTip> tip_;  ///< at the sample; none: the rock's force is not measured
+  HullWrench displaced_links_;     ///< at the last sample
+  JointVector beside_modes_;       ///< change of inertia torque due to vibration that modes at a fixed pose neglect
+  std::optional<InPlaneTip> tip_;  ///< at the sample; empty if the rock's force is not measured
   double unexplained_{};           ///< mean square of the force along z that would explain the IMU's readings [N2]
-  double least_contact_{};         ///< along z: less is none [N]
+  double least_contact_{};         ///< force along z below which there is no contact [N]
   std::optional<StampNs> last_blow_;
   StampNs last_stamp_{};  ///< stamp of the last sample without a fault
   bool known_{};
   std::uint64_t faults_{}, runaways_{};
   VibrationBound bound_;
-  double withheld_for_{};            ///< after the vibration restarted [s]
-  std::vector<std::string> givers_;  ///< edges, then cylinders
+  double withheld_for_{};            ///< remaining time without loads after a reset of the vibration [s]
+  std::vector<std::string> givers_;  ///< names of edges, then of cylinders
   std::string no_giver_;
 };
 

@@ -33,14 +33,14 @@ Eigen::Matrix3d BoomFollower::tipCovariance() const noexcept {
   for (int row = 0; row < 3; ++row)
     by_mode.row(row) = modalForce(modes, boom_.tipJacobian().row(2 * row).transpose()).transpose();
   JointMatrix of_modes = std::max(1.0, identifier->oilSurprise()) * identifier->accelerationCovariance();
-  if (state_.useless) {  // the vibration is not known better than its torques
+  if (state_.useless) {  // the vibration is as uncertain as its torques
     const JointVector usual = boom_.vibration().usualSwing().cwiseProduct(modes.omega.cwiseAbs2());
     of_modes.diagonal() += square(std::min(1.0, worth_.ratio())) * usual.cwiseAbs2();
   }
   return by_mode * of_modes * by_mode.transpose();
 }
 
-/// Deviations by stiffness and damping of the oil and by errors of the hammer's load.
+/// Returns the covariance due to stiffness and damping of the oil and to errors of the hammer's load.
 Eigen::Matrix3d BoomFollower::tipCovarianceAsGiven() const noexcept {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   const JointVector vibration = boom_.vibration().acceleration();
@@ -57,7 +57,7 @@ Eigen::Matrix3d BoomFollower::tipCovarianceAsGiven() const noexcept {
   return covariance;
 }
 
-/// The part of the hull's acceleration that hammer and oil do not explain is attributed to a force on its mass.
+/// Attributes the part of the hull's acceleration that hammer and oil do not explain to a force on its mass.
 void BoomFollower::learnUnexplained(const ImuReading& reading, double step) noexcept {
   const ModeIdentifier& identifier = *boom_.vibration().identifier();
   state_.contact_unknown = !identifier.explains() && identifier.learns() && !identifier.followsContact();
@@ -68,7 +68,7 @@ void BoomFollower::learnUnexplained(const ImuReading& reading, double step) noex
   unexplained_ += std::clamp(step / Vibration::kSwingTime, 0.0, 1.0) * (force * force - unexplained_);
 }
 
-/// An unmeasured force of the rock is an error of the load, as large as the residuals show.
+/// Adds an unmeasured force of the rock as an error of the load, with the magnitude that the residuals show.
 WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const noexcept {
   WrenchSpread spread = of_crank;
   if (!state_.contact_unknown || of_crank.count == 0) return spread;
@@ -77,8 +77,8 @@ WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const no
   return spread;
 }
 
-/// Deviations of measured loads are those of the measurement, since the contact load compensates an error of the
-/// vibration.
+/// Finds the standard deviations. Measured loads have those of the measurement, since the contact load compensates an
+/// error of the vibration.
 void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
   BoomDeviations& deviations = state_.deviations;
   const Wrench lasting = pressuresCount() ? trust_.notOfRock(striking_distance_, least_contact_) : Wrench{};
@@ -125,7 +125,7 @@ void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   addConstantsOfBoom(known);
 }
 
-/// Adds the bending's deviation where an IMU alone shows the motion; pressures would show the torques themselves.
+/// Adds the standard deviation due to bending where only an IMU shows the motion. Pressures would show the torques.
 void BoomFollower::addBending() noexcept {
   const JointVector bending = boom_.bendingDeviation();
   BoomDeviations& all = state_.deviations;
@@ -139,8 +139,8 @@ void BoomFollower::addBending() noexcept {
   }
 }
 
-/// Adds errors of the boom's constants. Torques that are not measured have those of masses, centres and zeros. Measured
-/// ones have seal friction in one direction and offsets, which their deviation contains already.
+/// Adds errors of the boom's constants. Unmeasured torques have errors of masses, centres and zeros. Measured torques
+/// have errors of one-sided seal friction and of offsets, which their standard deviation contains already.
 void BoomFollower::addConstantsOfBoom(bool common_known) noexcept {
   BoomDeviations &all = state_.deviations, &common = state_.common;
   JointVector unmeasured = boom_.weightDeviation(), lasting = unmeasured;

@@ -1,4 +1,4 @@
-// The boom's motion and loads by sensors: readings, their plausibility, the rock's force.
+// The boom's motion and loads from sensors: readings, their plausibility, the rock's force.
 #include <algorithm>
 
 #include "hammer_loads/pipeline/boom_follower.h"
@@ -7,7 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kStillBeats = kLongestTurn;  // after a blow
+constexpr double kStillBeats = kLongestTurn;  // time after a blow within which the hammer may be at work [s]
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void BoomFollower::followContact(StampNs stamp) noexcept {
   }
 }
 
-/// Motion, frequencies and damping as sensors show them.
+/// Updates motion, frequencies and damping with the sensors' readings.
 void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
   if (trust_.isLate()) trust_.followDelay(0.0, 0.0, step);
@@ -48,7 +48,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   trust_.followDelay(found.delay(Clock::kPressures), found.oilSurprise(), step);
 }
 
-/// A measured force balances all loads on its joint; the difference from the model is attributed to the rock.
+/// Attributes to the rock the difference between measured forces, which balance all loads, and the model.
 void BoomFollower::updateMeasured(const BoomSample& sample, double step) noexcept {
   state_.contact_torque.setZero();
   state_.contact = {};
@@ -85,8 +85,8 @@ void BoomFollower::useMeasured() noexcept {
   }
 }
 
-/// Three cylinders in a plane determine a load on the tip; otherwise only the torques are known. A force below its
-/// error is set to zero.
+/// Finds the contact load: three cylinders in a plane determine it, otherwise only the torques are known. A force below
+/// its error counts as a lost hold-down force.
 void BoomFollower::findContact(double step) noexcept {
   const auto& c = boom_.cylinders();
   if (!state_.measured || c.size() != 3) return;

@@ -18,8 +18,8 @@ struct BoomHealth {
     double stiffness{}, deviation{};  ///< oil stiffness over that of the boom file, and its standard deviation [-]
   };
   struct OfMode {
-    double frequency{}, deviation{};  ///< standard [Hz]
-    double damping{}, damping_std{};  ///< ratio; standard [-]
+    double frequency{}, deviation{};  ///< natural frequency and its standard deviation [Hz]
+    double damping{}, damping_std{};  ///< damping ratio and its standard deviation [-]
   };
   std::array<OfCylinder, kMaxJoints> cylinder;
   std::array<OfMode, kMaxJoints> mode;
@@ -27,11 +27,11 @@ struct BoomHealth {
   bool oil_explains{};  ///< false if a damping is not that of oil, so that the stiffnesses are uncertain
 };
 
-/// The mode whose damping differs most from the boom file's, if by more than oil can explain; -1: none.
+/// Returns the mode whose damping differs most from the boom file's; -1 if oil explains the damping of all modes.
 int modeOfOddDamping(const Boom& boom) noexcept;
 
-/// Empty where sensors do not determine it: before the frequencies are known with their delay, while the hull bounces
-/// on rock, at a zero moment arm, or with unknown joints.
+/// Returns the figures; empty where sensors do not determine them: before the frequencies are known with their delay,
+/// while the hull bounces on rock, at a zero moment arm, or with unknown joints.
 std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept;
 
 }  // namespace hammer_loads

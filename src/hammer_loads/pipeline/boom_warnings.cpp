@@ -17,8 +17,8 @@ namespace {
 constexpr double kLateStamp = 8e-4;
 // Warning: kLateStamp
 
-/// Apparent delay of pressures by damping that is not the oil's [s]: that of the damping in excess of the boom file's,
-/// or of all damping if it is implausible, and the deviation of the delay.
+/// Returns the apparent delay of pressures due to damping that is not the oil's [s]. It follows from the damping beyond
+/// the boom file's. If the damping is implausible, all of it counts, plus a multiple of the delay's standard deviation.
 double lagOfDamping(const Boom& boom, int odd) {
   const double oil = odd < 0 ? boom.parameters().vibration.damping_ratio : 0.0;
   double lag = 0.0;
@@ -30,7 +30,7 @@ double lagOfDamping(const Boom& boom, int odd) {
   return odd < 0 ? lag : lag + gate::kUsual * identifier.delayDeviation(Clock::kPressures);
 }
 
-/// Delay of a sensor's own clock by the boom's modes. explained: apparent delay by other causes [s].
+/// Returns true if the boom's modes show a delayed sensor clock. explained: apparent delay due to other causes [s].
 bool isOff(const ModeIdentifier& identifier, Clock clock, double explained = 0.0) {
   constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
   // Warning: kKnown, kPart
@@ -61,7 +61,7 @@ void warnOfImuClock(const ModeIdentifier& identifier, std::vector<Warning>& warn
                       true});
 }
 
-/// explained: apparent delay by the boom's damping [s].
+/// Warns of late pressures or of a poor fit. explained: apparent delay due to the boom's damping [s].
 void warnOfPressures(const ModeIdentifier& identifier, double explained, std::vector<Warning>& warnings) {
   const double surprise = identifier.oilSurprise();
   if (isOff(identifier, Clock::kPressures, explained)) {
@@ -80,8 +80,8 @@ void warnOfPressures(const ModeIdentifier& identifier, double explained, std::ve
   }
 }
 
-/// The cylinder whose oil differs most from that of the others, if by more than the boom file expects. odd: mode whose
-/// damping is not that of oil, or -1.
+/// Warns of the cylinder whose oil differs most from the others', if by more than the boom file expects. odd: mode
+/// whose damping is not that of oil, or -1.
 void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
   const CylinderParameters* unlike = nullptr;
   Vibration::OilAgainstOthers found;
@@ -107,7 +107,7 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
 
 /// Warns of pressures that are not used.
 void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warning>& warnings) {
-  constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of what air has
+  constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of the atmospheric pressure
   // Warning: kOfNoCylinder
   if (trust.isLate()) {
     warnings.push_back({"pressure stamps",

@@ -1,4 +1,4 @@
-/// Warnings on sensors, oil and joints by the boom's vibration.
+/// Warnings on sensors, oil and joints, derived from the boom's vibration.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace hammer_loads {
 
-/// boom: of the last sample; nullptr: none. imu_lost: it is not used.
+/// Adds the warnings. boom: state at the last sample, nullptr if there is none. imu_lost: the IMU is not used.
 void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lost, std::vector<Warning>& warnings);
 
 }  // namespace hammer_loads

@@ -95,7 +95,7 @@ void BudgetRecorder::follow() noexcept {
   if (result.isPublished()) sample(result);
 }
 
-/// Rows of one name are parts of one source.
+/// Returns the sources of a variance. Rows with the same name are parts of one source.
 std::vector<BudgetFigure::Source> BudgetRecorder::sources(const Columns& columns, double readings, double rod,
                                                           const Unknown& unknown) const {
   std::vector<BudgetFigure::Source> sources;

@@ -12,27 +12,27 @@
 
 namespace hammer_loads {
 
-/// A figure and what each source adds to its variance.
+/// A figure and the contribution of each source to its variance.
 struct BudgetFigure {
   struct Source {
-    std::string name;  ///< a key of the parameter files, "readings", or what a level leaves out
+    std::string name;  ///< a key of the parameter files, "readings", or an effect that a model level neglects
     double variance{};
   };
   std::string quantity;
-  double value{}, deviation{};  ///< mean over the run, and the standard deviation of one turn's
-  std::vector<Source> sources;  ///< without those that add nothing
+  double value{}, deviation{};  ///< mean over the run, and standard deviation of one revolution's value
+  std::vector<Source> sources;  ///< only those with a contribution
 };
 
-/// Collects the contributions to pulse, blow and ranges of the hull's loads over all turns of a run.
+/// Collects the contributions to pulse, blow and ranges of the hull's loads over all revolutions of a run.
 class BudgetRecorder {
  public:
   explicit BudgetRecorder(const Pipeline& pipeline);
 
   /// Takes the pipeline's last sample or the ends of Pipeline::end(). No allocation.
   void follow() noexcept;
-  /// Budgets of pulse and blow; empty before a revolution has ended.
+  /// Returns the budgets of pulse and blow; empty before a revolution has ended.
   std::vector<BudgetFigure> figures() const;
-  /// Relative variances of the ranges of a hull channel, of kHullChannels; all zero before a turn has ended.
+  /// Returns relative variances of a hull channel's ranges; empty before a revolution has ended.
   std::vector<BudgetFigure::Source> ofRange(std::size_t channel) const;
 
  private:
@@ -40,7 +40,7 @@ class BudgetRecorder {
   using Unknown = Eigen::Array<double, UnknownForce::kSources, 1>;
   struct Sum {
     std::uint64_t count{};
-    double value{}, own{}, rod{};  ///< the latter of variances
+    double value{}, own{}, rod{};  ///< sums of values, and of variances
     Columns columns{Columns::Zero()};
 
     void add(double number, const NumberError& error) noexcept;
@@ -53,7 +53,7 @@ class BudgetRecorder {
     double readings{}, rod{};          ///< variances
     Unknown unknown{Unknown::Zero()};  ///< variances by source of UnknownForce
   };
-  /// Extreme sample of a revolution, and the sample that may be the extreme by one of its own deviations
+  /// Extreme sample of a revolution, and the sample that is most extreme with its own standard deviation added
   /// (life::TurnExtremes).
   struct Extreme {
     End end{}, reach{};
@@ -61,7 +61,7 @@ class BudgetRecorder {
     double sign{1.0};  ///< -1: the least
 
     void add(const End& sample) noexcept;
-    End known() const noexcept;  ///< the sample, its variances those of the turn's extreme
+    End known() const noexcept;  ///< the sample with the variances of the revolution's extreme
   };
   /// Range of one channel: of the present revolution, and sums over revolutions weighted by the range.
   struct Range {

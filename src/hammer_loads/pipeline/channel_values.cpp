@@ -62,7 +62,7 @@ void BandMeans::restart() noexcept {
   begun_ = false;
 }
 
-/// Returns false where the means wait for the next sample: close to a blow the boom's loads are not known, and are
+/// Returns false where the means wait for the next sample. Close to a blow the boom's loads are unknown and are
 /// interpolated.
 bool BandMeans::follow(const double* values) noexcept {
   const SampleResult& result = pipeline_->result();
@@ -83,7 +83,7 @@ bool BandMeans::follow(const double* values) noexcept {
   return true;
 }
 
-/// Loads that are not published are not known.
+/// Keeps the values of the sample. Unpublished loads are unknown.
 void BandMeans::keep(const double* values) noexcept {
   std::copy_n(values, values_.size(), values_.begin());
   if (!known_) std::fill(values_.begin(), values_.end(), kNaN);
@@ -98,7 +98,7 @@ void BandMeans::addUpTo(StampNs stamp) noexcept {
   added_up_to_ = stamp;
 }
 
-/// The standard deviation is that at the sample, since errors do not average out within half a period.
+/// Forms means; their standard deviation is that at the sample, as errors do not average out within half a period.
 void BandMeans::form(const WrenchOutput& mean, const double* deviations, const double* common) noexcept {
   addUpTo(mean.stamp);
   for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i] = integral_[i] / mean.interval;

@@ -16,9 +16,9 @@ inline void wrenchValues(const HullWrench& wrench, double* values) noexcept {
   values[0] = wrench.force_x, values[1] = wrench.force_z, values[2] = wrench.torque_y;
 }
 
-/// Values of all channels at an accepted sample; NaN: not known. boom: as for the names. All arrays have as many places
-/// as there are names. The wrench's deviations are those of extremes at the sample; common: the part of constants in
-/// these.
+/// Writes the values of all channels at an accepted sample; NaN: not known. boom: as for the names. All arrays have one
+/// element per name. The wrench's standard deviations are those of extremes at the sample. common: their part due to
+/// constants.
 void channelValues(const SampleResult& result, const Boom* boom, double* values, double* deviations,
                    double* common) noexcept;
 
@@ -26,7 +26,7 @@ void channelValues(const SampleResult& result, const Boom* boom, double* values,
 /// the same intervals. No allocation after construction.
 class BandMeans {
  public:
-  /// bandwidth [Hz], > 0. channels: number of all. Refers to the pipeline, which must outlive it.
+  /// bandwidth [Hz], > 0. channels: total number. Refers to the pipeline, which must outlive it.
   BandMeans(const Pipeline& pipeline, double bandwidth, std::size_t channels);
 
   /// Notes that the next sample does not continue the one before.
@@ -52,11 +52,11 @@ class BandMeans {
 
   const Pipeline* pipeline_;
   WrenchSampler sampler_;
-  std::vector<WrenchOutput> means_;  ///< means of the hull since the last sample that counts
+  std::vector<WrenchOutput> means_;  ///< means of the hull since the last sample in use
   bool begun_{}, known_{};           ///< known_: the loads of the sample are published
-  StampNs before_{}, now_{};         ///< the last two samples that count
+  StampNs before_{}, now_{};         ///< the last two samples in use
   StampNs added_up_to_{};
-  std::vector<double> values_before_, values_, integral_;  ///< places of the hull are not used
+  std::vector<double> values_before_, values_, integral_;  ///< elements of the hull are not used
   std::vector<double> mean_, deviations_, common_;
 };
 

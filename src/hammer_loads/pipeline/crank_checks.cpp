@@ -17,11 +17,11 @@ constexpr double kDegrees = 360.0 / kTwoPi;  // in a radian
 constexpr double kRpm = 60.0 / kTwoPi;       // in a radian a second
 constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
 constexpr double kLeastStretch = 0.01;  // [rad] for the shorter stretch: limits the effect of the speed's noise as well
-constexpr double kStretch = 1.0;        // [rad]: shorter than a turn, so that most stretches see no jump back
+constexpr double kStretch = 1.0;        // [rad]: shorter than a revolution, so that most stretches contain no jump back
 constexpr double kLongestStep = 0.25;   // [s]
 constexpr double kRepeats = 0.2;        // relative change between steps that repeat each other
 constexpr double kMoves = 1.0;          // [rad/s]: a slower angle does not show its unit
-constexpr int kEnough = 8;              // votes more for another unit than against
+constexpr int kEnough = 8;              // surplus of votes for another unit
 
 constexpr double kWindow = 8e-3;                    // [s] over which a rate is taken
 constexpr double kMeanRate = 1.0;                   // time constant of the mean rate [s]
@@ -32,7 +32,7 @@ constexpr double kLeastCounts = 100.0;              // counts per revolution
 // Limit: kTolerance, kLeastStretch, kStretch, kLongestStep, kRepeats, kMoves, kEnough, kWindow, kMeanRate, kSlowPart,
 // kFastPart, kLikeRevolution, kSameLength, kLeastCounts
 
-/// Unit that a cycle's length in the angle's own unit, times the gain, shows. Nothing: it is none of them.
+/// Returns the unit that matches the length of a cycle, in the angle's own unit times the gain; empty if none does.
 std::optional<CrankUnit> unitOfRevolution(double length) noexcept {
   const auto is = [&](double other) { return std::abs(std::log(length / other)) < std::log(kLikeRevolution); };
   if (is(kTwoPi)) return CrankUnit::kRadians;
@@ -41,7 +41,7 @@ std::optional<CrankUnit> unitOfRevolution(double length) noexcept {
   return length > kLeastCounts ? std::make_optional(CrankUnit::kAngleInCounts) : std::nullopt;
 }
 
-/// The closest one within the tolerance; ratio: turned over predicted.
+/// Returns the closest unit within the tolerance. ratio: measured over predicted rotation.
 CrankUnit unitOf(double ratio) noexcept {
   if (std::abs(std::log(-ratio)) < std::log(kTolerance)) return CrankUnit::kSpeedSign;
   constexpr struct {
@@ -87,7 +87,7 @@ CrankSampleGate::Verdict CrankSampleGate::judge(StampNs stamp, const CrankSample
   return {std::nullopt, place == StampOrder::Place::kFirst ? Order::kFirst : Order::kNext, step, isSpeedDead(sample)};
 }
 
-/// A sensor's angle may be frozen while its speed changes.
+/// Returns true if the angle is frozen, which may happen while the speed changes.
 bool CrankSampleGate::isFrozen(double step, const CrankSample& sample) noexcept {
   const double speed = std::abs(sample.speed.value_or(0.0)), turn = speed * step;
   const bool turns = speed > limits_.frozen_speed && (frozen_ || (turn > limits_.frozen_turn && turn < 0.5 * kTwoPi));
@@ -130,7 +130,7 @@ void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexce
 void UnitCheck::compareWithSpeed(double step, double predicted) noexcept {
   turned_ += step;
   predicted_ += predicted;
-  // In degrees the one of the two turns much further than the other; counts need some ten to be a ratio.
+  // If one of the two is in degrees, it advances much further than the other. A ratio needs some ten encoder counts.
   if (std::abs(predicted_) < kStretch && (std::abs(turned_) < kStretch || std::abs(predicted_) < kLeastStretch)) return;
   const CrankUnit unit = unitOf(turned_ / predicted_);
   // An angle that stands still and then catches up looks like one unit and then like another.
@@ -144,7 +144,7 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
   last_rate_ = rate;
   if (!repeats || std::abs(rate) < kMoves) return;
   const bool too_fast = std::abs(rate) > max_speed_;
-  if (too_fast && std::abs(rate) > kDegrees * max_speed_) return;  // no crank in degrees either
+  if (too_fast && std::abs(rate) > kDegrees * max_speed_) return;  // too fast for any crank, even in degrees
   slow_time_ = too_fast ? 0.0 : slow_time_ + dt;
   if (isOtherUnit() && !too_fast && slow_time_ < look_back::kTenTurns) return;  // a hammer that stops is slow, too
   vote(bound_votes_, too_fast ? CrankUnit::kDegrees : CrankUnit::kRadians);
@@ -169,7 +169,7 @@ void UnitCheck::followCycle(double dt, double turned) noexcept {
   vote(cycle_votes_, *unit);
 }
 
-/// One criterion suffices to recognise a unit; all must agree that it is right again.
+/// Counts a vote. One criterion suffices to recognise another unit; all must agree to return to radians.
 void UnitCheck::vote(int& votes, CrankUnit unit) noexcept {
   const bool wrong = unit != CrankUnit::kRadians;
   votes = std::clamp(votes + (wrong ? 1 : -1), 0, kEnough);

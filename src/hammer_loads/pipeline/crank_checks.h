@@ -15,14 +15,14 @@
 
 namespace hammer_loads {
 
-/// A sample's own values and its place in time.
+/// Checks a sample's own values and its place in time.
 class CrankSampleGate {
  public:
   struct Limits {
     double max_speed{};     ///< largest speed of any crank [rad/s]
     double stale_after{};   ///< age of the last sample from which on a new one restarts [s]
-    double frozen_turn{};   ///< a crank that turned further does not give the same angle again [rad]
-    double frozen_speed{};  ///< speed above which equal readings are frozen however soon they follow [rad/s]
+    double frozen_turn{};   ///< rotation beyond which a working sensor does not repeat an angle [rad]
+    double frozen_speed{};  ///< speed above which a frozen angle stays frozen until it changes [rad/s]
   };
   explicit CrankSampleGate(const Limits& limits) : limits_(limits), stamps_(limits.stale_after) {}
 
@@ -34,7 +34,7 @@ class CrankSampleGate {
     bool speed_is_dead{};  ///< only zeros while the angle moves, as sent by drivers that do not measure the speed
   };
 
-  /// Reason for which a sample's own values cannot be accepted, whatever its stamp.
+  /// Returns the reason why a sample's own values cannot be accepted, whatever its stamp; empty if they can.
   std::optional<Refusal> refusalOf(const CrankSample& sample) const noexcept;
   Verdict judge(StampNs stamp, const CrankSample& sample) noexcept;
   void accept(StampNs stamp, const CrankSample& sample) noexcept {
@@ -59,18 +59,18 @@ class CrankSampleGate {
 /// nothing is published: no wrench, no blow, no pulse, no load cycle.
 class CrankTrust {
  public:
-  /// CrankFilter::strikeConsistency() beyond which readings contradict the model. With a zero 30 deg off it is 5, with
-  /// a crank that turns backward 6.5, with a zero 2 deg off 2.5, on machines with an elastic rod below 2
+  /// CrankFilter::strikeConsistency() beyond which readings contradict the model. It is 5 with a zero 30 deg off and
+  /// 6.5 with a crank that turns backward. It is 2.5 with a zero 2 deg off, and below 2 with an elastic rod
   /// (crank_trust_test).
   static constexpr double kMost = mismatch::kContradicts;
-  /// threshold of CrankFilter::consistency() for a warning that withholds nothing; a correct machine has 0.9, a zero 2
-  /// deg off 2
+  /// Threshold of CrankFilter::consistency() for a warning that withholds nothing. A correct machine has 0.9, a machine
+  /// with a zero 2 deg off has 2.
   static constexpr double kInconsistent = mismatch::kUnexplained;
 
   explicit CrankTrust(const CrankSensor& sensor) noexcept : sensor_(sensor) {}
 
-  /// reading: of the angle [rad]; strike_consistency: CrankFilter's, NaN where it is not known; step: since the sample
-  /// before [s]; 0 after a restart, over which it is not known how far the crank has turned.
+  /// Judges a reading of the angle [rad]. strike_consistency: CrankFilter's, NaN where it is not known. step: since the
+  /// previous sample [s]; 0 after a restart, over which the rotation is not known.
   void follow(double reading, double strike_consistency, double step) noexcept {
     const double turned = reading_ && step > 0.0 ? sensor_.gain() * CrankAngle::wrapToPi(reading - *reading_) : 0.0;
     reading_ = reading;
@@ -92,7 +92,7 @@ class CrankTrust {
   /// Returns true if the crank has turned forward recently; a crank that only turned backward has not struck.
   bool hasRunUp() const noexcept { return forward_ > kRunUp; }
   bool isInconsistent() const noexcept { return inconsistent_ || isLost(); }
-  /// Returns true if the estimate before the blow was not good enough in several successive turns.
+  /// Returns true if the estimate before the blow was not good enough in several successive revolutions.
   bool isLost() const noexcept { return unpublished_ == kUnpublished; }
   std::optional<Refusal> refusal() const noexcept {
     if (backward_) return Refusal::kBackward;
@@ -100,13 +100,13 @@ class CrankTrust {
   }
 
  private:
-  /// Number of successive strokes. With a correct model one in a hundred is not accepted, after lost samples; with a
-  /// zero 30 deg off on a machine with an elastic rod, or on a machine without a tool, nine of ten are not.
+  /// Number of successive strokes. With a correct model one in a hundred is not published, after lost samples. With a
+  /// zero 30 deg off on a machine with an elastic rod, or without a tool, nine in ten are not published.
   static constexpr int kUnpublished = 2;
   static constexpr double kRunUp = 1.0;  ///< [rad]: more than the noise of readings, less than the motion at a blow
   // Limit: kRunUp
   /// Judges the direction of rotation. A stopping hammer that falls back on its tool turns backward by less than half a
-  /// turn, since the rocker cannot pass the dead centre backward.
+  /// revolution, since the rocker cannot pass the dead centre backward.
   void followTurning(double turned) noexcept {
     forward_ = std::max(0.0, forward_ + turned);
     back_ = std::max(0.0, back_ - turned);
@@ -120,17 +120,17 @@ class CrankTrust {
   }
   CrankSensor sensor_;
   std::optional<double> reading_;  ///< the last one [rad]
-  double forward_{}, back_{};      ///< rotation forward since the furthest point backward [rad]
+  double forward_{}, back_{};      ///< rotation since the rearmost and since the foremost point [rad]
   bool backward_{}, inconsistent_{};
-  int unpublished_{};  ///< strokes in a row of which the estimate was not good enough to be published
+  int unpublished_{};  ///< successive strokes without an estimate that was good enough to be published
 };
 
 /// The units of a crank's messages.
 enum class CrankUnit {
   kRadians,
   kDegrees,       ///< angle, speed or both
-  kSpeedInRpm,    ///< turns a minute
-  kSpeedInTurns,  ///< turns a second
+  kSpeedInRpm,    ///< revolutions per minute
+  kSpeedInTurns,  ///< revolutions per second
   kAngleInTurns,
   kAngleInCounts,  ///< angle in the encoder's counts
   kSpeedSign,      ///< the speed's sign is not that of the angle's change
@@ -143,7 +143,7 @@ constexpr bool isOfSpeed(CrankUnit unit) noexcept {
   return unit == CrankUnit::kSpeedInRpm || unit == CrankUnit::kSpeedInTurns || unit == CrankUnit::kSpeedSign;
 }
 
-/// The text of its warning.
+/// Returns the text of the warning about a unit.
 constexpr const char* textOf(CrankUnit unit) noexcept {
   switch (unit) {
     case CrankUnit::kDegrees:
@@ -164,31 +164,30 @@ constexpr const char* textOf(CrankUnit unit) noexcept {
   return "angle and speed are in radians";
 }
 
-/// Compares what the crank's angle turns with what its speed says, over stretches of a radian or more: a factor of 57.3
-/// either way is degrees in one of them, 1/9.55 a speed in rpm, 6.28 one in turns a second, 1/6.28 an angle in turns.
-/// A factor of -1 is a wrong sign. A hammer's crank is slow once in a revolution: what the angle turns between two such
-/// places is its unit's revolution, whatever the speeds are and whether the angle is wrapped or not.
-/// Where both would be in degrees, or no speed is measured, it looks for steps that repeat themselves, each faster than
-/// any crank, but not so if they were degrees. Needs the raw samples, those that are refused as well; judges within
-/// some 2 turns and takes nothing back before the samples contradict it. Degrees of both angle and speed below
-/// `max_speed` [deg/s] look like radians.
+/// Compares the rotation by the crank's angle with that by its speed, over stretches of a radian or more. A factor of
+/// 57.3 either way means degrees in one of them, 1/9.55 a speed in rpm. 6.28 means a speed in turns per second, 1/6.28
+/// an angle in turns. A factor of -1 is a wrong sign. A hammer's crank is slow once per revolution. The rotation
+/// between two slow places is a revolution in the angle's unit, at any speed and with or without wrapping. If both are
+/// in degrees, or without a speed, it looks for repeated steps that are faster than any crank, but plausible in
+/// degrees. It needs all raw samples, including refused ones. It decides within some 2 revolutions and revokes nothing
+/// before samples contradict it. Degrees of both angle and speed below `max_speed` [deg/s] look like radians.
 class UnitCheck {
  public:
-  /// No crank is faster [rad/s].
-  /// gain: crank angle per reading [-], != 0.
+  /// max_speed: no crank is faster [rad/s]. gain: crank angle per reading [-], != 0.
   explicit UnitCheck(double max_speed, double gain = 1.0) noexcept : max_speed_(max_speed), gain_(std::abs(gain)) {}
 
-  /// Sample dt after the one before it [s]; dt <= 0, a long pause and values that are not finite begin a new stretch.
+  /// Adds a sample dt [s] after the previous one. dt <= 0, a long pause or values that are not finite begin a new
+  /// stretch.
   void add(double dt, double angle, std::optional<double> speed) noexcept;
   CrankUnit unit() const noexcept { return recognised_; }
   bool isOtherUnit() const noexcept { return recognised_ != CrankUnit::kRadians; }
-  /// The last stretches speak for another unit, but not enough of them yet.
+  /// Returns true if the last stretches indicate another unit. Recognising it needs more of them.
   bool suspects() const noexcept {
     return speed_votes_ >= kSuspicious || bound_votes_ >= kSuspicious || cycle_votes_ >= kSuspicious;
   }
 
  private:
-  static constexpr int kSuspicious = 2;  ///< votes more for another unit than against
+  static constexpr int kSuspicious = 2;  ///< surplus of votes for another unit
   // Limit: kSuspicious
 
   void begin(double angle) noexcept;
@@ -202,7 +201,7 @@ class UnitCheck {
   double last_rate_{};             ///< rate of the angle over the last step [rad/s]
   double turned_{}, predicted_{};  ///< rotation over this stretch, by angles and by speeds [rad]
   double suspected_for_{};         ///< time since the votes became suspicious [s]
-  double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
+  double slow_time_{};             ///< time of motion within the bound since it was last exceeded [s]
   int speed_votes_{}, bound_votes_{}, cycle_votes_{};
   CrankUnit cycle_unit_{CrankUnit::kRadians};  ///< unit to which cycle_votes_ belong
   double last_step_{};                         ///< last step of the angle, except for steps back by a revolution
@@ -210,14 +209,14 @@ class UnitCheck {
   struct {
     double turned{}, time{};    ///< rotation and duration of the present window
     double mean{};              ///< rate [1/s]
-    double length{}, before{};  ///< turned since the cycle began; in the one before
+    double length{}, before{};  ///< rotation since the cycle began, and in the previous cycle
     bool slow{};
   } cycle_;
   CrankUnit speed_unit_{CrankUnit::kRadians};  ///< unit to which speed_votes_ belong
   CrankUnit recognised_{CrankUnit::kRadians};
 };
 
-/// A pitch joint beyond a whole turn [rad]: a boom in degrees, for it cannot reach there.
+/// Returns true if a pitch joint's angle is beyond a revolution [rad]. No boom reaches it, so that it is in degrees.
 constexpr bool jointLooksLikeDegrees(double angle) noexcept { return angle > kTwoPi || angle < -kTwoPi; }
 
 }  // namespace hammer_loads

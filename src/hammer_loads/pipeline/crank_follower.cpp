@@ -21,7 +21,7 @@ constexpr int kSettlingSamples = 5;  // without measured speeds: until then they
 constexpr double kSettledDeviations = gate::kRare;       // deviations of the predicted error
 constexpr double kFrozenCounts = 5;                      // a crank that turned further gives another angle
 constexpr double kSameLateness = 0.3;                    // of the lateness
-constexpr double kSurelyPasses = 1.3;                    // counts, by a speed that may be a fifth too large
+constexpr double kSurelyPasses = 1.3;                    // counts, for a speed that may be a fifth too large
 constexpr double kFrozenDeviations = gate::kImpossible;  // deviations of a sensor's noise
 // Limit: kFrozenCounts
 
@@ -76,12 +76,12 @@ CrankStep::Passage CrankStep::passageOf(std::int64_t blow, bool forward) const n
   return p;
 }
 
-/// Root of the position by bracketing false position (Illinois).
+/// Returns the root of the position by bracketing false position (Illinois).
 double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
   const CrankPosition at_blow{blow, {0.0, Side::kAfterBlow}};
   double low = 0.0, high = length_;
   double f_low = difference(at(low).position, at_blow), f_high = difference(at(high).position, at_blow);
-  const double sign = f_high < f_low ? -1.0 : 1.0;  // a crank that turns back
+  const double sign = f_high < f_low ? -1.0 : 1.0;  // negative for a crank that turns backward
   f_low *= sign, f_high *= sign;
   constexpr double kAngleTolerance = 1e-11;  // [rad]: some 1e-12 s
   // Numerical: kAngleTolerance
@@ -156,7 +156,7 @@ StampSequence::Repeats CrankFollower::repeatsOf(const CrankSample& measured) con
                                                                : Repeats::kAtRest;
 }
 
-/// True if the crank passes more than a count of its encoder between two samples, so that no sensor repeats an angle.
+/// Returns true if the crank passes more than an encoder count between two samples, so that no sensor repeats an angle.
 bool CrankFollower::passesCounts() const noexcept {
   if (!turns() || !sequence_.fit().isKnown()) return false;
   return std::abs(estimate_.speed) * 1e-9 * sequence_.fit().interval() > kSurelyPasses * tracker_->angleResolution();
@@ -215,27 +215,27 @@ CrankFollower::Outcome CrankFollower::update(const HullMotion& hull) noexcept {
   return Outcome::kContinued;
 }
 
-/// Counts a late stamp whose angle was read in time, as the angle is behind by the stamp's lateness.
+/// Counts a late stamp whose angle was read in time. The angle is then behind by the lateness of the stamp.
 void CrankFollower::followStamp() noexcept {
   const double late = sequence_.lateness(), off = tracker_->instantOff();
   if (late > 0.0 && std::abs(off + late) < kSameLateness * late) sequence_.countLate();
   if (turns()) task_.add(stamp_, off);
 }
 
-/// Standard deviation of the common shift of all stamps [s]. A reading by a controller's task is half a period old on
-/// average and may be a mean of several readings; a given latency contains both.
+/// Returns the standard deviation of the common shift of all stamps [s]. A reading by a controller's task is half a
+/// period old on average and may be a mean of several readings. A given latency contains both.
 double CrankFollower::stampsOff() const noexcept {
   const double age = latency_ > 0 ? task_.period() / std::sqrt(12.0) : task_.period();
   return std::hypot(0.5 * sequence_.rounding(), age);
 }
 
-/// True if the readings determine the length of the step better than jittering stamps do.
+/// Corrects the length of the step where readings determine it better than jittering stamps do.
 void CrankFollower::followLostTime() noexcept {
   if (tracker_->slips() > slips_) slipped_ = stamp_;
   slips_ = tracker_->slips();
   const double lost = tracker_->lostTime();
-  // Single stamps show only some ten samples later that one was lost or counted too many. The crank has made up for it
-  // by then, so that the step between the two instants is wrong, and not the later one.
+  // Single stamps show a lost or surplus sample only some ten samples later. The crank has made up for it by then, so
+  // that the step between the two instants is wrong, not the later instant.
   const bool was_made_up =
       sequence_.fit().inBursts() ? lost > 0.0 && sequence_.fit().movedBack() : lost < 0.0 || sequence_.isCrowded();
   if (lost == 0.0 || was_made_up) return;
@@ -265,7 +265,7 @@ void CrankFollower::restart() noexcept {
   samples_since_restart_ = 0;
 }
 
-/// Before the first whole turn there is no peak for comparison; then only the speed must be known.
+/// Before the first whole revolution there is no peak for comparison. Then only the speed must be known.
 bool CrankFollower::isSettled(const HullMotion& hull, double peak_force) noexcept {
   if (!tracker_->isPlausible() || suspectsUnit()) return false;
   if (!unsettled_) return true;

@@ -22,12 +22,12 @@ constexpr double kPulseStep = 1.25e-3;  ///< [s] between points of a path at mos
 constexpr double kBesideBlow = 1e-7;  ///< [s] before and after the blow where its two sides are looked at
 // Numerical: kBesideBlow
 
-/// The part of an estimate that determines a load.
+/// Returns the part of an estimate that determines a load.
 inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {
   return {crank.position.angle, crank.speed, crank.acceleration};
 }
 
-/// Refers to the filter, whose last update it belongs to. Times are after the step's start [s].
+/// Step between samples, for the filter's last update. Refers to the filter; times count from the step's start [s].
 class CrankStep {
  public:
   /// The blow passed forward or backward, whether or not anything strikes.
@@ -37,48 +37,48 @@ class CrankStep {
     bool forward{};
     double speed_before{};  ///< crank speed before the passage, in the order of time [rad/s]
     double speed_after{};   ///< crank speed after the passage [rad/s]
-    bool smooth{};          ///< onto the mirrored branch or back from it, without a jump
+    bool smooth{};          ///< leads onto the mirrored branch or back from it, without a jump
     bool may_strike{};      ///< true if it strikes, or leads onto the mirrored branch, which may turn out wrong
     bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 
   CrankStep(const CrankFilter& tracker, const HullModel& model) : tracker_(&tracker), model_(&model) {}
 
-  /// The time before the last sample, in position `at`, is not known.
+  /// Discards the time before the last sample, which is in position `at`.
   void forget(const CrankPosition& at) noexcept;
-  /// A step of `length` [s] that began at stamp `start` in position `from`; finds its passages.
+  /// Sets a step of `length` [s] that began at stamp `start` in position `from`, and finds its passages.
   void set(StampNs start, double length, const CrankPosition& from) noexcept;
 
   bool known() const noexcept { return known_; }
   StampNs start() const noexcept { return start_; }
   double length() const noexcept { return length_; }
-  /// Stamp of an instant this long after the start [s].
+  /// Returns the stamp of an instant `time` [s] after the start.
   StampNs stampAt(double time) const noexcept {
     return start_ + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
   }
   CrankEstimate at(double time) const noexcept { return tracker_->between(time); }
-  /// At its end.
+  /// Returns the links at the step's end.
   const LinksAtAngle& links() const noexcept { return links_; }
-  /// Motion of the links at an angle; at the step's ends it is known already.
+  /// Returns the motion of the links at an angle. At the step's ends it is known already.
   LinkMotion linksAt(CrankAngle angle) const noexcept {
     if (angle == links_.angle) return links_.links;
     return angle == links_before_.angle ? links_before_.links : hammer_loads::linksAt(*model_, angle).links;
   }
   double driveInertia() const noexcept { return tracker_->driveInertia(); }  ///< at its end [kg m2]
-  /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
+  /// Passages in order of time. Beyond what the array holds (some 30 revolutions per step) the last are left out.
   const Passage* begin() const noexcept { return passage_.data(); }
   const Passage* end() const noexcept { return passage_.data() + passages_; }
-  /// The rocker hits the tool within it.
+  /// Returns true if the rocker hits the tool within the step.
   bool strikes() const noexcept {
     return std::any_of(begin(), end(), [](const Passage& passage) { return passage.strikes; });
   }
 
-  /// Estimate on one side of a passage that is not smooth: exactly at the blow, so that nothing is lost to rounding
-  /// there.
+  /// Returns the estimate on one side of a passage that is not smooth. It is exactly at the blow, so that nothing is
+  /// lost to rounding.
   CrankEstimate atSide(const Passage& passage, Side side) const noexcept;
   /// Standard deviation of the instant of a passage [s].
   double timeDeviation(const Passage& passage) const noexcept;
-  /// Crank at(time), or atSide(passage, side), as each of the samples at the step's ends predicts it; none where one
+  /// Returns at(time), or atSide(passage, side), as each of the samples at the step's ends predicts it. Empty where one
   /// of them does not reach that far.
   std::optional<CrankWays> ways(double time) const noexcept { return tracker_->waysBetween(time); }
   std::optional<CrankWays> waysBesides(const Passage& passage, Side side) const noexcept;
@@ -117,11 +117,11 @@ class CrankFollower {
 
   /// Judges a sample by itself: header stamp and reading. Only if there is no refusal, update() must follow.
   std::optional<Refusal> judge(StampNs header, const CrankSample& measured) noexcept;
-  /// Instant of the judged sample: its header stamp less crank_latency_s, or that refitted by sequence.
+  /// Instant of the judged sample: its header stamp minus crank_latency_s, or that refitted by sequence.
   StampNs stamp() const noexcept { return stamp_; }
-  /// Updates the filter by the judged sample. hull: motion at it.
+  /// Updates the filter with the judged sample. hull: its motion at the sample.
   Outcome update(const HullMotion& hull) noexcept;
-  /// Ends a step: later steps begin at this sample.
+  /// Accepts the judged sample; the next step begins at it.
   void accept() noexcept;
 
   /// CrankFilter::moveZero().
@@ -144,7 +144,7 @@ class CrankFollower {
   const StampSequence& stamps() const noexcept { return sequence_; }
   const ControllerTask& task() const noexcept { return task_; }
   CrankUnit unit() const noexcept { return unit_check_.unit(); }
-  /// Stamp of the sample at which the encoder slipped last [ns]; none if it did not.
+  /// Returns the stamp of the sample at which the encoder slipped last [ns]; empty if it did not.
   const std::optional<StampNs>& slipped() const noexcept { return slipped_; }
   bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
 

@@ -20,18 +20,18 @@ enum class Chamber : std::size_t { kBore, kRod };
 /// allocation.
 class CylinderPressures {
  public:
-  /// max_age: from an instant to the nearest reading [s].
+  /// max_age: largest time from an instant to the nearest reading [s].
   explicit CylinderPressures(double max_age) : max_age_(max_age) {}
 
-  /// Gauge pressure [Pa] of a cylinder of the boom. One that is not finite, beyond what steel holds, not newer than the
-  /// last or far off the others (JumpGuard) is refused and counted; time running back is accepted from the second
+  /// Takes a gauge pressure [Pa] of a cylinder. It is refused and counted if it is not finite, beyond the strength of
+  /// steel, not newer than the last, or far off the others (JumpGuard). Time that runs back is accepted from the second
   /// reading on.
   bool update(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept;
   /// Returns true if the pressures of both chambers are known.
   bool known(std::size_t cylinder, StampNs stamp) const noexcept {
     return known(tracks_[cylinder][0], stamp) && known(tracks_[cylinder][1], stamp);
   }
-  /// Empty unless both chambers are known.
+  /// Returns the pressures; empty unless both chambers are known.
   std::optional<ChamberPressures> at(std::size_t cylinder, StampNs stamp) const noexcept;
 
   /// Stamp of a cylinder's last reading.

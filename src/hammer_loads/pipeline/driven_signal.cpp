@@ -20,18 +20,18 @@ constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 constexpr double kFarOff = square(gate::kRare);  // in variances: limit of the contribution of a reading
 constexpr double kComplianceWalk = 0.01;         // part of the first guess's deviation in a second: a pose that changes
 // Prior: kComplianceWalk
-// Relative error of a compliance by a description whose masses are right to 3 % and centres to 2 cm.
+// Relative error of a compliance from a description with masses right to 3 % and centres to 2 cm.
 constexpr double kDescribed = 0.05;
 // Prior: kDescribed
 constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
-constexpr double kLeastNoise = 1e-3;    // part of the first guess, as a logarithm is taken of it
+constexpr double kLeastNoise = 1e-3;    // part of the first guess, since its logarithm is needed
 constexpr double kUnknownSignal = 1e3;  // ratio of the smooth part at the start to the noise
 constexpr double kOfInterval = 0.05;    // weight of one reading in the mean
 // Numerical: kUnknownSignal, kUnknownSlope, kLeastNoise, kOfInterval
 constexpr double kFirstCounts = 10.0;  // weight of the first guess of the noise, in readings
 
-/// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it
-/// the slope counts.
+/// Returns M F^T of rows of states. F predicts integral, smooth part and slope at the end of a step, of which the slope
+/// acts during slope_step.
 template <typename Rows>
 HAMMER_LOADS_INLINE auto carried(const Rows& M, const DrivenSignal::Step& step, double slope_step) noexcept {
   const double h = step.length;
@@ -45,7 +45,7 @@ HAMMER_LOADS_INLINE auto carried(const Rows& M, const DrivenSignal::Step& step, 
   return result;
 }
 
-/// M H^T of rows of states, where H makes the signal at a load.
+/// Returns M H^T of rows of states, where H yields the signal at a load.
 template <typename Rows>
 HAMMER_LOADS_INLINE auto signalsOf(const Rows& M, const Eigen::Vector3d& load) noexcept {
   Eigen::Matrix<double, Rows::RowsAtCompileTime, 1> result = M.col(kSmooth);
@@ -94,7 +94,7 @@ double DrivenSignal::readOf(const State& x, const Eigen::Vector3d& load) const n
 }
 
 double DrivenSignal::walkOf(const Candidate& c) const noexcept {
-  if (!(interval_ > 0.0)) return 0.0;  // the second reading is the first that shows it
+  if (!(interval_ > 0.0)) return 0.0;  // unknown before the second reading
   const double cube = interval_ * interval_ * interval_;
   return c.walk / (settings_.reads == Reads::kItself ? cube : cube * square(interval_));
 }
@@ -154,7 +154,7 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
   keepPrior(c);
 }
 
-/// Limits the variance of a compliance to that before any reading, which a growing noise would exceed.
+/// Limits the variance of a compliance to that before any reading, which growing noise would exceed.
 void DrivenSignal::keepPrior(Candidate& c) const noexcept {
   const Eigen::Array3d prior = prior_.head<3>(), now = c.variance * c.P.diagonal().segment<3>(kCompliance).array();
   if ((now <= prior).all()) return;

@@ -10,41 +10,42 @@
 
 namespace hammer_loads {
 
-/// A free hull responds to a load at once: its acceleration is compliance times load plus a smooth part by oil, weight
-/// and rock, which changes no faster than boom and hull vibrate. A jump of the load, as at a blow, is therefore a jump
-/// of the acceleration, and the smooth part is interpolated and predicted between readings.
+/// A free hull responds to a load at once. Its acceleration is compliance times load plus a smooth part due to oil,
+/// weight and rock, which changes no faster than boom and hull vibrate. A jump of the load, as at a blow, is a jump of
+/// the acceleration. The smooth part is interpolated and predicted between readings.
 ///
-/// Kalman filter with these states: integral of the signal (for a measured rate), the smooth part, its slope (a random
-/// walk), and three compliances. The smooth part is the force of the oil, whose second derivative follows from the
-/// hull's acceleration: three stiffnesses and three dampings over inertia are further states. The intensity of the
-/// random walk over the noise of a reading is the candidate with the largest likelihood over some thousand readings,
-/// and the noise is estimated from the innovations, so that no noise of the sensor must be given.
+/// Kalman filter with these states: integral of the signal (for a measured rate), smooth part, its slope (a random
+/// walk), and three compliances. The smooth part is the force of the oil; its second derivative follows from the hull's
+/// acceleration. Further states are therefore three stiffnesses and three dampings over inertia. The ratio of the
+/// random walk's intensity to the noise is that of the likeliest candidate over some thousand readings. The noise is
+/// estimated from the innovations, so that no sensor noise must be given.
 class DrivenSignal {
  public:
   enum class Reads { kItself, kIntegral };
 
   struct Settings {
     Reads reads{};
-    double noise{};  ///< first guess, standard: of the signal's unit or its integral's
-    /// Standard deviations of first guesses, which are zero: signal over force x, force z, moment; second derivative
-    /// of the signal over acceleration x, z, turning; its first derivative over the same.
+    double noise{};  ///< first guess of the standard deviation, in the unit of the signal or of its integral
+    /// Standard deviations of first guesses, which are zero. compliance: signal over force x, force z, moment.
+    /// stiffness: second derivative of the signal over acceleration x, z, turning. damping: its first derivative over
+    /// the same.
     Eigen::Vector3d compliance, stiffness, damping;
   };
   /// A short piece of time.
   struct Step {
     double length{};           ///< [s]
     Eigen::Vector3d impulse;   ///< impulse of the load, blows included
-    Eigen::Vector3d velocity;  ///< change of the hull's velocity by vibration: x, z, turning
-    Eigen::Vector3d way;       ///< the integral of that from 0
+    Eigen::Vector3d velocity;  ///< change of the hull's velocity due to vibration: x, z, turning
+    Eigen::Vector3d way;       ///< integral of that change from 0
   };
-  /// A reading closer to a blow than the uncertainty of its instant: with this probability, `added` is a part of the
-  /// load (if the signal is measured) or of its impulse (if its integral is measured).
+  /// Uncertain side of a blow, for a reading closer to it than the uncertainty of its instant. With this probability
+  /// `added` is a part of the load (if the signal is measured) or of its impulse (if its integral is measured).
   struct Doubt {
     double probability{};
     Eigen::Vector3d added = Eigen::Vector3d::Zero();
   };
   struct Value {
-    double signal{}, integral{};  ///< the integral only where it is read
+    double signal{}, integral{};  ///< the integral is valid only where it is measured
     /// Variances and covariance of signal and integral.
     double signal_variance{}, covariance{}, integral_variance{};
   };
@@ -55,25 +56,24 @@ class DrivenSignal {
 
   explicit DrivenSignal(const Settings& settings) noexcept;
 
-  /// Sets the compliances of a robot description and the most that each can be; their standard deviation is a part of
-  /// that. The first description replaces the first guess. From one to the next, as the pose changes, the identified
-  /// values move by the difference of the descriptions.
+  /// Sets the compliances of a robot description and the largest possible value of each. Their standard deviation is a
+  /// part of the latter. The first description replaces the first guess. When the pose changes, identified values move
+  /// by the difference of the descriptions.
   void expect(const Eigen::Vector3d& compliance, const Eigen::Vector3d& most) noexcept;
-  /// Forgets the motion, as readings do not continue those before; the hull's constants are kept.
+  /// Discards the motion, since readings do not continue the previous ones. The hull's constants are kept.
   void forgetMotion() noexcept { begun_ = false; }
-  /// Reduces the weight of all readings so far in the likelihoods and the noise by that factor, since the load has
-  /// grown.
+  /// Reduces the weight of all previous readings in likelihoods and noise by this factor, since the load has grown.
   void outdate(double part) noexcept { counted_ *= part; }
   /// Returns true if all states and variances are finite.
   bool isFinite() const noexcept { return 0.0 * (best().x.sum() + best().P.sum()) == 0.0; }
   const Settings& settings() const noexcept { return settings_; }
   /// Predicts over a step after the last reading.
   void advance(const Step& step) noexcept;
-  /// Updates by a reading at the present load. step: time since the last reading [s]; counts: the reading counts for
-  /// the likelihoods, as it does while the hammer works.
+  /// Updates with a reading at the present load. step: time since the last reading [s]. counts: the reading enters the
+  /// likelihoods, as while the hammer works.
   void read(double reading, double step, const Eigen::Vector3d& load, const Doubt& doubt, bool counts) noexcept;
 
-  /// Change of the signal's integral over a step to come, and the integral of that from 0.
+  /// Change of the signal's integral over a future step, and the integral of that change from 0.
   struct Swing {
     double velocity{}, way{};
   };
@@ -81,7 +81,7 @@ class DrivenSignal {
   class Future {
    public:
     explicit Future(const DrivenSignal& signal) noexcept : signal_(signal), x_(signal.best().x), P_(signal.best().P) {}
-    /// The smooth part's slope counts for one interval of the readings.
+    /// Predicts over a step. The smooth part's slope acts for one interval of the readings.
     void advance(const Step& step) noexcept;
     Value at(const Eigen::Vector3d& load) const noexcept;
     Swing swing(double length, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) const noexcept {
@@ -94,14 +94,14 @@ class DrivenSignal {
     Covariance P_;
     double since_{};
   };
-  /// Swing by the best candidate.
+  /// Returns the swing predicted by the best candidate.
   Swing swing(double length, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) const noexcept {
     return swing(best().x, length, impulse, lasting);
   }
-  double noise() const noexcept;  ///< learned noise of a reading
+  double noise() const noexcept;  ///< estimated noise of a reading
   Eigen::Vector3d compliance() const noexcept { return best().x.segment<3>(3); }
   Eigen::Vector3d complianceDeviation() const noexcept;
-  /// Mean square of the immediate response of the signal to loads of these mean squares, as far as the hull's mass is
+  /// Returns the mean square of the immediate response to loads with these mean squares, as far as the hull's mass is
   /// known.
   double yielding(const Eigen::Vector3d& load_square) const noexcept {
     return load_square.dot(compliance().cwiseAbs2() + complianceDeviation().cwiseAbs2());
@@ -128,10 +128,10 @@ class DrivenSignal {
   void update(double reading, const Eigen::Vector3d& load, const Doubt& doubt, bool counts,
               Candidate& candidate) noexcept;
   void keepPrior(Candidate& candidate) const noexcept;
-  double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: what a reading is of that
+  double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: predicted reading
   double walkOf(const Candidate& candidate) const noexcept;
   const Candidate& best() const noexcept { return candidates_[best_]; }
-  /// Excess of the readings' variance at work over that at rest, by motion that is too fast for the filter.
+  /// Returns the excess of the readings' variance at work over that at rest, due to motion too fast for the filter.
   double unfollowed() const noexcept {
     return std::max(0.0, best().variance - std::max(best().quiet, square(settings_.noise)));
   }
@@ -139,11 +139,11 @@ class DrivenSignal {
   Settings settings_;
   std::array<Candidate, kCandidates> candidates_;
   std::size_t best_{};
-  Eigen::Vector3d expected_ = Eigen::Vector3d::Zero();  ///< compliances, by the last expect()
+  Eigen::Vector3d expected_ = Eigen::Vector3d::Zero();  ///< compliances of the last expect()
   Prior prior_;        ///< variances of compliances, stiffnesses and dampings before any reading
-  double interval_{};  ///< mean, of the readings [s]
+  double interval_{};  ///< mean interval of the readings [s]
   double counted_{};
-  double steady_{}, steady_time_{};  ///< mean of the signal that is read; over [s]
+  double steady_{}, steady_time_{};  ///< mean of the measured signal; its time constant [s]
   bool begun_{};
 };
 

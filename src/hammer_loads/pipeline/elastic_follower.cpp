@@ -22,8 +22,8 @@ constexpr std::int64_t kOthersTurn = 4;                 // [blows]
 // Numerical: kOthersTurn
 constexpr double kContact = 5e-4;  // [s]
 
-/// After a blow with a small restitution the rod brakes the crank to less than kSlowCrank. A rocker that was never
-/// struck is contradicted long before.
+/// Returns true if the rod no longer vibrates. After a blow with a small restitution it brakes the crank to less than
+/// kSlowCrank. A rocker that was never struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
   return s.angle.offset > kTo || rod.sinceBlow() > kRungOutTime || !(s.speed > (rod.hasStruck() ? 0.0 : kSlowCrank));
@@ -58,7 +58,7 @@ void ElasticFollower::pause() noexcept {
   for (RodFilter& filter : filters_) filter.abandon();
 }
 
-/// The other filter runs on each fourth blow, since pins wear, and wherever the likelier one contradicts the readings.
+/// Returns false on each fourth blow, since pins wear, and wherever the likelier filter contradicts the readings.
 bool ElasticFollower::runsAlone(std::int64_t blow) const noexcept {
   return best_ != nullptr && best_->isProven() && blow % kOthersTurn != 0;
 }
@@ -92,7 +92,7 @@ void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) no
   if (std::none_of(filters_.begin(), filters_.end(), [](const RodFilter& rod) { return rod.isRunning(); })) judge();
 }
 
-/// Returns pins with clearance where it shows or tight ones contradict the readings: those cannot imitate its impacts.
+/// Returns the filter with clearance if that is evident or if tight pins fail: they cannot imitate its impacts.
 const RodFilter& ElasticFollower::likelier() const noexcept {
   const RodFilter &tight = filters_[0], &play = filters_[1];
   if (!play.isProven()) return tight;
@@ -100,12 +100,12 @@ const RodFilter& ElasticFollower::likelier() const noexcept {
   return !tight.isProven() || exceeds(play.motion().rod.play, doubt, gate::kImpossible) ? play : tight;
 }
 
-/// The level is linkage where the rod is stiffer than the rate of the samples can show.
+/// Judges the rod after a blow. Level linkage applies to a rod stiffer than the sample rate can show.
 void ElasticFollower::judge() noexcept {
   runs_ = false;
   ++blows_;
   lost_ = alone_ ? !best_->isProven() : !filters_[0].isProven() && !filters_[1].isProven();
-  if (alone_ && lost_) return;  // the other one is asked at the next blow
+  if (alone_ && lost_) return;  // the other filter runs at the next blow
   const RodFilter& rod = alone_ ? *best_ : likelier();
   const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
   evidence_ += kEvidenceGain * (gain - evidence_);
@@ -187,7 +187,7 @@ bool ElasticFollower::mayTouch(const RodMotion& m) const noexcept {
   const double way = links.rocker.sin_psi + m.state.beside - m.place;
   const double speed = -(links.rocker.u * m.state.speed + m.state.beside_speed);
   const double of_angle = speed / m.state.speed * filter().deviation(RodFilter::kAngle);
-  // The place stands for the middle of a contact, which has begun before it.
+  // The place is that of the middle of a contact, which has begun before it.
   return way < 0.5 * kContact * speed + gate::kUsual * std::hypot(of_angle, filter().deviation(RodFilter::kPlace));
 }
 

@@ -10,7 +10,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Acceleration of the rocker relative to that of a rigid rod at the crank's acceleration [rad/s2].
+/// Returns the rocker's acceleration relative to that of a rigid rod at the crank's acceleration [rad/s2].
 double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
   return a.rocker - links.rocker.u * a.crank - links.rocker.du * s.speed * s.speed;
 }
@@ -38,8 +38,8 @@ ElasticFollower::Loads ElasticFollower::rigidLoads(const RodMotion& m, const Lin
   return loads;
 }
 
-/// Covariance of the loads with pins that may meet within an error, by Gauss-Hermite quadrature at three points. The
-/// links move in proportion to an error of the angle.
+/// Returns the covariance of the loads with pins that may touch within an error, by three-point Gauss-Hermite
+/// quadrature. The links move in proportion to an error of the angle.
 ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction& drive, const LinkMotion& links,
                                                             const Loads& here) const noexcept {
   const RodMotion& now = filter().motion();
@@ -53,7 +53,7 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
     const Loads off = loads(filter().displaced(error), links, drive) - here + error[RodFilter::kAngle] * by_angle;
     sum += weight * off * off.transpose();
   };
-  if (late_ > 0.0 && filter().hasStruck()) {  // a vibration read at a wrong time
+  if (late_ > 0.0 && filter().hasStruck()) {  // vibration read at a wrong time
     RodMotion later = now;
     filter().bodies().move(later.rod, filter().drive(later), late_, later.state);
     const LinkMotion there = filter().bodies().links(later.state.angle);
@@ -73,7 +73,7 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
   return sum;
 }
 
-/// A Kalman correction by x'' = 0 +- what is expected of a vibration.
+/// Applies a Kalman correction with x'' = 0 +- the expected magnitude of a vibration.
 ElasticFollower::RodLoads ElasticFollower::rodLoads(const DriveReaction& drive, double ring) noexcept {
   const RodMotion& now = filter().motion();
   const LinkMotion links = filter().bodies().links(now.state.angle);

@@ -7,7 +7,7 @@
 
 namespace hammer_loads {
 
-/// By the parameters of the hammer and the pipeline.
+/// Returns the settings from the parameters of hammer and pipeline.
 CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSettings& settings);
 
 }  // namespace hammer_loads

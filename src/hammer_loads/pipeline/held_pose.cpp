@@ -14,8 +14,8 @@ namespace {
 constexpr double kMemory = look_back::kSomeTurns;  // time constant of each filter
 constexpr double kLost = 0.5;                      // jump of an angle that winds or came back [rad]
 // Limit: kLost
-constexpr double kFast = 0.05;    // [rad/s]: its acceleration hides the vibration
-constexpr double kSettles = 2.5;  // [s]: time for which the filters show a fast motion as an acceleration
+constexpr double kFast = 0.05;    // [rad/s]: acceleration of a faster joint hides the vibration
+constexpr double kSettles = 2.5;  // [s]: time for which a fast motion appears as an acceleration in the filters
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   if (settling_ == 0.0) motion_.acceleration = slowAcceleration();
 }
 
-/// Extrapolates over a gap at the operator's last rate.
+/// Extrapolates over a gap at the last rate of the operator's motion.
 void HeldPose::goOn(double step) noexcept {
   const JointVector way = step * slowRate();
   for (JointVector* angle : {&first_, &slow_, &slowest_, &last_}) *angle += way;
@@ -69,7 +69,7 @@ void HeldPose::struck() noexcept {
 
 JointVector HeldPose::slowRate() const noexcept { return (first_ - slow_) / kMemory; }
 
-/// The acceleration by three filters, extrapolated over their delay by the change that four filters show.
+/// Returns the acceleration from three filters, extrapolated over their delay by the change seen in four filters.
 JointVector HeldPose::slowAcceleration() const noexcept {
   const JointVector late = first_ - 2.0 * slow_ + slowest_, change = late - (slow_ - 2.0 * slowest_ + last_);
   return (late + 3.0 * change) / square(kMemory);

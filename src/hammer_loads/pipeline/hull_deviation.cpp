@@ -12,9 +12,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kStands = 0.05;  // [rad/s] at most
+constexpr double kStands = 0.05;  // [rad/s]: largest speed of a crank at rest
 
-// Differences to one side: 1e-6 of a slope by what bends in them, 1e-9 by rounding.
+// One-sided differences: relative errors of 1e-6 by curvature and 1e-9 by rounding.
 constexpr double kAngleStep = 1e-6, kSpeedStep = 1e-5, kAccelerationStep = 1e-2;  // [rad], [rad/s], [rad/s2]
 // Numerical: kAngleStep, kSpeedStep, kAccelerationStep
 
@@ -25,7 +25,7 @@ CrankAngle nudged(CrankAngle angle) noexcept {
   return angle;
 }
 
-/// at_angle(links) gives what is wanted by speed and acceleration.
+/// Returns the gradient; at_angle(links) returns the wanted value as a function of speed and acceleration.
 template <typename AtAngle>
 Gradient gradient(const CrankEstimate& crank, const LinksBeside& links, const AtAngle& at_angle) noexcept {
   const double speed = crank.speed, acceleration = crank.acceleration;
@@ -46,7 +46,7 @@ HullDeviation unknownDeviation() noexcept {
   return {covariance, covariance, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 }
 
-/// Wrench at one crank angle as a function of speed and acceleration.
+/// Returns the wrench at one crank angle as a function of speed and acceleration.
 auto wrenchAt(const HullModel& model, const DriveReaction& drive, const HullMotion& hull,
               const LinksAtAngle& at) noexcept {
   return [&](double speed, double acceleration) {
@@ -197,7 +197,7 @@ bool isBesideBlow(const CrankEstimate& crank, double distance) noexcept {
   return std::abs(at.angle.offset) < distance && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
 }
 
-/// Before the zero is shown a slow crank near the blow may have met the tool, or bounce on it. An elastic rod's filter
+/// Before the zero is known, a slow crank near the blow may have met the tool, or bounce on it. An elastic rod's filter
 /// determines the contacts better than the zero does.
 bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
                   std::optional<bool> rod) noexcept {
@@ -206,7 +206,7 @@ bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double 
   if (!errors.zeroIsShown() && crank.position.isMirrored()) return true;
   const double of_zero = errors.zeroDeviation(), of_angle = rod ? of_zero : std::max(angle_std, of_zero);
   const double distance = gate::kUsual * deviationFromBlow(filter, of_angle);
-  // On the wrong side the wrench is off by its whole jump: the gate of angle and zero is kRare.
+  // On the wrong side the wrench is off by its whole jump; hence the gate kRare for angle and zero.
   if (errors.zeroIsShown() && of_zero < ConstantErrors::kCalibratedZero)
     return isBesideBlow(crank, std::max(gate::kRare * of_angle, distance));
   return std::abs(crank.position.angle.offset) < distance && std::abs(crank.speed) > kStands;

@@ -18,12 +18,12 @@ struct HullDeviation {
   /// Covariance of force_x [N], force_z [N] and torque_y [N m], in products of these.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   Eigen::Matrix3d common_covariance{
-      Eigen::Matrix3d::Zero()};  ///< the part that is the same in all samples: of constants
+      Eigen::Matrix3d::Zero()};  ///< the part that is equal in all samples, due to constants
 
   /// Standard deviations of force_x [N], force_z [N], torque_y [N m].
   HullWrench wrench() const noexcept { return deviationOf(covariance); }
   HullWrench common() const noexcept { return deviationOf(common_covariance); }
-  /// Coefficients of (force_x, force_z), (force_x, torque_y), (force_z, torque_y) [-]; 0 beside a deviation of 0.
+  /// Returns coefficients of (force_x, force_z), (force_x, torque_y), (force_z, torque_y) [-]; 0 for a deviation of 0.
   Eigen::Vector3d correlation() const noexcept { return correlationOf(covariance); }
   Eigen::Vector3d commonCorrelation() const noexcept { return correlationOf(common_covariance); }
 
@@ -35,17 +35,17 @@ struct HullDeviation {
   double angle{};                                                ///< standard deviation of the crank angle [rad]
   double speed{};                                                ///< [rad/s]
   double acceleration{};                                         ///< [rad/s2]
-  double common_angle{}, common_speed{}, common_acceleration{};  ///< the part of constants of these
+  double common_angle{}, common_speed{}, common_acceleration{};  ///< parts due to constants
 };
 
-/// Motion of the links at a crank angle and slightly beside it, for gradients by the angle.
+/// Motion of the links at a crank angle and slightly beside it, for gradients with respect to the angle.
 struct LinksBeside {
   LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept;
   LinksAtAngle here, beside;
 };
 
-/// covariance of (angle, speed, acceleration), linearised at the estimate (differences, good to some 1e-5), the drive's
-/// reaction included. The model's own error is not in it. Some 0.3 us.
+/// Returns the standard deviations, linearised at the estimate (differences, good to some 1e-5), with the drive's
+/// reaction. covariance: of (angle, speed, acceleration). The model's own error is not included. Some 0.3 us.
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                             const LinksBeside& links, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept;
@@ -54,60 +54,59 @@ inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& 
   return hullDeviation(model, drive, crank, LinksBeside(model, linksAt(model, crank.position.angle)), hull, covariance);
 }
 
-/// Errors of a wrench that are independent of each other, one standard deviation each, and the same in all samples: of
-/// the sensor's constants, of the hammer's (their order: ConstantErrors), of the learned drive inertia, of a hull whose
-/// motion is not measured. Rows: force_x [N], force_z [N], torque_y [N m].
+/// Independent errors of a wrench, one standard deviation each, equal in all samples. Their columns: constants of
+/// sensor and hammer (order of ConstantErrors), learned drive inertia, hull whose motion is not measured. Rows: force_x
+/// [N], force_z [N], torque_y [N m].
 constexpr int kInertiaColumn = ConstantErrors::kSize, kHullColumn = kInertiaColumn + 1, kLoadColumns = kHullColumn + 1;
 using LoadColumns = ByConstants<3, kLoadColumns>;
 
-/// By samples and constants together, J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).
+/// Returns errors by samples and constants: J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).
 HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
                             const CrankEstimate& crank, const LinksBeside& links, const HullMotion& hull,
                             const CrankUncertainty& uncertainty, LoadColumns& columns) noexcept;
 
-/// Adds what the hull's own motion adds to the deviation of the load at the links' place: linear, as the load is in all
-/// but the rate. Errors of crank and IMU are independent.
+/// Adds the hull's motion to the covariance of the load. It is linear, as the load is in all but the rate. Errors of
+/// crank and IMU are independent.
 void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,
                    const HullMotion& hull, const HullMotionCovariance& covariance, HullDeviation& deviation) noexcept;
 
-/// Standard deviation of the momentum, the drive's included: of an impulse's one end [N s, N s, N m s].
+/// Returns the standard deviation of the momentum with the drive's, for one end of an impulse [N s, N s, N m s].
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                              const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
 
-/// Errors of the momentum that are independent of each other, one standard deviation each, in the order of LoadColumns.
-/// Rows: x, z [N s].
+/// Independent errors of the momentum, one standard deviation each, in the order of LoadColumns. Rows: x, z [N s].
 using MomentumColumns = ByConstants<2, kLoadColumns>;
 
-/// Errors of the links' momentum at a crank angle and a speed [rad/s]; of_speed: errors of that speed [rad/s].
+/// Returns the links' momentum errors at a crank angle and speed [rad/s]. of_speed: errors of that speed [rad/s].
 MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
                                 const Eigen::Matrix<double, 1, ConstantErrors::kSize>& of_speed) noexcept;
-/// Errors of the links' weight by errors of the masses [N].
+/// Returns the errors of the links' weight due to errors of the masses [N].
 MomentumColumns weightColumns(const WrenchColumns& hammer, const HullModel& model, Gravity gravity) noexcept;
 
-/// Samples and the sensor's constants as three errors of the load that are independent of each other, from motion of
-/// the links relative to the hull; none where there is no covariance. The boom's filters take them for noise, which an
-/// error of the hammer's constants, alike in all samples, is not: those are not in it.
+/// Returns three independent errors of the load due to samples and sensor constants, for the links' motion relative to
+/// the hull. Empty without a covariance. The boom's filters treat them as noise. Errors of the hammer's constants are
+/// equal in all samples, are no noise, and are not included.
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                           const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept;
 
-/// Errors of constants as three that are independent of each other, one a column (rows as LoadColumns): of all of them,
+/// Returns the errors of constants as three independent ones, one per column (rows as LoadColumns): of all constants,
 /// or of the hammer's alone.
 Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept;
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept;
 
-/// Standard deviation of the crank's angle from the blow [rad]. It contains that of the angle, the zero error that the
-/// readings show, and the later blow of an elastic rod. angle_std: of the angle [rad]; NaN: not known.
+/// Returns the standard deviation of the crank's angle from the blow [rad]. It contains that of the angle, the zero
+/// error that the readings show, and the later blow of an elastic rod. angle_std: of the angle [rad]; NaN: not known.
 double deviationFromBlow(const CrankFilter& filter, double angle_std) noexcept;
 
-/// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
-/// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored
-/// branch nowhere. distance: of the crank from the blow that is too close [rad]; NaN: not known.
+/// Returns true if the crank is too close to the blow. The wrench jumps there (MO-100: Fx by nearly all of its peak);
+/// which side applies is unknown and WrenchStamped has no deviation for it. The jump is below 1 % for a slow crank and
+/// zero on the mirrored branch. distance: from the blow within which the crank is too close [rad]; NaN: not known.
 bool isBesideBlow(const CrankEstimate& crank, double distance) noexcept;
-/// Returns true if the crank is too close to the blow for its side to be known, with the uncertainty of the zero
-/// included: within three standard deviations of angle and zero, or two of deviationFromBlow(). angle_std: standard
-/// deviation of the angle [rad], 0 where the encoder's count shows the side as far as the zero is known. rod: answer of
-/// the elastic rod's filter; empty: the rod is rigid. Before the zero is shown the mirrored branch counts as close,
-/// since a wrong zero imitates a blow without a tool.
+/// Returns true if the crank is too close to the blow for its side to be known. The limit is three standard deviations
+/// of angle and zero, or two of deviationFromBlow(). angle_std: standard deviation of the angle [rad], 0 where the
+/// encoder's count shows the side as far as the zero is known. rod: result of the elastic rod's filter; empty: the rod
+/// is rigid. Before the zero is known, the mirrored branch counts as close, since a wrong zero imitates a blow without
+/// a tool.
 bool isBesideBlow(const CrankFilter& filter, const CrankEstimate& crank, double angle_std,
                   std::optional<bool> rod) noexcept;
 

@@ -44,7 +44,7 @@ void HullSpeed::add(StampNs stamp, double force_z, double by_turning, double rat
   ++count_;
 }
 
-/// Point at a stamp, extrapolated from the last point before it.
+/// Returns the point at a stamp, extrapolated from the last point before it.
 HullSpeed::Point HullSpeed::at(StampNs stamp) const noexcept {
   const std::size_t oldest = std::min<std::uint64_t>(count_, kKept) - 1;
   std::size_t k = 0;

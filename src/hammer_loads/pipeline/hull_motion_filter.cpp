@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-// First guesses of a reading's noise, a usual MEMS unit's; learned.
+// First guesses of a reading's noise, for a usual MEMS unit; the noise is estimated later.
 constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
 constexpr double kSwings =
     2.0;  // ratio to the immediate response to a load: a hull on oil, whose modes are excited by blows
@@ -19,20 +19,20 @@ constexpr double kSwings =
 // Standard deviation of a constant offset of such a unit, which the filter cannot identify.
 constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
 // Prior: kForceOffset, kRateOffset
-// A hull is some five times as heavy as its rocker at least.
+// A hull has at least some five times the mass of its rocker.
 constexpr double kLightest = 0.2;
 // Prior: kLightest
-constexpr double kLongestPiece = 2e-3;  // [s]: some 20 of a period of 25 Hz
+constexpr double kLongestPiece = 2e-3;  // [s]: some 20 per period of 25 Hz
 // Numerical: kLongestPiece
-constexpr double kWorking = 0.05;  // part of the greatest load, from which on the hammer is at work
+constexpr double kWorking = 0.05;  // part of the greatest load above which the hammer is at work
 // Prior: kForceNoise
 
 constexpr double kStiffest = 4e3;  // [1/s2]: some 10 Hz
-constexpr double kDamped = 10.0;   // [1/s]: of that a twelfth of the critical
+constexpr double kDamped = 10.0;   // [1/s]: a twelfth of critical damping at kStiffest
 constexpr double kArm = 0.5;       // arm of a hull's rotation: from D to its suspension [m]
 // Prior: kRateNoise, kStiffest, kDamped, kArm
 
-/// signal_arm: 1 of a force's signal; of turning over kArm.
+/// Returns the settings of a signal. signal_arm: 1 for a force's signal, kArm for turning.
 DrivenSignal::Settings signalOf(DrivenSignal::Reads reads, double noise, Eigen::Vector3d compliance,
                                 double signal_arm) {
   const Eigen::Vector3d by = 1.0 / signal_arm * Eigen::Vector3d(1.0, 1.0, kArm);
@@ -133,7 +133,7 @@ bool HullMotionFilter::works(const Eigen::Vector3d& load) noexcept {
   return size > kWorking * greatest_load_;
 }
 
-/// Calls each(step) for short pieces from the last reading to a stamp, with what all three signals do in it.
+/// Calls each(step) for short pieces from the last reading to a stamp. signals: swings of all three signals in a piece.
 template <typename Signals, typename Each>
 void HullMotionFilter::forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept {
   const int count = std::max(1, static_cast<int>(std::ceil(seconds(to - last_.stamp) / kLongestPiece)));
@@ -213,7 +213,7 @@ std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcep
   P = turns.signal_variance * by_turning * by_turning.transpose() +
       (turns.integral_variance + square(kRateOffset)) * by_rate * by_rate.transpose() +
       turns.covariance * (by_turning * by_rate.transpose() + by_rate * by_turning.transpose());
-  // A place that is off by r adds turning x r and rate x (rate x r): alike along x and z.
+  // A position error r adds turning x r and rate x (rate x r), equally along x and z.
   const double alike =
       square(kForceOffset) + square(settings_.position_std) * (square(turns.signal) + square(square(rate.y())));
   P(0, 0) += x.signal_variance + alike, P(1, 1) += z.signal_variance + alike;

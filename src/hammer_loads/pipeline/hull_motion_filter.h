@@ -1,4 +1,4 @@
-/// The hull's motion by its IMU and the load that drives it, with jumps at blows.
+/// The hull's motion from its IMU and the load that drives it, with jumps at blows.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,21 +18,20 @@
 
 namespace hammer_loads {
 
-/// Mobility of links and hull of a robot description that turn in the joints of their cylinders; all other joints are
-/// held.
+/// Mobility of links and hull from a robot description. The joints of cylinders turn; all other joints are held.
 class HullMobility {
  public:
-  /// position: of the unit in axes of the hull, from D [m].
+  /// position: of the unit, from D in axes of the hull [m].
   HullMobility(const Boom& boom, const Eigen::Vector3d& position);
 
-  /// Rows: acceleration of the unit along x and z [m/s2], turning about y [rad/s2]; columns: force along x and z [N],
-  /// moment about D [N m].
+  /// Rows: acceleration of the unit along x and z [m/s2], about y [rad/s2]. Columns: force along x and z [N], moment
+  /// about D [N m].
   struct Mobility {
     Eigen::Matrix3d value;  ///< J M^-1 J^T
     Eigen::Matrix3d most;   ///< largest possible value of each entry if the links were coupled otherwise
   };
-  /// At a pose. Nothing where no joint has moved by the boom's refresh_angle since
-  /// the last one, where the links have no inertia or no joint has a cylinder.
+  /// Returns the mobility at a pose. Empty if links have no inertia, if no joint has a cylinder, or if no joint has
+  /// moved by the boom's refresh_angle since the last one.
   std::optional<Mobility> movedTo(const JointVector& position) noexcept;
 
  private:
@@ -54,30 +53,30 @@ struct KnownHullMotion {
   HullMotionCovariance covariance = HullMotionCovariance::Zero();
 };
 
-/// Three signals at the unit, each driven by the load of links and drive: force along x, force along z, turning about y
-/// by its rate. Readings wait for the next crank sample, which determines the load at their stamps; no later data are
-/// used. The effective inertia of the hull at D, on its boom and oil or on rock, is estimated; a boom file is not
+/// Filters three signals at the unit, each driven by the load of links and drive: force along x, force along z, and the
+/// rate about y. Readings wait for the next crank sample, which determines the load at their stamps. No later data are
+/// used. The effective inertia of the hull at D, on its boom and oil or on rock, is estimated. A boom file is not
 /// required, but gives the initial value.
 class HullMotionFilter {
  public:
   HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer);
 
-  /// Sets the mobility of the hull by a robot description.
+  /// Sets the mobility of the hull from a robot description.
   void expect(const HullMobility::Mobility& mobility) noexcept;
-  /// Adds an accepted reading, axes of hammer_hull.
+  /// Adds an accepted reading in axes of hammer_hull.
   void add(const StampedImuReading& reading) noexcept { waiting_.add(reading); }
   /// Takes a crank sample and the load of the step that it ends. beside: other loads on the hull at the sample. A step
   /// without pieces resets the motion.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
-  /// Motion at a stamp, from the second reading with a known load until the last one is max_age old. The slow part of
-  /// the motion is predicted until the reading is overdue and held after that, since a longer prediction diverges.
+  /// Returns the motion at a stamp, from the second reading with a known load until the last one is max_age old. The
+  /// slow part is predicted until the next reading is overdue and then held, since a longer prediction diverges.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
-  /// Readings up to a stamp that no crank sample has followed yet.
+  /// Returns the number of readings up to a stamp that no crank sample has followed yet.
   std::ptrdiff_t waiting(StampNs stamp) const noexcept { return waiting_.upTo(stamp); }
-  /// Covariance of the motion of an unmeasured hull, about its weight: twice the immediate response to the load of the
-  /// last 2 s, as far as its mass is known. The angular velocity is negligible.
+  /// Returns the covariance of an unmeasured hull's motion about its weight: twice the immediate response to the load
+  /// of the last 2 s, as far as its mass is known. The angular velocity is negligible.
   HullMotionCovariance unread() const noexcept;
-  /// Stamp of the last reading used [ns].
+  /// Returns the stamp of the last reading used [ns].
   StampNs last() const noexcept { return last_.stamp; }
 
  private:
@@ -90,7 +89,7 @@ class HullMotionFilter {
 
   HullImuSettings settings_;
   DrivenSignal x_, z_, turning_;
-  std::optional<HullMobility::Mobility> mobility_;  ///< mobility of the last description
+  std::optional<HullMobility::Mobility> mobility_;  ///< from the last description
   WrenchPath path_;
   WaitingReadings waiting_;
   StampedImuReading last_;
@@ -98,7 +97,7 @@ class HullMotionFilter {
   HullWrench beside_;
   RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< mean square
   int readings_{};
-  double interval_{};  ///< between the last two readings [s]
+  double interval_{};  ///< time between the last two readings [s]
   double greatest_load_{};
 };
 

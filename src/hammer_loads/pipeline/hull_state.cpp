@@ -12,14 +12,14 @@
 namespace hammer_loads {
 namespace {
 
-/// Motion of a boom's tip by vibration; zero if the boom is rigid.
+/// Returns the motion of a boom's tip due to vibration; zero if the boom is rigid.
 HullMotion vibrationOf(const BoomState& boom) noexcept {
   if (!boom.choice.compliant) return {};
   const auto& a = boom.tip.acceleration;  // linear, then angular
   return {{-a[0], -a[2]}, boom.tip.velocity[4], a[4]};
 }
 
-/// Covariance of that motion; the angular velocity is negligible and has none.
+/// Returns the covariance of that motion. The angular velocity is negligible and has none.
 HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
   HullMotionCovariance doubt = HullMotionCovariance::Zero();
   doubt.topLeftCorner<2, 2>() = tip.topLeftCorner<2, 2>();
@@ -133,7 +133,7 @@ HullState::HullState(const HammerParameters& hammer, const PipelineSettings& set
   updateGravity();
 }
 
-/// Motion by the present joint angles: weight alone, as for a fixed hull.
+/// Updates the motion from the present joint angles: weight alone, as for a fixed hull.
 void HullState::updateGravity() noexcept {
   pitch_known_ = weight_.pitch().known();
   in_degrees_ = weight_.pitch().looksLikeDegrees();
@@ -148,7 +148,7 @@ void HullState::carry(const HullWrench& load, double duration) noexcept {
   now_.covariance = unmeasured();
 }
 
-/// Covariance by the variance of the load in the last 2 s, as the boom carries its mean.
+/// Returns the covariance due to the variance of the load in the last 2 s, as the boom carries its mean.
 HullMotionCovariance HullState::unmeasured() const noexcept {
   return prior_.motion((load_square_.mean() - load_.mean().cwiseAbs2()).cwiseMax(0.0));
 }
@@ -182,7 +182,7 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
   return now_.motion;
 }
 
-/// Motion by the filter, or by the newest readings alone if the filter lags behind for lack of crank samples.
+/// Returns the filter's motion, or the newest readings' alone if the filter lags behind for lack of crank samples.
 std::optional<KnownHullMotion> HullState::measured(StampNs stamp) const noexcept {
   if (imu_trust_.isLost()) return std::nullopt;
   constexpr std::ptrdiff_t kLeftBehind = 3;  // readings
@@ -205,8 +205,7 @@ void HullState::find(StampNs stamp) noexcept {
   if (overdue > 0.0 && pitch_known_) forgetReading(1.0 - forgottenPart(overdue));
 }
 
-/// Reduces the acceleration in a reading that is held too long. Held in full, it would bias the crank's filter and end
-/// with a jump.
+/// Reduces the acceleration in an overdue reading. Held in full, it would bias the crank's filter and end with a jump.
 void HullState::forgetReading(double part) noexcept {
   HullMotion& m = now_.motion;
   const Gravity& weight = weight_.gravity();
@@ -215,8 +214,8 @@ void HullState::forgetReading(double part) noexcept {
   now_.covariance = square(part) * now_.covariance + square(1.0 - part) * usualMotion();
 }
 
-/// Covariance of the error of weight alone: by the measured motion, or without an IMU by the expected response to the
-/// load.
+/// Returns the covariance of the error of weight alone: from the measured motion, or without an IMU from the expected
+/// response to the load.
 HullMotionCovariance HullState::usualMotion() const noexcept {
   if (!imu_trust_.isKnown()) return filter_.unread();
   return imu_trust_.power(weight_.gravity()).asDiagonal();

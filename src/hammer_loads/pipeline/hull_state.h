@@ -1,4 +1,4 @@
-/// The hull's state: gravity in its axes, its own motion and the source of that.
+/// The hull's state: gravity in its axes, its motion and the source of this motion.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,26 +28,25 @@ namespace hammer_loads {
 /// offset. Messages may hold any subset of joints in any order.
 class HullPitch {
  public:
-  /// A larger angle is refused: degrees are taken and recognised, garbage is not [rad].
+  /// Largest accepted angle [rad]: degrees are accepted and recognised, garbage is refused.
   static constexpr double kMostAngle = 1e4;
   // Limit: kMostAngle
 
-  /// initial: pitch until every joint has been heard [rad].
+  /// initial: pitch until all joints have been received [rad].
   HullPitch(std::vector<std::string> joints, double initial) : HullPitch(std::move(joints), {}, 0.0, initial) {}
-  /// signs: 1 about +y, -1 about -y, one for each joint; empty: all 1. offset: pitch where all of them are at zero
-  /// [rad].
+  /// signs: 1 about +y, -1 about -y, one per joint; empty: all 1. offset: pitch with all of them at zero [rad].
   HullPitch(std::vector<std::string> joints, std::vector<int> signs, double offset, double initial);
 
-  /// Takes the pitch joints of a message; returns whether there was any. Angles that are not finite or beyond 1e4 rad
+  /// Takes the pitch joints of a message. Returns true if there was any. Angles that are not finite or beyond 1e4 rad
   /// are refused and counted.
   bool update(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
   double pitch() const noexcept { return pitch_; }             ///< [rad]
-  bool known() const noexcept { return unheard_ == 0; }        ///< every pitch joint has been heard
+  bool known() const noexcept { return unheard_ == 0; }        ///< every pitch joint has been received
   std::uint64_t refused() const noexcept { return refused_; }  ///< joint angles refused
-  /// Returns true if the latest angle of a joint exceeds a whole turn, which no boom reaches.
+  /// Returns true if the latest angle of a joint exceeds a whole revolution, which no boom reaches.
   bool looksLikeDegrees() const noexcept;
-  /// Joints not heard yet, for diagnostics.
+  /// Returns the joints that have not been received yet, for diagnostics.
   std::vector<std::string> unheard() const;
 
  private:
@@ -61,8 +60,8 @@ class HullPitch {
   std::uint64_t refused_{};
 };
 
-/// With a boom, or a description that has the pitch joints, by its axes, zeros, fixed tilts and swing, once every pitch
-/// joint has been heard: joints beside these are at zero until they are heard. Else by the sum of the pitch joints.
+/// Gravity from axes, zeros, fixed tilts and swing of a boom or of a description with the pitch joints, once these have
+/// been received; other joints are at zero until received. Otherwise the sum of the pitch joints is used.
 class HullGravity {
  public:
   HullGravity(const PipelineSettings& settings, const std::optional<Boom>& boom);
@@ -70,7 +69,7 @@ class HullGravity {
   /// Takes boom joint angles, any subset in any order. Returns true if any was used.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
-  /// Positions of the chain's joints once all of them have been received; null before, or without a chain.
+  /// Returns positions of the chain's joints once all of them have been received; null before, or without a chain.
   const JointVector* position() const noexcept { return chain_ && allHeard() ? &position_ : nullptr; }
   const Gravity& gravity() const noexcept { return gravity_; }  ///< hull axes [m/s2]
   const HullPitch& pitch() const noexcept { return pitch_; }
@@ -85,7 +84,7 @@ class HullGravity {
   std::optional<Chain> chain_;
   double beyond_{};           ///< pitch of the hull against the chain's tip [rad]
   JointVector zeros_;         ///< readings at the chain's zeros
-  JointVector position_;      ///< positions of the chain's joints; zero: not received
+  JointVector position_;      ///< positions of the chain's joints; zero before they are received
   std::vector<bool> heard_;   ///< true for each joint that was received
   bool pitch_is_of_chain_{};  ///< the pitch joints are joints of the chain
   Gravity gravity_;
@@ -102,7 +101,7 @@ class UnmeasuredHull {
         striking_distance_(hammer.striking_distance),
         reflected_(square(hammer.rocker_mass * hammer.rocker_com_distance) / hammer.rocker_inertia_about_pivot) {}
 
-  /// Covariance of the motion. scatter: variances of the load's components [N2, N2, N2 m2].
+  /// Returns the covariance of the motion. scatter: variances of the load's components [N2, N2, N2 m2].
   HullMotionCovariance motion(const Eigen::Vector3d& scatter) const noexcept {
     const double factor = square(resonance_ / mass_), force = factor * (scatter[0] + scatter[1]);
     HullMotionCovariance covariance = HullMotionCovariance::Zero();
@@ -110,27 +109,27 @@ class UnmeasuredHull {
     covariance(3, 3) = factor * scatter[2] / square(square(kGyration)) + force / square(kGyration);
     return covariance;
   }
-  /// Standard deviation of the striking point's velocity along z at a blow [m/s]. swing: momentum that the links' load
-  /// has given a free hull by then, about the mean of the turn (TurnRecorder::swing()).
+  /// Returns the standard deviation of the striking point's velocity along z at a blow [m/s]. swing: momentum that the
+  /// links' load has given a free hull by then, about the mean of the revolution (TurnRecorder::swing()).
   double speedAtBlow(const LinkMomentum& swing) const noexcept {
     return kSpeedResonance / kResonance * resonance_ / mass_ *
            std::hypot(swing.z, striking_distance_ / square(kGyration) * swing.about_d);
   }
-  /// Relative standard deviation of the rocker's inertia as the crank feels it at a blow: a hull that yields takes part
-  /// of it. Blows are too short for a resonance.
+  /// Returns the relative standard deviation of the rocker's inertia reflected to the crank at a blow, part of which a
+  /// yielding hull takes. Blows are too short for a resonance.
   double reflectedInertia() const noexcept { return reflected_ / mass_; }
 
  private:
-  static constexpr double kUsualMass = 10.0;      ///< times the rocker's, where none is given
+  static constexpr double kUsualMass = 10.0;      ///< times the rocker's mass, if no hull mass is given
   static constexpr double kUsualDeviation = 0.5;  ///< relative, for that mass
   static constexpr double kGyration = 0.4;        ///< [m] about D
-  /// Motion over that of a free hull where the boom's frequency is near that of the blows: of the acceleration; of the
-  /// velocity, of which the first harmonic is a larger part.
+  /// Amplification of a free hull's motion where the boom's frequency is near that of the blows: for the acceleration,
+  /// and for the velocity, of which the first harmonic is a larger part.
   static constexpr double kResonance = 2.0, kSpeedResonance = 3.0;
   // Prior: kUsualMass, kUsualDeviation, kGyration, kResonance, kSpeedResonance
 
   double mass_;               ///< [kg]
-  double resonance_;          ///< with the mass's own deviation
+  double resonance_;          ///< amplification, including the deviation of the mass
   double striking_distance_;  ///< [m]
   double reflected_;          ///< mass by which a free hull would halve it [kg]
 };
@@ -139,11 +138,11 @@ class UnmeasuredHull {
 struct ImuCounts {
   std::uint64_t accepted{};
   std::array<std::uint64_t, static_cast<std::size_t>(ImuRefusal::kCount)> refused{};
-  std::uint64_t missed{};  ///< crank samples at which it did not show the hull's motion
+  std::uint64_t missed{};  ///< crank samples without a known motion of the hull
 };
 
-/// Owns gravity and IMU, and the boom's last vibration. If the IMU is missing, overdue or rejected, the hull's motion
-/// is that of the boom's vibration, provided that sensors have identified the oil.
+/// Owns gravity and IMU, and the boom's last vibration. If the IMU is missing, overdue or rejected, the boom's
+/// vibration replaces its motion, provided that sensors have identified the oil.
 class HullState {
  public:
   struct Motion {
@@ -159,22 +158,22 @@ class HullState {
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
   std::optional<ImuRefusal> imu(StampNs stamp, const ImuReading& reading) noexcept;
 
-  /// Predicts the motion before a sample is processed (by the boom's vibration: that of the sample before).
+  /// Predicts the motion before a sample is processed; for the boom's vibration it is that of the previous sample.
   const HullMotion& predict(StampNs stamp) noexcept;
   /// Notes a blow within the step to a sample. Call before follow().
   void struck(StampNs blow) noexcept { imu_.struck(blow); }
   /// Updates the motion after a sample was processed, with the step's load. beside: DisplacedLinks at the sample.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
-  /// Prior of the motion where nothing measures it; null: the hull is held.
+  /// Returns the prior of the motion where nothing measures it; null: the hull is held.
   const UnmeasuredHull* prior() const noexcept { return source_ == HullMotionSource::kFixed ? nullptr : &prior_; }
   bool followsLoad() const noexcept { return source_ == HullMotionSource::kImu; }  ///< follow() has an effect
-  /// Velocity of D at the last blow by the IMU; none where it is not known.
+  /// Returns the velocity of D at the last blow from the IMU; empty where it is not known.
   std::optional<TipVelocity> speedAtBlow() const noexcept {
     return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
   }
-  /// The IMU's reading at the sample in the hull's axes, if there is a new one since the last call. If its stamps
-  /// jitter, which would distort the interpolation, or if it is late, it is the last reading itself. A late one that is
-  /// older than most_age [s] is left out.
+  /// Returns a new IMU reading at the sample, in the hull's axes; empty without a new one since the last call. If its
+  /// stamps jitter, which would distort the interpolation, or if it is late, it is the last reading itself. A late one
+  /// that is older than most_age [s] is omitted.
   std::optional<StampedImuReading> newImuReading(StampNs sample, bool stamps_jitter, double most_age) noexcept;
   /// Takes the wrench on the hull at a sample and its duration [s], for the motion of an unmeasured hull.
   void carry(const HullWrench& load, double duration) noexcept;
@@ -187,7 +186,7 @@ class HullState {
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
   bool pitchKnown() const noexcept { return pitch_known_; }
   bool anglesLookLikeDegrees() const noexcept { return in_degrees_; }
-  const Gravity& gravity() const noexcept { return weight_.gravity(); }  ///< by the joint angles
+  const Gravity& gravity() const noexcept { return weight_.gravity(); }  ///< from the joint angles
   const ImuCounts& imuCounts() const noexcept { return imu_counts_; }
   const ImuTrust& imuTrust() const noexcept { return imu_trust_; }
 
@@ -210,14 +209,14 @@ class HullState {
   std::optional<HullMobility> mobility_;  ///< mobility of the boom; none: followsLoad() is not wanted, or no boom
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
-  std::optional<HullMotion> vibration_;  ///< boom's tip at the last sample, without weight; none: not known
+  std::optional<HullMotion> vibration_;  ///< motion of the boom's tip at the last sample without weight; empty: unknown
   std::optional<HullMotionCovariance> vibration_doubt_;  ///< none: not requested while an IMU was in use
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
-  /// known_: false if the hull's motion is to be that of IMU or boom and is not known, or if the IMU is rejected. Then
-  /// the weight is by the joint angles, with the vibration of a boom whose oil is identified.
+  /// known_: false if the IMU is rejected, or if the motion is to come from IMU or boom and is unknown. Then the weight
+  /// follows from the joint angles, with the vibration of a boom whose oil is identified.
   bool known_{true}, by_imu_{};
-  bool pitch_known_{}, in_degrees_{};  ///< state at the last message of joints
+  bool pitch_known_{}, in_degrees_{};  ///< at the last message of joints
 };
 
 }  // namespace hammer_loads

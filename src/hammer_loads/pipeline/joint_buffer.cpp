@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastJump = 0.1, kFastest = 3.0;  // [rad, m], [rad/s, m/s]: of a boom's joints, three times as fast
+constexpr double kLeastJump = 0.1, kFastest = 3.0;  // [rad, m], [rad/s, m/s]: three times as fast as a boom's joints
 // Limit: kLeastJump, kFastest
 
 }  // namespace
@@ -97,7 +97,7 @@ void JointBuffer::add(Track& track, StampNs stamp, double position, std::optiona
       next.velocity = track.difference(last.position, position) / step;
       next.velocity_age = 0.5 * step;
     }
-    // The first velocity by difference has none before it.
+    // The first velocity from a difference has no predecessor.
     const bool known = velocity || track.count > 1;
     if (known) next.acceleration = (next.velocity - last.velocity) / (step - next.velocity_age + last.velocity_age);
   }

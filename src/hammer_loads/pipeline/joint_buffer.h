@@ -15,7 +15,7 @@ namespace hammer_loads {
 
 /// Reason why the joints' motion is not known at an instant.
 struct JointFault {
-  /// kRunAway: the boom's vibration was implausibly large and restarts
+  /// kRunAway: the boom's vibration was implausibly large and is reset
   enum class Kind { kMissing, kStale, kRunAway };
   Kind kind{};
   int joint{};   ///< the first one concerned, index in the chain; of kRunAway 0
@@ -42,11 +42,11 @@ class JointBuffer {
   /// zeros: readings of the joints at the chain's zeros, which are subtracted. None: zero.
   JointBuffer(const Chain& chain, const PipelineSettings& settings, const JointVector& zeros = {});
 
-  /// Takes the states of the chain's joints; returns whether there were any. A jump back in time is accepted with a
+  /// Takes the states of the chain's joints. Returns true if there were any. A jump back in time is accepted with a
   /// joint's second state, since the first one may be late. No allocation.
   bool update(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
               const std::vector<double>& velocities) noexcept;
-  /// Motion at an instant, or the reason why it is not known (then `motion` is not valid). No allocation.
+  /// Finds the motion at an instant or returns the reason why it is unknown (`motion` is then invalid). No allocation.
   std::optional<JointFault> at(StampNs stamp, JointMotion& motion) const noexcept;
 
   /// A joint's angle as received.
@@ -54,12 +54,12 @@ class JointBuffer {
     StampNs stamp{};
     double position{};
   };
-  /// The newest one of a joint, if any.
+  /// Returns the newest reading of a joint; empty if there is none.
   std::optional<Reading> newest(int joint) const noexcept;
 
   const JointRefusals& refusals() const noexcept { return refusals_; }
   const std::string& name(int joint) const noexcept { return names_[static_cast<std::size_t>(joint)]; }
-  /// Joints that are missing or stale at an instant, for diagnostics: "arm_joint: never heard".
+  /// Returns texts on joints that are missing or stale at an instant, for diagnostics: "arm_joint: never heard".
   std::vector<std::string> complaints(StampNs stamp) const;
 
  private:
@@ -67,7 +67,7 @@ class JointBuffer {
     StampNs stamp{};
     double position{}, velocity{};
     double acceleration{};  ///< mean since the state before it
-    double velocity_age{};  ///< velocity belongs to this long before the stamp [s]
+    double velocity_age{};  ///< time from the instant of the velocity to the stamp [s]
   };
   /// Some 0.6 s at 100 Hz: how far a crank sample may lie behind the joint states.
   static constexpr std::uint64_t kKept = 64;
@@ -76,7 +76,7 @@ class JointBuffer {
     std::array<State, kKept> states;
     std::uint64_t count{};           ///< number of states since the beginning; the newest is count - 1
     std::optional<StampNs> rewound;  ///< stamp of the last state, if it was refused as out of order
-    bool jumped{};                   ///< the last state was refused for that
+    bool jumped{};                   ///< the last state was refused as a jump
     bool turns_freely{};             ///< no limits: positions may wind, the shorter way counts
 
     const State& back(std::uint64_t steps) const noexcept { return states[(count - 1 - steps) % kKept]; }

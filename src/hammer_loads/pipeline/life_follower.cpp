@@ -115,8 +115,8 @@ void LifeFollower::countBetween(StampNs stamp) noexcept {
   turn_.add(stamp, between_.data(), deviations_there_.data(), common_there_.data());
 }
 
-/// Load between samples with an elastic rod: the extremes of its path, if the path reaches the second sample within the
-/// deviations published at both. A load just before a blow has the deviation of the sample there.
+/// Counts the load between samples with an elastic rod: the extremes of its path, if the path reaches the second sample
+/// within the deviations published at both. A load just before a blow has the deviation of the sample there.
 void LifeFollower::followRing(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const ElasticFollower& rod = pipeline_->elastic();
@@ -152,7 +152,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
 }
 
 /// Moves a place that is closer to the blow than the uncertainty of the crank angle to where the sides of the blow are
-/// known. Closer loads count as little as a sample there. Returns false if that place is not in the step.
+/// known. Closer loads are not counted, like a sample there. Returns false if that place is not in the step.
 bool LifeFollower::moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const double deviation = deviationFromBlow(pipeline_->crank().tracker(), pipeline_->result().deviation.angle);
@@ -165,9 +165,9 @@ bool LifeFollower::moveToKnown(StepPlace& place, CrankEstimate& crank) const noe
   return true;
 }
 
-/// A load beyond those at both ends counts where the step's path has it from either end, within the deviations
-/// published there, but for constants, which are off on both ways alike; else as far as both have it: where a sample
-/// corrects the path, what lies between is of neither.
+/// Limits a load beyond those at both ends. It is kept if the paths from both ends agree within the deviations
+/// published there. Constants are excluded, since they act equally on both paths. Otherwise it is kept as far as both
+/// paths have it: a sample that corrects the path makes neither of them valid in between.
 void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place, const CrankEstimate& crank,
                                        const StepEnd& end) noexcept {
   std::copy_n(deviations_.begin(), kHullChannels, deviations_there_.begin());
@@ -197,7 +197,7 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   }
 }
 
-/// Deviations of a channel at both ends of the step, but for constants.
+/// Returns the sum of a channel's standard deviations at both ends of the step, without constants.
 double LifeFollower::ownOfBoth(std::size_t i, const StepEnd& end) const noexcept {
   return life::LoadError::at(i, deviations_.data(), common_.data()).own +
          life::LoadError::at(i, end.deviation.data(), end.common.data()).own;
@@ -209,7 +209,7 @@ void LifeFollower::endTurn(StampNs stamp) noexcept {
   next_turn_ = (next_turn_ + 1) % turns_.size();
 }
 
-/// A turn is not whole if the blow that began it has been revised.
+/// Confirms revolutions. A revolution is not whole if the blow that began it has been revised.
 void LifeFollower::confirmTurns(const SampleResult& result) noexcept {
   for (std::size_t i = 0; i < result.turn_ends; ++i) {
     if (!result.ends[i].blow.impossible) recorder_.turn();

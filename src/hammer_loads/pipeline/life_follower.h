@@ -1,4 +1,4 @@
-/// Load cycles of a run, and the loads of each of its turns.
+/// Load cycles of a run, and the loads of each of its revolutions.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 
 namespace hammer_loads {
 
-/// Counts the loads of a pipeline's samples in time order: every channel at each sample whose loads are published, and
-/// the hull wrench between two such samples at its extremes and as close to both sides of a blow as it is known, if
-/// both samples agree. No load is counted before the encoder's zero is known (ZeroWatch::mayCount()). The pipeline is
+/// Counts the loads of a pipeline's samples in time order. Every channel counts at each sample with published loads.
+/// The hull wrench counts between two such samples if they agree: at its extremes, and as close to both sides of a blow
+/// as it is known. No load is counted before the encoder's zero is known (ZeroWatch::mayCount()). The pipeline is
 /// independent of it. Sequence of a run:
 ///
 ///     const SampleResult& result = pipeline.crankSample(...);
@@ -36,12 +36,12 @@ class LifeFollower {
   void follow() noexcept;
   /// Takes the ends of Pipeline::end().
   void end() noexcept { confirmTurns(pipeline_->result()); }
-  /// Loads of a turn that the last sample's result has among its ends; null where no sample near its blow was accepted.
+  /// Returns the loads of a revolution among the result's ends; null where no sample near its blow was accepted.
   const life::TurnLoads* turnLoads(const TurnEnd& end) const noexcept;
 
   const std::vector<std::string>& channels() const noexcept { return channels_; }
   const life::LifeRecorder& recorder() const noexcept { return recorder_; }
-  /// Sum of all results of take(); none before its first call.
+  /// Returns the sum of all results of take(); empty before its first call.
   const std::optional<life::LifePiece>& total() const noexcept { return total_; }
   std::optional<StampNs> since() const noexcept { return since_; }  ///< first sample counted
 
@@ -66,13 +66,13 @@ class LifeFollower {
   life::TurnLoadsRecorder turn_;
   std::optional<life::LifePiece> total_;
   std::optional<StampNs> since_, last_;  ///< first and last sample counted; last_: none after a gap
-  bool uncertain_{};                     ///< the last sample was: SampleResult
-  std::optional<StampNs> last_blow_;     ///< the last one that was none but a blow
-  /// Turns whose blow is not measured yet, and those just measured: as many as a result has ends, and one.
+  bool uncertain_{};                     ///< SampleResult::uncertain of the last sample
+  std::optional<StampNs> last_blow_;     ///< stamp of the last confirmed blow
+  /// Revolutions whose blow is not measured yet, and those just measured: one more than a result has ends.
   std::array<life::TurnLoads, std::tuple_size<decltype(SampleResult::ends)>::value + 1> turns_;
   std::size_t next_turn_{};                                        ///< in turns_
   std::vector<double> values_, deviations_, common_;               ///< at the last sample counted
-  std::vector<double> between_, deviations_there_, common_there_;  ///< between two: of the wrench, else not known
+  std::vector<double> between_, deviations_there_, common_there_;  ///< between two samples: known for the wrench only
 };
 
 }  // namespace hammer_loads

@@ -30,7 +30,7 @@ LimitWatch::LimitWatch(std::vector<Limit> limits, std::vector<life::CountedChann
       ++channel_[i];
 }
 
-/// Damage of the cycles that a new count has more than the one before. A shorter count is a new one.
+/// Adds the damage of the cycles by which a count exceeds the previous one. A shorter count is a new one.
 void LimitWatch::followDamage(const life::LifePiece& counted) {
   const std::uint64_t before = std::exchange(counted_until_, counted.duration);
   if (counted.duration == before) return;

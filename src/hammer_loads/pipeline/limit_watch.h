@@ -1,4 +1,4 @@
-/// Check of a machine's limits, once per turn.
+/// Check of a machine's limits, once per revolution.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ namespace hammer_loads {
 /// Values as in diagnostic_msgs/DiagnosticStatus.
 enum class AlarmLevel : std::uint8_t { kOk, kWarn, kError };
 
-/// One limit at the last turn at which its value was known. It is exceeded only where the value itself is beyond it,
+/// One limit at the last revolution at which its value was known. It is exceeded only if the value itself is beyond it,
 /// whatever its standard deviation.
 struct LimitState {
   AlarmLevel level{};
-  double value{kNaN}, std{kNaN};  ///< in the limit's unit; NaN: not known yet; of a count the std is never known
+  double value{kNaN}, std{kNaN};  ///< in the limit's unit; NaN: not known yet; the std of a count is never known
   double limit{kNaN};             ///< limit that is exceeded
   StampNs since{};                ///< stamp of the first revolution at the present level [ns]
 };
@@ -30,7 +30,7 @@ struct LimitState {
 /// extrapolated.
 class LastHour {
  public:
-  /// time: at work, not less than before [s].
+  /// Adds an amount. time: working time, not less than at the last call [s].
   void add(double time, double amount) noexcept;
   double sum() const noexcept;
 
@@ -41,7 +41,7 @@ class LastHour {
 
 class LimitWatch {
  public:
-  /// channels: of the counts that judge() gets. misuse: counted before the first turn.
+  /// channels: of the counts that judge() gets. misuse: counts before the first revolution.
   LimitWatch(std::vector<Limit> limits, std::vector<life::CountedChannel> channels, const MisuseCounts& misuse);
 
   /// Ends a revolution. counted: the load cycles so far, as of the last period. Returns true if the alarms are to be
@@ -70,7 +70,7 @@ class LimitWatch {
   std::vector<life::CountedChannel> channels_;
   MisuseCounts before_, misuse_;
   LastHour blank_;
-  std::uint64_t counted_until_{};  ///< duration of the count that damage_ is of [ns]
+  std::uint64_t counted_until_{};  ///< duration of the count from which damage_ follows [ns]
   bool begun_{};
 };
 

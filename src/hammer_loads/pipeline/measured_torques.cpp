@@ -10,19 +10,19 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLaw = 0.3;  // error of the law of friction, of its size: seals yield before they slide
+constexpr double kLaw = 0.3;  // relative error of the friction law: seals yield before they slide
 // Prior: kLaw
 constexpr double kSlowJoint = 0.005;  // rate near standstill [rad/s]
 // Numerical: kSlowJoint
-constexpr double kLag = 0.4;  // part of the oscillation per root of the surprise: 5 to 20 ms cost 0.3 to 1.4
+constexpr double kLag = 0.4;  // part of the oscillation per root of the surprise: delays of 5 to 20 ms cost 0.3 to 1.4
 
 /// Friction of seals between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
   double torque{};
-  double deviation{}, lasting{};  ///< standard; the part of it while the operator's motion sets the rod's direction
+  double deviation{}, lasting{};  ///< standard deviation; its part while the operator's motion sets the rod's direction
 };
 
-/// vibrating: rate of the joint [rad/s]; way: see Seals.
+/// Returns the friction. vibrating: vibration rate of the joint [rad/s]; way: see Seals.
 Rubbing rubbing(const Seals& seals, double vibrating, double way) noexcept {
   const double one_way = square(seals.driven) / (square(seals.driven) + square(vibrating) + square(kSlowJoint));
   return {seals.known * way,
@@ -30,8 +30,8 @@ Rubbing rubbing(const Seals& seals, double vibrating, double way) noexcept {
           std::sqrt(one_way) * seals.deviation};
 }
 
-/// Square of the error of a line through two readings that are late by `delay`, relative to that of readings without
-/// delay: the line is extrapolated further, and an oscillation is curved.
+/// Returns the squared error of a line through two readings that are late by `delay`, relative to that without delay.
+/// The line is extrapolated further, and an oscillation is curved.
 double longerLine(double delay, double interval) noexcept {
   const double late = interval > 0.0 ? std::max(delay, 0.0) / interval : 0.0;
   return square((1.0 + late) * (1.0 + 0.5 * late));
@@ -55,7 +55,7 @@ void MeasuredTorques::followRest(Track& track, double rest) noexcept {
   track.rest += track.gain * error;
 }
 
-/// model: at the reading, after and before the update by it.
+/// Adds the torque of a reading. model, model_before: torque at the reading, after and before the update with it.
 void MeasuredTorques::addTorque(Track& track, StampNs stamp, double torque, double model,
                                 double model_before) noexcept {
   const double step = seconds(stamp - track.stamp);
@@ -84,7 +84,7 @@ MeasuredTorques::StampUncertainty MeasuredTorques::stampUncertainty(const Vibrat
   stamps.delay = identifier->delay(Clock::kPressures);
   stamps.delay_std = identifier->delayDeviation(Clock::kPressures);
   const double surprise = identifier->oilSurprise();
-  // Where the stamps' delay is identified, a residual that does not fit is no delay.
+  // If the delay of the stamps is identified, a residual that does not fit is not due to a delay.
   stamps.misfit = surprise > kSurprised && identifier->isLagKnown();
   if (surprise > kSurprised && !stamps.misfit) stamps.lag = square(kLag) * surprise;
   return stamps;
@@ -98,9 +98,9 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   model.now += steady;
   if (model_.now.size() != model.now.size()) model_ = model, read_ = model.now, sample_ = sample;
   const StampUncertainty stamps = stampUncertainty(boom.vibration(), instant.noise);
-  const bool gap = seconds(sample - sample_) > look_back::kHalfTurn;  // nothing was said that could be judged
+  const bool gap = seconds(sample - sample_) > look_back::kHalfTurn;  // no prediction that could be judged
   StampNs oil_at{};
-  JointVector oil_then;  // at that stamp; of most cylinders it is the same
+  JointVector oil_then;  // at that stamp, which is the same for most cylinders
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
@@ -131,17 +131,17 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   model_ = model, sample_ = sample;
 }
 
-/// age: of the last reading [s].
+/// Returns the torque at the sample. age: of the last reading [s].
 MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double age, const Model& model,
                                                    const StampUncertainty& stamps) noexcept {
   const double ahead = std::min(age + stamps.delay, look_back::kLine);
   const double line_square = longerLine(stamps.delay, track.interval) * track.line_square.mean();
   const bool by_oil = track.oil_square.mean() <= line_square;
-  // A residual that does not fit is then an oscillation of its own, of a hose and not of the load.
+  // A residual that does not fit is then an oscillation of a hose and not of the load.
   const double rest = stamps.misfit ? track.unexplained.mean.mean() : track.rest;
   const double value = by_oil ? rest + model.now : track.torque + ahead * track.slope;
   const double lost = forgottenPart(overdue(age, track.interval));
-  // A change has the noise of two readings, what is smoothed that of one or less.
+  // A change has the noise of two readings, a smoothed residual that of one or less.
   const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
   const double off = std::sqrt(of_change * std::min(track.oil_square.mean(), line_square) +
                                (stamps.lag + 2.0 * lost) * track.swing.square.mean() +
@@ -163,7 +163,7 @@ void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motio
   track.way = seals.wayAfter(track.way, vibrating, std::max(0.0, step));
   if (!std::isfinite(track.way)) track.way = 0.0;
   const Rubbing rubbed = rubbing(seals, vibrating, track.way);
-  // A zero that is off has the lever of another angle.
+  // With a wrong joint zero the lever is that of another angle.
   const CylinderParameters& p = cylinder.parameters();
   const double offset = square(arm * cylinder.boreArea() * p.pressure_offset_std) +
                         square(torque.value * torque.at.arm_rate / arm * p.joint_zero_std);

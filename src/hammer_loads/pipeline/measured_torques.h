@@ -1,4 +1,4 @@
-/// Torques of the load on the joints by the pressures of their cylinders.
+/// Torques of the load on the joints from the pressures of their cylinders.
 #pragma once
 
 #include <array>
@@ -22,24 +22,24 @@ class MeasuredTorques {
 
   struct Torque {
     double value{};      ///< torque of the load on the cylinder's joint [N m]
-    double deviation{};  ///< standard deviation by the errors of the last predictions; larger if the readings
+    double deviation{};  ///< standard deviation from errors of the last predictions; larger if the readings
                          ///< contradict the vibration (kSurprised), by their difference or as for an unknown lag, or if
                          ///< the next reading is overdue [N m]
-    double constant{};   ///< standard deviation by constants, beside it: friction of the seals, offsets [N m]
-    double lasting{};    ///< the part of that which stays while the operator drives the joint one way [N m]
-    CylinderPosition at;  ///< position by the joint's sensor
+    double constant{};   ///< further standard deviation due to constants: seal friction, offsets [N m]
+    double lasting{};    ///< part of `constant` that stays while the operator drives the joint one way [N m]
+    CylinderPosition at;  ///< position from the joint's sensor
   };
 
   struct Instant {
     StampNs stamp{};
     double noise{};  ///< standard deviation of the stamp [s]
   };
-  /// Takes new readings; call after the vibration was updated by them. steady: weight and motion [N m]; position: by
-  /// the joint sensors. The known friction of the seals (from the boom file) is subtracted by the rods' direction of
-  /// motion and vibration.
+  /// Takes new readings; call after they have updated the vibration. steady: weight and motion [N m]; position: from
+  /// the joint sensors. The known friction of the seals (from the boom file) is subtracted according to the rods'
+  /// direction of motion and vibration.
   void follow(const Boom& boom, const JointVector& position, const JointVector& steady, const JointVector& motion,
               const Instant& instant, const CylinderPressures& pressures) noexcept;
-  /// Index as in Boom::cylinders(); none without both pressures or at a zero moment arm.
+  /// Returns the torque, index as in Boom::cylinders(); empty without both pressures or at a zero moment arm.
   const std::optional<Torque>& of(std::size_t cylinder) const noexcept { return torque_[cylinder]; }
 
  private:
@@ -54,23 +54,23 @@ class MeasuredTorques {
     }
   };
   struct Track {
-    std::uint64_t readings{};  ///< taken
-    double position{kNaN};     ///< position of the joint by its sensor
-    CylinderPosition at;       ///< there
+    std::uint64_t readings{};  ///< number of readings taken
+    double position{kNaN};     ///< position of the joint from its sensor
+    CylinderPosition at;       ///< cylinder at that position
     StampNs stamp{};           ///< stamp of the last reading
-    double interval{};         ///< since the one before [s]
+    double interval{};         ///< time between the last two readings [s]
     bool goes_on{};            ///< known at the last sample
     double way{};              ///< see Seals
-    double torque{};           ///< by it [N m]
-    double model{};  ///< torque of weight, motion and oil at that reading, by the vibration updated with it [N m]
-    double rest{}, last{}, before{};  ///< reading less model: as followed, of the last and the one before [N m]
-    double gain{1.0};                 ///< gain of the last reading in the rest
+    double torque{};           ///< torque of the last reading [N m]
+    double model{};  ///< torque of weight, motion and oil at that reading, with the vibration updated by it [N m]
+    double rest{}, last{}, before{};  ///< reading minus model: filtered, last and previous [N m]
+    double gain{1.0};                 ///< filter gain of the last reading
     RunningMean<> one_square{look_back::kReadings},
         two_square{look_back::kReadings};  ///< mean squares of its change over one reading and over two [N2 m2]
     double slope{};                        ///< slope of the line through the last two readings [N m/s]
-    Swing swing, unexplained;              ///< oscillation of the torque; of reading less model
+    Swing swing, unexplained;              ///< oscillation of the torque, and of reading minus model
     RunningMean<> oil_square{look_back::kReadings},
-        line_square{look_back::kReadings};  ///< mean of the squares by which each way was off at a reading [N2 m2]
+        line_square{look_back::kReadings};  ///< mean squared errors of both predictors at a reading [N2 m2]
   };
   /// Uncertainty of the pressures' stamps.
   struct StampUncertainty {

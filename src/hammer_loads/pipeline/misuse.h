@@ -45,7 +45,7 @@ class MisuseFollower {
   /// Makers of breakers allow 15 to 20 s at one place (Stanley MB05, operation: "15 - 20 seconds. If breakout does not
   /// occur within this time, move").
   static constexpr double kPatience = 15.0;  // [s]
-  /// The hull has moved: two deviations of a tip 6 m away by joint sensors of 0.1 deg.
+  /// Least displacement of a moved hull: two standard deviations of a tip 6 m away with joint sensors of 0.1 deg.
   static constexpr double kMoved = 0.02;  // [m]
   // Warning: kPatience, kMoved
 
@@ -57,15 +57,15 @@ class MisuseFollower {
   }
   /// Notes that the joints do not determine the hull's place.
   void hullLost() noexcept { place_.reset(); }
-  /// Takes whether the rock bears on the hull at a sample; none where pressures do not show it. A hull leaves the rock
-  /// at each recoil: that is no misuse as long as it comes back.
+  /// Takes whether the rock bears on the hull at a sample; empty where pressures do not show it. A hull leaves the rock
+  /// at each recoil, which is no misuse as long as it comes back.
   void pressed(std::optional<bool> now) noexcept {
     unknown_ = unknown_ || !now;
     pressed_ = pressed_ || now.value_or(false);
     watched_ = true;
   }
-  /// Ends a revolution with a blow. period: its length [s], none where it was not seen whole. Returns whether the rock
-  /// bore on the hull in it; none: not known.
+  /// Ends a revolution with a blow. period: its length [s], empty if it was not observed completely. Returns true if
+  /// the rock bore on the hull in it; empty: not known.
   std::optional<bool> blow(std::optional<double> period) noexcept {
     std::optional<bool> pressed;
     if (period && watched_ && !unknown_) {
@@ -87,7 +87,7 @@ class MisuseFollower {
   MisuseCounts counts_;
   std::optional<Eigen::Vector3d> place_;
   double at_place_{};                       ///< hammering since the hull came here [s]
-  bool watched_{}, unknown_{}, pressed_{};  ///< since the last blow: at a sample, at some samples, at one
+  bool watched_{}, unknown_{}, pressed_{};  ///< since the last blow: any sample judged, any unknown, any pressed
 };
 
 }  // namespace hammer_loads

@@ -19,7 +19,7 @@ constexpr Doubt kRate{0.005, 0.02, 0.005};  // [rad/s]
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
 // Prior: kAngle
 constexpr Doubt kTorque{0.004, 0.02, 0.002};  // parts of the torque that the cylinder's relief valve allows
-constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at the mean of their places
+constexpr double kLinksInHull = 1.0;          // [m/s2]: modes assume the links at their mean position
 // Prior: kTorque
 constexpr double kMoved = 0.02;  // [rad]: a jump
 // Limit: kMoved

@@ -9,14 +9,14 @@
 
 namespace hammer_loads {
 
-/// Errors by constants, equal in all turns, one standard deviation each of independent errors (order of LoadColumns);
-/// and the deviation of errors that are independent in each turn.
+/// Errors due to constants: independent, one standard deviation each (order of LoadColumns), equal in all revolutions.
+/// `own` is the standard deviation of errors that are independent in each revolution.
 struct NumberError {
   using Columns = Eigen::Matrix<double, 1, kLoadColumns>;
 
   Columns columns{Columns::Zero()};  ///< unit of the number
-  double own{};                      ///< standard deviation, as above
-  double rod{};                      ///< the part of it by a possibly elastic rod
+  double own{};                      ///< standard deviation, see above
+  double rod{};                      ///< part due to a possibly elastic rod
 
   /// Sets the rod's part where it is not known separately: the part of the deviation beyond that of readings alone.
   void setRodBeyond(double readings) noexcept { rod = std::sqrt(std::max(0.0, own * own - readings * readings)); }

@@ -11,18 +11,17 @@
 namespace hammer_loads {
 namespace {
 
-// Beyond these, in units of the nominal turn at constant speed, nothing is published. Its peak is some four times that
-// of a hammer at work.
+// Limits beyond which nothing is published, relative to the nominal revolution at constant speed. Its peak is some four
+// times that of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
-constexpr double kUncertain = 5.0;  // times withhold_above: half of the peak, beyond it a load says nothing
-constexpr double kInertiaOff =
-    0.9;  // logarithm of the drive inertia over the given one, which a wrong zero changes more
+constexpr double kUncertain = 5.0;   // times withhold_above: half of the peak; a less certain load is useless
+constexpr double kInertiaOff = 0.9;  // logarithm of drive inertia over the given one; a wrong zero changes it more
 // Limit: kMostForce, kMostForceUnproven, kMostSpeedUnproven, kUncertain
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
 
-/// Largest component of the force over a turn [N].
+/// Returns the largest component of the force over a revolution [N].
 double peakAtConstantSpeed(const Mechanism& mechanism, Level level, double speed) noexcept {
   constexpr int kPoints = 72;  // Numerical: kPoints
   const HullModel model(mechanism, level == Level::kPulse ? Level::kRocker : level);
@@ -83,7 +82,7 @@ const SampleResult& Pipeline::refuse(Refusal refusal) noexcept {
   return result_;
 }
 
-/// Ends a sample that the crank has used and the outputs have not, which continue from the next one.
+/// Ends a sample that the crank has used and the outputs have not. The outputs continue from the next sample.
 const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
   const bool continues = refusal == Refusal::kUnsettled && crank_.step().known();
   advanceBoom(continues ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
@@ -108,7 +107,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   crank_.accept();
   if (const auto refusal = whyWithheld()) return withhold(*refusal);
 
-  // The rod is rigid, or a spring that is followed: then crank, links, deviation and what rings are the spring's.
+  // With a followed elastic rod, crank, links, deviation and vibration are those of its spring.
   if (elastic_.runs()) result_.crank = elastic_.crank();
   const CrankMotion motion = motionOf(result_.crank);
   const LinksBeside links(model_, elastic_.runs() ? linksAt(model_, motion.angle) : crank_.step().links());
@@ -159,7 +158,7 @@ void Pipeline::follow(CrankFollower::Outcome outcome) noexcept {
   }
 }
 
-/// Reason against publishing; empty if the estimate allows it.
+/// Returns the reason against publishing; empty if the estimate allows it.
 std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   settled_ = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
   if (const auto distrust = trust_.refusal()) return distrust;
@@ -168,7 +167,7 @@ std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   return settled_ ? std::nullopt : std::make_optional(Refusal::kUnsettled);
 }
 
-/// Hull, links, wrench and pin forces.
+/// Fills in hull, links, wrench and pin forces.
 void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive,
                     const ElasticFollower::RodLoads& rod) noexcept {
   const CrankMotion motion = motionOf(result_.crank);
@@ -202,7 +201,7 @@ void Pipeline::followTrust(CrankFollower::Outcome outcome) noexcept {
   result_.inconsistent = result_.consistency > CrankTrust::kInconsistent;
 }
 
-/// Loads of a turn grow with the square of the speed: the present one's over the nominal one's.
+/// Returns the ratio of present to nominal loads of a revolution, which grow with the square of the speed.
 double Pipeline::speedScale() const noexcept { return square(result_.crank.speed / (kTwoPi * settings_.turn_rate)); }
 
 bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
@@ -214,11 +213,11 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
          std::abs(result_.crank.speed) <= kMostSpeedUnproven * nominal_speed;
 }
 
-/// No force of a crank at work is as large as the peak at constant speed: with a larger standard deviation a sample
-/// carries no information. A crank held at constant speed shows little of itself: its samples are known where no
-/// force's standard deviation is above five times withhold_above of the peak at constant speed.
+/// Returns true if the sample carries information. No force of a crank at work is as large as the peak at constant
+/// speed, so that its standard deviation must not exceed that peak. A crank held at constant speed shows little of
+/// itself. Its forces' standard deviations must not exceed five times withhold_above of that peak.
 bool Pipeline::isKnown() const noexcept {
-  // A blow without a tool is doubtful while the readings contradict the model.
+  // A blank firing is uncertain while the readings contradict the model.
   if (result_.crank.position.isMirrored() && result_.consistency > CrankTrust::kMost) return false;
   const double inertia = crank_.tracker().driveInertia(), given = mechanism_.parameters().drive_inertia;
   if (!crank_.tracker().constantErrors().zeroIsShown() && inertia > 0.0 &&
@@ -231,7 +230,7 @@ bool Pipeline::isKnown() const noexcept {
   return largest <= square(kUncertain * settings_.withhold_above * std::max(1.0, speedScale()) * peak_at_speed_);
 }
 
-/// revised: the pending blow is kept; whether it was one is decided later.
+/// Restarts after a step that is not continued. revised: the pending blow is kept and judged later.
 void Pipeline::restart(bool revised) noexcept {
   if (!revised) turn_.finishBlow(result_);
   turn_.restart();

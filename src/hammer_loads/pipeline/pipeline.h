@@ -26,7 +26,7 @@ namespace hammer_loads {
 /// on inputs and settings alone.
 class Pipeline {
  public:
-  /// boom: none where its loads are not wanted. counts: initial counts.
+  /// boom: empty if its loads are not wanted. counts: initial counts.
   Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom = {},
            const SampleCounts& counts = {});
   Pipeline(const Pipeline&) = delete;
@@ -56,18 +56,18 @@ class Pipeline {
   const SampleResult& end() noexcept;
 
   const SampleResult& result() const noexcept { return result_; }  ///< result of the last sample
-  /// Standard deviations of the wrench within the step of the last sample, see WrenchSampler.
+  /// Returns the standard deviations of the wrench within the step of the last sample, see WrenchSampler.
   HullDeviation stepDeviation(double time, const CrankEstimate& crank) const noexcept {
     return sampler_.deviation(time, crank, result_);
   }
-  /// Another schedule of the wrench: its means at a rate [Hz]. Refers to the pipeline.
+  /// Returns another schedule of the wrench: its means at a rate [Hz]. Refers to the pipeline.
   WrenchSampler meansAt(double rate) const;
-  /// Appends what a schedule has up to the last sample, which was accepted; once for each.
+  /// Appends a schedule's outputs up to the last sample, which was accepted. Call once per sample.
   void sample(WrenchSampler& sampler, std::vector<WrenchOutput>& outputs) const noexcept;
   SampleCounts counts() const noexcept;
   const HullModel& model() const noexcept { return model_; }
   const CrankFollower& crank() const noexcept { return crank_; }
-  /// Names of the hammer's columns in SampleResult::load_columns, which follow those of the sensor.
+  /// Returns the names of the hammer's columns in SampleResult::load_columns, which follow those of the sensor.
   std::vector<std::string> hammerColumns() const { return columns_.names(); }
   const CrankTrust& crankTrust() const noexcept { return trust_; }
   const ZeroWatch& zeroWatch() const noexcept { return zero_; }

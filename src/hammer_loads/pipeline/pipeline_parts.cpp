@@ -1,4 +1,4 @@
-// Steps of a sample beside crank and wrench: deviations, hull, boom, misuse.
+// Steps of a sample other than crank and wrench: deviations, hull, boom, misuse.
 #include <cmath>
 
 #include "hammer_loads/crank/crank_filter.h"
@@ -12,12 +12,12 @@ namespace {
 constexpr double kBegins = 2.0 * kSlowCrank;  // [rad/s]: a crank that has hardly begun to turn
 
 constexpr double kLeadOfZero = 0.6;  // part of the zero's time at the blow that acts on the vibration
-constexpr double kLateImu = 5e-3;    // [s]: beside pressures, older readings of the IMU make the torques worse
+constexpr double kLateImu = 5e-3;    // [s]: with pressures, older readings of the IMU make the torques worse
 
 }  // namespace
 
-/// Covariance of the wrench, by the probability that the last blow met no tool, or one that the estimate does not know
-/// of. A slow crank may also land on the tool, leave it or rest there: then the tool stops the links and carries the
+/// Returns the covariance due to the probability that the last blow was a blank firing, or that the estimate missed a
+/// blow. A slow crank may also land on the tool, leave it or rest there. Then the tool stops the links and carries the
 /// rocker.
 Eigen::Matrix3d Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept {
   const bool lands = std::abs(result_.crank.speed) < kSlowCrank && transmissionAngle(links) < settings_.near_blow;
@@ -37,9 +37,9 @@ Eigen::Matrix3d Pipeline::contactDoubt(const LinkMotion& links, const DriveReact
   return probability * doubt * doubt.transpose();
 }
 
-/// Covariance of the wrench by a zero that no turn has shown yet: the wrench at both ends of the zero's range, as it is
-/// not linear in it. It includes the weight of a slow rocker, which the tool may carry, and the error of the drive
-/// inertia.
+/// Returns the covariance due to a zero that no revolution has shown yet. It follows from the wrench at both ends of
+/// the zero's range, as it is not linear. It includes the weight of a slow rocker, which the tool may carry, and the
+/// error of the drive inertia.
 Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
   const ConstantErrors& errors = crank_.tracker().constantErrors();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -64,7 +64,7 @@ Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
   return covariance;
 }
 
-/// Deviations, and whether the blow's side is certain. Returns the loads that an elastic connecting rod adds.
+/// Finds the standard deviations and whether the blow's side is certain. Returns the loads that an elastic rod adds.
 ElasticFollower::RodLoads Pipeline::computeDeviations(const LinksBeside& links, const DriveReaction& drive) noexcept {
   const bool follows_rod = elastic_.runs();
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_std_part);
@@ -100,7 +100,7 @@ bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, 
 
 double Pipeline::stampNoise() const noexcept { return crank_.tracker().timingNoise(); }
 
-/// Lead of the crank's angle by the zero error that the filter sees. speed: of the crank at the blow [rad/s].
+/// Returns the lead of the crank's angle due to the zero error that the filter sees. speed: at the blow [rad/s].
 CrankLead Pipeline::crankLead(double speed) const noexcept {
   if (!(speed > 0.0)) return {};
   const ConstantErrors& errors = crank_.tracker().constantErrors();
@@ -118,7 +118,7 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
   const bool at_work = std::abs(crank.speed) > kSlowCrank;
   const double most_age = boom_->pressuresCount() ? kLateImu : look_back::kLine;
   const std::optional<StampedImuReading> imu = hull_.newImuReading(result_.stamp, boom_->imuStampsJitter(), most_age);
-  const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
+  const bool imu_lost = at_work && hull_.imuTrust().isLost();  // an IMU on a hull at rest may repeat its readings
   result_.boom = &boom_->sample(
       {result_.stamp, motion, spread, constantErrors(result_.load_columns), hammerErrors(result_.load_columns), imu,
        imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
@@ -141,8 +141,8 @@ void Pipeline::advanceBoom(const WrenchHistory& step) noexcept {
   hullMovedAtBlow();
 }
 
-/// Hull velocity at the blow: vibration by the IMU or else by the boom's model, plus the operator's motion, which the
-/// IMU does not show.
+/// Passes on the hull velocity at the blow: vibration from the IMU or else from the boom's model, plus the operator's
+/// motion, which the IMU does not show.
 void Pipeline::hullMovedAtBlow() noexcept {
   if (!turn_.blowWaits()) return;
   std::optional<TipVelocity> speed = hull_.speedAtBlow();
@@ -152,13 +152,13 @@ void Pipeline::hullMovedAtBlow() noexcept {
   turn_.hullMovedAtBlow({speed->z + driven.z, speed->rate + driven.rate});
 }
 
-/// Measured accelerations of the hull jump at a blow.
+/// Notes the blows, at which measured accelerations of the hull jump.
 void Pipeline::passBlows() noexcept {
   for (const CrankStep::Passage& passage : crank_.step())
     if (passage.strikes) hull_.struck(crank_.step().stampAt(passage.time));
 }
 
-/// The load of links and drive over the step drives the hull that its IMU sees.
+/// Follows the hull's motion, which the load of links and drive over the step drives and the IMU measures.
 void Pipeline::followHull() noexcept {
   if (!hull_.followsLoad()) return;
   const CrankMotion crank = motionOf(result_.crank);

@@ -1,4 +1,4 @@
-/// Checks that the readings of every sensor share: overdue, simultaneous, leaping.
+/// Checks common to the readings of all sensors: overdue, simultaneous, jumping.
 #pragma once
 
 #include <algorithm>
@@ -10,20 +10,20 @@
 
 namespace hammer_loads {
 
-/// No sensor of a machine is read more often than this [s].
+/// Shortest interval between two readings of any sensor of a machine [s].
 constexpr double kSameInstant = 1e-4;
 
 /// Returns true if two consecutive stamps of one sensor are too close for a rate: their difference comes from the bus.
 inline bool cameTogether(StampNs before, StampNs after) noexcept { return seconds(after - before) < kSameInstant; }
 
-/// Time since a second reading was due [s]; negative before that. since: time of the last reading; interval: time
-/// between the last two.
+/// Returns the time since a second reading was due [s]; negative before that. since: time since the last reading;
+/// interval: time between the last two.
 inline double overdue(double since, double interval) noexcept {
   constexpr double kIntervals = 2.0;
   return since - kIntervals * interval;
 }
 
-/// Part of the last reading that is no longer valid, 0 to 1. overdue: as above [s].
+/// Returns the part of the last reading that is no longer valid, 0 to 1. overdue: as above [s].
 inline double forgottenPart(double overdue) noexcept {
   return overdue > 0.0 ? -std::expm1(-overdue / look_back::kHeld) : 0.0;
 }
@@ -33,10 +33,10 @@ inline double forgottenPart(double overdue) noexcept {
 /// on rock, differences reach nine times the root mean square (IMU of 1 kHz to 100 Hz, pressures of 500 to 200 Hz).
 class JumpGuard {
  public:
-  /// least: a jump that is never too far.
+  /// least: largest jump that is always accepted.
   explicit JumpGuard(double least) noexcept : least_(least) {}
 
-  /// jump: from the last reading that was accepted, >= 0.
+  /// Returns true if a reading is accepted. jump: from the last accepted reading, >= 0.
   bool believes(double jump) noexcept {
     const double limit = std::max(least_, kFactor * std::sqrt(square_));
     const bool far = jump > limit;
@@ -51,7 +51,7 @@ class JumpGuard {
 
   double least_;
   double square_{};  ///< mean of the jumps' squares
-  bool refused_{};   ///< the last reading was
+  bool refused_{};   ///< the last reading was refused
 };
 
 }  // namespace hammer_loads

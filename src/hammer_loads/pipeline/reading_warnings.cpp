@@ -38,9 +38,9 @@ void warnOfSpeeds(const SpeedTrust& speeds, const AngleLag& taken_off, std::vect
          true});
 }
 
-/// Text for an IMU whose mounting or unit differs from the parameters. weight: of the hull by the joint angles.
+/// Returns the text for an IMU whose mounting or unit is wrong. weight: of the hull, from the joint angles.
 std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
-  constexpr double kAlike = 1.2;  // factor between weights: what blows add to a mean of 2 s is less
+  constexpr double kAlike = 1.2;  // factor between weights: blows add less to a mean of 2 s
   // Warning: kAlike
   if (trust.turnsTooFast())
     return format(
@@ -58,7 +58,7 @@ std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
                        std::acos(std::clamp(along, -1.0, 1.0)) / kDegree);
 }
 
-/// samples: crank samples that were accepted.
+/// Warns of the IMU. samples: number of accepted crank samples.
 void warnOfImu(const HullState& hull, std::uint64_t samples, std::vector<Warning>& warnings) {
   constexpr double kOftenMissed = 0.1;
   // Warning: kOftenMissed

@@ -1,4 +1,4 @@
-/// Warnings of sensor faults by their own readings: filtered speeds, a slipped zero, an IMU.
+/// Warnings of sensor faults from their own readings: filtered speeds, a slipped zero, an IMU.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace hammer_loads {
 
 void warnOfReadings(const CrankFollower& crank, const CrankFilter& filter, std::vector<Warning>& warnings);
-/// Hull pitch and hull_imu.
+/// Warns of hull pitch and hull_imu.
 void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings);
 
 }  // namespace hammer_loads

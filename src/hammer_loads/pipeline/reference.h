@@ -16,8 +16,8 @@ namespace hammer_loads {
 struct ReferenceFigures {
   std::uint64_t samples{};
   double rms{kNaN};             ///< root mean square of the measured load [N, N m]
-  double rms_error{kNaN};       ///< root mean square of computed less measured [N, N m]
-  double bias{kNaN};            ///< mean of computed less measured [N, N m]
+  double rms_error{kNaN};       ///< root mean square of computed minus measured [N, N m]
+  double bias{kNaN};            ///< mean of computed minus measured [N, N m]
   double scale{kNaN};           ///< slope of the computed load over the measured one, by least squares [-]
   double correlation{kNaN};     ///< Pearson's [-]
   double within_two_std{kNaN};  ///< fraction of errors within two of the stated standard deviations [-]
@@ -31,12 +31,12 @@ class ReferenceComparison {
   static constexpr std::array<const char*, kComponents> kNames{"force_x", "force_z", "torque_y"};
   using Values = std::array<double, kComponents>;
 
-  /// NaN: that component is not measured. The load on the hull as in ~hull_wrench.
+  /// Takes a measured load on the hull as in ~hull_wrench. NaN: that component is not measured.
   void measured(StampNs stamp, const Values& values);
-  /// Stamps grow. continues: neither a gap nor a blow since the sample before.
+  /// Takes a computed load; stamps increase. continues: neither a gap nor a blow since the previous sample.
   void computed(StampNs stamp, const HullWrench& wrench, const HullWrench& deviation, bool continues);
 
-  std::uint64_t received() const { return received_; }  ///< measured loads
+  std::uint64_t received() const { return received_; }  ///< number of measured loads
   std::uint64_t leftOut() const { return left_out_; }   ///< number of samples without a computed load at their instant
   ReferenceFigures figures(std::size_t component) const;
 

@@ -22,9 +22,9 @@ enum class Refusal : std::size_t {
   kDegrees,       ///< crank or boom are recognised to send degrees: withheld until that is over
   kSpeedUnit,     ///< crank speed recognised to be in rpm or revolutions per second: withheld until that is over
   kAngleUnit,     ///< crank angle recognised to be in revolutions: withheld until that is over
-  kBackward,      ///< the crank turns backward: withheld until it has made half a turn forward
+  kBackward,      ///< the crank turns backward: withheld until it has made half a revolution forward
   kInconsistent,  ///< readings contradict the model, and have for some time: withheld until they agree
-  kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)
+  kUnsettled,     ///< used, but the estimate is not good enough to publish (start without speed, after a drop-out)
   kCount
 };
 
@@ -43,23 +43,23 @@ struct SampleCounts {
   std::uint64_t beside_blow{};       ///< accepted samples that are not published because of the blow, see SampleResult
   std::uint64_t uncertain{};         ///< other accepted samples that are not published, see SampleResult
   std::uint64_t restarts{};          ///< drop-outs, jumps and time running back
-  std::uint64_t blows{};             ///< forward, for the first time, not creeping
-  std::uint64_t impossible_blows{};  ///< not among them: RockerBlow::impossible
-  std::uint64_t backward_passes{};   ///< passages of the blow backward, less those forward again
+  std::uint64_t blows{};             ///< forward passages, for the first time, not creeping
+  std::uint64_t impossible_blows{};  ///< not included in blows: RockerBlow::impossible
+  std::uint64_t backward_passes{};   ///< backward passages of the blow, minus those forward again
   MisuseCounts misuse;
 
-  /// Withheld because the readings are in another unit.
+  /// Returns the number of samples withheld because the readings are in another unit.
   std::uint64_t inOtherUnit() const noexcept {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < refused.size(); ++i) sum += isOfUnit(static_cast<Refusal>(i)) ? refused[i] : 0;
     return sum;
   }
-  /// Number of samples withheld because the readings contradict the model.
+  /// Returns the number of samples withheld because the readings contradict the model.
   std::uint64_t contradicting() const noexcept {
     return inOtherUnit() + refusedFor(Refusal::kBackward) + refusedFor(Refusal::kInconsistent);
   }
-  /// Since `before`, most readings are not those of such a machine. A unit is the same all along, but shows at work
-  /// only: a tenth of them is enough.
+  /// Returns true if most readings since `before` contradict the model. A wrong unit is permanent but shows only at
+  /// work, so that a tenth of the readings is enough.
   bool contradictSince(const SampleCounts& before) const noexcept {
     constexpr std::uint64_t kUnitTells = 10;
     // Limit: kUnitTells

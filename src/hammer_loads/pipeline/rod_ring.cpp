@@ -16,18 +16,18 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLongest = 1e-3;           // [s] in which the lever counts as constant
-constexpr double kRestitutionDoubt = 0.05;  // error by an elastic rod: 0.03 to 0.08, with worn pins to 0.14
+constexpr double kLongest = 1e-3;           // [s] over which the lever is taken as constant
+constexpr double kRestitutionDoubt = 0.05;  // error due to an elastic rod: 0.03 to 0.08, with worn pins to 0.14
 // Prior: kRestitutionDoubt
 constexpr double kMeanRestitution = 0.5,
                  kAnyRestitution = 0.29;  // mean and deviation of a restitution uniform from 0 to 1
-constexpr double kOtherBlow = 0.08;       // of a restitution from blow to blow
+constexpr double kOtherBlow = 0.08;       // scatter of a restitution from blow to blow
 // Prior: kMeanRestitution, kAnyRestitution, kOtherBlow
 constexpr double kPart = 1e-2;       // [rad], as kLongest
-constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
+constexpr double kBallistic = 1e-2;  // [rad]: below it, the spring has no effect within a part
 // Numerical: kLongest, kPart, kBallistic
 
-/// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
+/// Returns the root mean square of y'' over the unknown phase; without a phase y'' itself.
 double acceleration(const Oscillator& rod, double y, double speed) noexcept {
   const double now = square(rod.square * y + 2.0 * rod.decay * speed), rest = rod.square - rod.decay * rod.decay;
   const double size = rest > 0.0 ? square(y) + square(speed + rod.decay * y) / rest : 0.0;
@@ -40,13 +40,13 @@ double fly(double rigid, double time, double& x, double& speed) noexcept {
   return std::abs(rigid);
 }
 
-/// Pressed against one side, x as the motion of the rigid linkage asks for.
+/// Returns x of a rod that the motion of the rigid linkage presses against one side.
 double settled(const RodSpring& spring, double lever, double inertia, double rigid) noexcept {
   return -std::copysign(0.5 * spring.play / std::abs(lever), rigid) -
          rigid * inertia / (spring.stiffness * square(lever));
 }
 
-/// Over a time; the acceleration after it.
+/// Advances x and speed over a time. Returns the acceleration after it.
 double moved(const RodSpring& spring, double lever, double inertia, double rigid, double time, double& x,
              double& speed) noexcept {
   const double by_lever = square(lever) / inertia, free = 0.5 * spring.play / std::abs(lever);
@@ -93,7 +93,7 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   if (!(blow.drive_inertia > 0.0) || !(speed_before > 0.0)) return stop();
   const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
   double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0), factor = blow.mean, deviation = kOtherBlow;
-  if (unexplained_ && explained_) {  // what the crank shows of this blow is not its restitution
+  if (unexplained_ && explained_) {  // the crank does not show this blow's restitution
     restitution = *explained_, factor = at.factor(restitution);
   } else {
     const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
@@ -108,7 +108,7 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   begin(std::copysign(struck_, missing));
 }
 
-/// angle, speed, acceleration: of the crank in the middle of a time in which its lever counts as constant.
+/// Moves the rods for a time with a constant lever. angle, speed, acceleration: of the crank in its middle.
 void RodRing::moveThrough(const CrankAngle& angle, double speed, double acceleration, double time) noexcept {
   if (!(angle.offset > -RodEvidence::kPickedUp) || !(speed > 0.0)) return stop();
   const HammerParameters& p = model_->mechanism().parameters();
@@ -131,7 +131,7 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   const int parts = partsOf(to - from, kLongest);
   const double time = (to - from) / parts;
   for (int i = 0; i < parts && moves_; ++i) {
-    CrankEstimate crank = step.at(step.length());  // turned back at its speed: the lever needs no more
+    CrankEstimate crank = step.at(step.length());  // extrapolated back at constant speed, enough for the lever
     crank.position.slide(-crank.speed * (step.length() - from - (i + 0.5) * time));
     moveThrough(crank.position.angle, crank.speed, crank.acceleration, time);
   }
@@ -148,7 +148,7 @@ void RodRing::restart(const CrankFilter& tracker) noexcept {
     load.inertia += tracker.driveInertia();
     return load;
   };
-  const double energy = loadAt(at.offset).inertia * square(now.speed);  // twice
+  const double energy = loadAt(at.offset).inertia * square(now.speed);  // twice the kinetic energy
   double from = 0.0;
   if (now.position.isMirrored()) {
     begin(0.0);

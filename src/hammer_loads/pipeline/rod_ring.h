@@ -12,50 +12,50 @@ namespace hammer_loads {
 
 class CrankFilter;
 
-/// Rods that the file leaves possible. With little damping the vibration lasts longest, with much it peaks first, and
-/// with worn pins the rocker flies until the joint clearance is used up.
+/// Rods that the hammer file allows. With little damping the vibration lasts longest, with much damping it peaks first.
+/// With worn pins the rocker flies until the joint clearance is used up.
 using Rods = std::array<RodSpring, 3>;
 Rods rodsOf(const RodPrior& prior) noexcept;
 
-/// The rocker leaves the tool with its own speed, not with that which the linkage has there, and at the dead centre the
-/// rod has no lever h = l3 sin(psi - beta) on it. With x = psi - psi of the rigid linkage,
+/// The rocker leaves the tool with a speed other than that of the linkage, and at the dead centre the rod has no lever
+/// h = l3 sin(psi - beta) on it. With x = psi - psi of the rigid linkage,
 ///
 ///     I x'' = -h^2 (k x + c x') - I psi_rigid'',  x(0) = 0,  x'(0) = R |u- w-| - u+ w+
 ///
-/// the rocker picks up speed as the lever opens, and vibrates; within the joint clearance the spring has no force. A
-/// rocker that meets no tool is driven past the dead centre by psi_rigid'' alone. Before it the lever is lost: from 30
-/// deg on, where the rod is at rest on its spring, x is followed. A wrench of rigid links lacks the effect of x'' and
-/// x'. Its phase depends on a stiffness that is hardly known, its size does not: the mean square over the rods counts.
+/// the rocker gains speed as the lever opens, and vibrates. Within the joint clearance the spring has no force. At a
+/// blank firing psi_rigid'' alone drives the rocker past the dead centre. The lever is lost before the dead centre: x
+/// is followed from 30 deg on, where the rod is at rest on its spring. A wrench of rigid links lacks the effect of x''
+/// and x'. Its phase depends on the uncertain stiffness, its magnitude does not: the mean square over the rods is used.
 /// Each step is that of the oscillator with the lever at its middle.
 class RodRing {
  public:
   /// Refers to the model; a rod given as rigid does not vibrate.
   explicit RodRing(const HullModel& model) noexcept;
 
-  /// Restarts at the crank's last sample; the motion before it is not known. A crank behind the blow has passed it with
-  /// the kinetic energy that it has now.
+  /// Restarts at the crank's last sample; the motion before it is not known. A crank behind the blow is assumed to have
+  /// passed it with its present kinetic energy.
   void restart(const CrankFilter& tracker) noexcept;
-  /// Over the step to the crank's last sample; the tracker has followed it.
+  /// Follows the step to the crank's last sample, which the tracker has already followed.
   void follow(const CrankStep& step, const CrankFilter& tracker) noexcept;
   /// Takes the evidence of the crank's filter on a vibrating rod. lost, restitution: isLost() and restitution() of
-  /// ElasticFollower. The vibration after an unexplained blow is that by the restitution of the explained ones; the
+  /// ElasticFollower. The vibration after an unexplained blow follows from the restitution of explained ones; the
   /// restitution of the blow itself is not known.
   void setEvidence(const CrankFilter& filter, bool lost, std::optional<double> restitution) noexcept;
-  /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
-  /// crank: speed [rad/s].
+  /// Returns the covariance of a rigid level's wrench due to acceleration() and speed(), whose square acts along the
+  /// rocker. crank: speed [rad/s].
   Eigen::Matrix3d covariance(const LinkMotion& links, double crank) const noexcept;
-  /// Root mean square over the phase of the rocker's angular acceleration relative to the rigid links' [rad/s2].
+  /// Returns the rms over the phase of the rocker's angular acceleration relative to the rigid links' [rad/s2].
   double acceleration() const noexcept { return moves_ ? share_ * acceleration_ : 0.0; }
-  /// Standard deviation of a restitution that is computed from the crank as if the rod were rigid [-].
+  /// Returns the standard deviation of a restitution computed from the crank as if the rod were rigid [-].
   double restitutionDoubt(double restitution) const noexcept;
-  /// Standard deviation by which the crank's speed at the last blow may exceed that which drives a rigid mechanism's
-  /// rocker as fast as this one struck [rad/s]. A rocker at the side of its joint clearance is slower than the linkage
-  /// predicts, the more so the nearer the dead centre. Nothing brakes it within the joint clearance: it strikes with
-  /// the most it was driven at.
+  /// Returns the standard deviation by which the crank's speed at the last blow may be too large [rad/s]. Reference is
+  /// the speed with which a rigid mechanism's rocker strikes as fast. A rocker at one side of its joint clearance is
+  /// slower than in the linkage, increasingly so towards the dead centre. Nothing brakes it within the clearance, so
+  /// that it strikes with the largest speed at which it was driven.
   double lackingSpeed() const noexcept { return released_ * lacking_; }
-  /// Part of the rocker's speed that the last blow left for the rod to take up [rad/s].
+  /// Returns the part of the rocker's speed that the last blow left for the rod to take up [rad/s].
   double struck() const noexcept { return is_elastic_ ? share_ * struck_ : 0.0; }
-  /// Root mean square of the rocker's angular speed relative to the rigid links' [rad/s].
+  /// Returns the root mean square of the rocker's angular speed relative to the rigid links' [rad/s].
   double speed() const noexcept;
 
  private:
@@ -72,23 +72,23 @@ class RodRing {
 
   const HullModel* model_;
   bool is_elastic_, moves_{};      ///< moves: from the run-up on, which may turn out to be a blank firing
-  bool approaches_{}, settles_{};  ///< in this run-up, which began settled
+  bool approaches_{}, settles_{};  ///< in this run-up; it begins in the settled position
   struct State {
     double x{}, speed{};  ///< [rad], [rad/s]
   };
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
   double acceleration_{}, struck_{}, share_{1.0}, released_{1.0};
-  double driven_{};                  ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
-  double lacking_{};                 ///< at the last blow, of the crank's speed [rad/s]
-  bool unexplained_{};               ///< no rod explains the last blow
-  bool lost_{};                      ///< nothing explains what blows did to the crank
+  double driven_{};     ///< largest rocker speed of this stroke, with the most worn pins of the file [rad/s]
+  double lacking_{};    ///< lacking crank speed at the last blow [rad/s]
+  bool unexplained_{};  ///< no rod explains the last blow
+  bool lost_{};         ///< no rod explains the effect of blows on the crank
   std::optional<double> explained_;  ///< restitution of the blows that a spring explains [-]
 };
 
-/// Wrench on the hull of a rocker's angular acceleration [rad/s2]; for a speed [rad/s] its momentum [N s, N m s].
+/// Returns the hull wrench of a rocker's angular acceleration [rad/s2]; for a speed [rad/s] its momentum [N s, N m s].
 HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, double acceleration) noexcept;
-/// Load that a tool takes off the hull carrying the rocker, at rest at the dead centre: it pushes along z there.
+/// Returns the load that a tool takes off the hull by carrying the rocker, at rest at the dead centre, along z.
 HullWrench rockerOnTool(const Mechanism& mechanism, const LinkMotion& links, Gravity gravity) noexcept;
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// Result of one crank sample, complete.
+/// Complete result of one crank sample.
 #pragma once
 
 #include <array>
@@ -19,14 +19,14 @@
 
 namespace hammer_loads {
 
-/// Blow and, if the revolution before it was seen whole, its pulse. It is known some 50 ms after the blow.
+/// Blow and, if the revolution before it was observed completely, its pulse. It is known some 50 ms after the blow.
 struct TurnEnd {
   StampNs stamp{};       ///< instant of the blow, found between samples [ns]
   std::uint64_t turn{};  ///< blows since the start, 1 for the first
   RockerBlow blow;
   BlowErrors blow_errors;
   enum class Struck : std::uint8_t { kUnknown, kTool, kHull } struck{};
-  double mean_hold_down_force{};  ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
+  double mean_hold_down_force{};  ///< tool impulse times blow rate [N]; NaN for an incomplete revolution
   std::optional<HalfSinePulse> pulse;
   PulseErrors pulse_errors;
 };
@@ -38,9 +38,9 @@ struct WrenchOutput {
   CrankEstimate crank;        ///< at the stamp
   HullWrench wrench;          ///< wrench of links and drive
   double drive_reaction_y{};  ///< part of its moment [N m]
-  HullDeviation deviation;  ///< for a mean: of its end or, if less, what the momentum's at both ends allows; its common
-                            ///< part is that of the mean
-  bool near_blow{};         ///< transmission angle below near_blow_deg
+  HullDeviation deviation;    ///< for a mean: that at its end or, if less, the bound by the momenta at both ends; its
+                              ///< common part is that of the mean
+  bool near_blow{};           ///< transmission angle below near_blow_deg
 };
 
 struct SampleResult {
@@ -72,33 +72,33 @@ struct SampleResult {
   /// not published; sums over steps continue.
   bool beside_blow{};
   /// A force's standard deviation exceeds the peak at constant speed, or, where the crank is held at constant speed,
-  /// five times withhold_above of its peak: the sample is not published. Sums over steps go on.
+  /// five times withhold_above of its peak: the sample is not published. Sums over steps continue.
   bool uncertain{};
   bool isPublished() const noexcept { return !refusal && !beside_blow && !uncertain; }
   Level level{};  ///< level of the model that gave the wrench: linkage where `elastic` is not confirmed by the readings
   CrankEstimate crank;
   CrankUncertainty doubt;    ///< uncertainty of the crank's motion
   LoadColumns load_columns;  ///< errors of the wrench
-  HullWrench rod_momentum;   ///< possible momentum of the rocker beside a rigid rod's, without a followed spring
-  /// Covariance of the wrench's errors that are not of the crank's motion: of rod, contact and unknown forces, in
+  HullWrench rod_momentum;   ///< possible momentum of the rocker relative to a rigid rod's, without a followed spring
+  /// Covariance of the wrench's errors other than those of the crank's motion: rod, contact and unknown forces, in
   /// products of [N], [N], [N m].
   Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
-  HullWrench rod_ring;  ///< part of the deviation that the rod makes, whose spring the level leaves out
+  HullWrench rod_ring;  ///< part of the deviation due to the rod's spring, which the level neglects
   UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< squares of forces that no level models, by source
-  bool rod_followed{};           ///< else rod_ring is a root mean square over a phase that is not known
-  HullDeviation deviation;       ///< at the sample, with what the hull's motion adds
+  bool rod_followed{};           ///< if false, rod_ring is a root mean square over an unknown phase
+  HullDeviation deviation;       ///< at the sample, including the hull's motion
   double consistency{};          ///< CrankFilter::consistency()
-  bool inconsistent{};           ///< readings contradict the model, not yet so that samples are withheld
+  bool inconsistent{};           ///< readings contradict the model, but not enough to withhold samples
   LinkMotion links;              ///< links as with a rigid rod
-  double rocker_beside{};        ///< angle of the rocker, less that with a rigid rod [rad]
+  double rocker_beside{};        ///< angle of the rocker minus that with a rigid rod [rad]
   double rocker_beside_speed{};  ///< rate of that angle [rad/s]
   HullState::Motion hull;
-  bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad
+  bool pitch_known{};  ///< every pitch joint has been received; else the weight follows from hull_pitch_rad
   HullWrench wrench;   ///< at the sample, of links and drive
   PinReactions pins;
-  const BoomState* boom{};            ///< null: no boom; with a fault in it void but for stamp and fault
-  std::vector<WrenchOutput> outputs;  ///< one at the sample, or those on the grid of output_rate since the one before;
-                                      ///< none beside the blow but means
+  const BoomState* boom{};            ///< null: no boom; with a fault only its stamp and fault are valid
+  std::vector<WrenchOutput> outputs;  ///< one at the sample, or those on the grid of output_rate since the last sample;
+                                      ///< close to the blow only means
   std::size_t turn_ends{};            ///< number of valid `ends`; more than one only for sparse samples
   std::array<TurnEnd, 4> ends;
 };

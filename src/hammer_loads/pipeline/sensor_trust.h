@@ -15,10 +15,10 @@
 
 namespace hammer_loads {
 
-/// In the mean of 2 s the hull does not move: a unit measures the weight by the joint angles, but for the part of the
-/// blows that it misses, up to 2 m/s2. No boom turns by 3 rad/s, root mean square, while it holds a hammer: near a
-/// resonance by 0.5. Readings in g, degrees per second or with an axis the wrong way are therefore recognised; 20 deg
-/// of mounting are not.
+/// On average over 2 s the hull does not move. A unit then measures the weight that follows from the joint angles,
+/// apart from missed parts of the blows, up to 2 m/s2. No boom rotates at 3 rad/s, root mean square, while it holds a
+/// hammer; near a resonance it reaches 0.5. Readings in g, degrees per second or with a reversed axis are therefore
+/// recognised, mounting errors of 20 deg are not.
 class ImuTrust {
  public:
   /// Takes a reading in axes of hammer_hull: specific force [m/s2], turning rate [rad/s], step since the last one [s].
@@ -35,16 +35,16 @@ class ImuTrust {
     if (step >= kSameInstant) turning_.add(square((rate.y() - last_rate_) / step), lasts), last_rate_ = rate.y();
     rate_square_.add(rate.squaredNorm(), lasts);
   }
-  /// Judges after a reading; weight: by the joint angles, in the plane of the hull. A single damaged angle affects only
-  /// a part of the mean.
+  /// Judges after a reading. weight: from the joint angles, in the plane of the hull. A single damaged angle affects
+  /// only a part of the mean.
   void judge(const Gravity& weight, double step) noexcept {
     if (step > 0.0) off_.add({force_.x() + weight.x, force_.z() + weight.z}, std::min(step, look_back::kHalfTurn));
     if (off_.count() < look_back::kSomeTurns) return;
     off_weight_.follow(off_.mean().norm() / std::hypot(weight.x, weight.z));
     is_lost_ = isFrozen() || turnsTooFast() || off_weight_.isEngaged();
   }
-  /// Mean squares of the hull's acceleration in its plane and of its rotation: along x and z [m2/s4], rate [rad2/s2],
-  /// its derivative [rad2/s4].
+  /// Returns mean squares of the hull's acceleration in its plane and of its rotation: along x and z [m2/s4], rate
+  /// [rad2/s2], its derivative [rad2/s4].
   Eigen::Vector4d power(const Gravity& weight) const noexcept {
     const Eigen::Vector3d& power = power_.mean();
     return {power.x() + square(mean().x() + weight.x), power.y() + square(mean().z() + weight.z), power.z(),
@@ -67,7 +67,7 @@ class ImuTrust {
   RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()},
       power_{look_back::kTenTurns, Eigen::Vector3d::Zero()};
   RunningMean<> rate_square_{look_back::kTenTurns}, turning_{look_back::kTenTurns};
-  RunningMean<Eigen::Vector2d> off_{look_back::kTenTurns, Eigen::Vector2d::Zero()};  ///< from the weight
+  RunningMean<Eigen::Vector2d> off_{look_back::kTenTurns, Eigen::Vector2d::Zero()};  ///< deviation from the weight
   Latch off_weight_{kMostPart};
   double same_for_{}, last_rate_{};
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), rate_ = force_;  ///< force and rate of the last reading
@@ -75,14 +75,14 @@ class ImuTrust {
 };
 
 /// Rock pushes on the hull along the tool. The residual of three cylinders' forces beyond weight, motion and blows is a
-/// load on the tip in its plane, whose mean over 2 s across the tool and about its axis must be small. Pressures in bar
-/// and exchanged chambers or cylinders cause 13 to 220 % of the weight there, correct ones 4 %; a lag of their stamps
-/// has no effect on the mean. A delay by the boom's vibration is accepted as that of a hose. Pressures that are later
-/// than any hose makes them, or that fit no delay, are not used for a while.
+/// load on the tip in its plane. Its mean over 2 s across the tool and about its axis must be small. Pressures in bar
+/// and exchanged chambers or cylinders cause 13 to 220 % of the weight there, correct ones 4 %. A lag of their stamps
+/// has no effect on the mean. A delay in the boom's vibration is accepted as that of a hose. Pressures that are later
+/// than any hose makes them and do not fit the model are not used for a while.
 class PressureTrust {
  public:
-  /// Loads on the tip, axes of the tip: measured beyond the model's, and of the weight; arm: from D to the tool [m];
-  /// step since the last call [s].
+  /// Takes loads on the tip in its axes. beyond: measured minus modelled load; weight: load of the weight; arm: from D
+  /// to the tool [m]; step: since the last call [s].
   void follow(const Wrench& beyond, const Wrench& weight, double arm, double step) noexcept {
     if (!(step > 0.0) || !std::isfinite(beyond.force.x() + beyond.force.z() + beyond.torque.y())) return;
     mean_.add({beyond.force.x(), beyond.force.z(), beyond.torque.y() - arm * beyond.force.z()},
@@ -92,7 +92,7 @@ class PressureTrust {
     const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
     lost_.follow(off);
   }
-  /// delay: of their stamps, as the boom's vibration shows it [s]; misfit: ModeIdentifier::oilSurprise().
+  /// Takes the delay of the stamps in the boom's vibration [s]. misfit: ModeIdentifier::oilSurprise().
   void followDelay(double delay, double misfit, double step) noexcept {
     late_left_ -= step;
     beyond_for_ = delay > kLongestHose && misfit > mismatch::kContradicts ? beyond_for_ + step : 0.0;
@@ -101,8 +101,8 @@ class PressureTrust {
   bool isLate() const noexcept { return late_left_ > 0.0; }
   double lateBy() const noexcept { return late_by_; }  ///< delay when it was detected [s]
   bool isLost() const noexcept { return lost_.isEngaged() || isLate(); }
-  /// Mean load on the tip that is not one of rock, which acts along the tool from least_force [N] on. It shows that
-  /// pressures, lengths or masses are wrong.
+  /// Returns the mean load on the tip that rock cannot cause; rock acts along the tool, with at least least_force [N].
+  /// It shows that pressures, lengths or masses are wrong.
   Wrench notOfRock(double arm, double least_force) const noexcept {
     const double not_rock = along() < least_force ? along() : 0.0;
     return {{across(), 0.0, not_rock}, {0.0, turning() + arm * not_rock, 0.0}};

@@ -18,7 +18,7 @@ PartEnd endAt(const CrankStep& step, const CrankEstimate& crank) noexcept {
   return {crank, step.linksAt(crank.position.angle)};
 }
 
-/// The impulse of a change of momentum on the hull.
+/// Returns the impulse on the hull of a change of momentum.
 LoadImpulse change(const HullModel& model, const DriveReaction& drive, const PartEnd& from_end,
                    const PartEnd& to_end) noexcept {
   const CrankEstimate &a = from_end.crank, &b = to_end.crank;
@@ -28,7 +28,7 @@ LoadImpulse change(const HullModel& model, const DriveReaction& drive, const Par
   return {{from.x - to.x, from.z - to.z, from.about_d - to.about_d + drive_y}, drive_y};
 }
 
-/// Blow of a passage, by the crank's speeds at it.
+/// Returns the blow of a passage from the crank's speeds at it.
 RockerBlow blowAt(const HullModel& model, double drive_inertia, const CrankStep::Passage& passage) noexcept {
   CrankBlow crank;
   crank.speed = passage.speed_before;

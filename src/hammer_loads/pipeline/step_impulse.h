@@ -15,9 +15,9 @@ struct LoadImpulse {
   double drive_y{};  ///< [N m s]
 };
 
-/// Over [from, to], by motion relative to the hull: minus the change of the momentum of links and drive, the jumps at
-/// the blow left out (they are the blow's own, in RockerBlow). No quadrature, so the sum over any division of a time is
-/// the same.
+/// Returns the impulse over [from, to] due to motion relative to the hull: minus the change of momentum of links and
+/// drive. Jumps at the blow are excluded (they belong to the blow, in RockerBlow). Without quadrature the sum over any
+/// division of a time is the same.
 LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step, double from,
                           double to) noexcept;
 
@@ -33,14 +33,14 @@ struct HullPath {
   }
 };
 
-/// Impulse over [from, to] of what weight and motion of the hull add (frameWrench and the drive's part). Gauss-Legendre
-/// of order 6 on pieces of at most 1.25 ms that end at the blow: forces of a hull at rest exact, moments to some 1e-11
-/// of their size.
+/// Returns the impulse over [from, to] due to weight and motion of the hull (frameWrench and the drive's part). It uses
+/// Gauss-Legendre quadrature of order 6 on pieces of at most 1.25 ms that end at the blow. For a hull at rest forces
+/// are exact, moments to some 1e-11 of their size.
 LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step,
                          const HullPath& hull, double from, double to) noexcept;
 
-/// The load of links and drive over the whole step for the boom, blows included. Pieces in excess of the capacity of
-/// WrenchHistory are left out (a step of several turns).
+/// Returns the load of links and drive over the whole step for the boom, blows included. Pieces in excess of the
+/// capacity of WrenchHistory are left out (a step of several revolutions).
 WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept;
 
 }  // namespace hammer_loads

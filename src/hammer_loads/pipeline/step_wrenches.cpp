@@ -6,14 +6,14 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kNear = 1e-3;    // part of the span at which slopes are evaluated
-constexpr double kClearly = 1.5;  // 1 would do were slopes along the span on a line
+constexpr double kClearly = 1.5;  // 1 would suffice for slopes on a line along the span
 // Numerical: kClearly
 constexpr double kHardly = 1e-3;  // negligible relative change of a component
 // Numerical: kNear, kHardly
 
 using Components = std::array<double, kHullChannels>;
 
-/// Position of the extreme in (0, 1) of the cubic with these values at 0 and 1 and slopes of opposite signs.
+/// Returns the position of the extreme in (0, 1) of a cubic from its values and slopes (of opposite signs) at 0 and 1.
 double extremeOfCubic(double value_0, double value_1, double slope_0, double slope_1) noexcept {
   // slope(s) = a s^2 + b s + slope_0
   const double rise = value_1 - value_0;
@@ -24,7 +24,7 @@ double extremeOfCubic(double value_0, double value_1, double slope_0, double slo
   return s > 0.0 && s < 1.0 ? s : q / a;
 }
 
-/// Further along by its own motion; the angle stays on its side of a blow.
+/// Returns the crank extrapolated by its own motion; the angle stays on its side of a blow.
 CrankEstimate moved(CrankEstimate crank, double time, double jerk) noexcept {
   crank.position.angle.offset += time * crank.speed;
   crank.speed += time * crank.acceleration;
@@ -39,8 +39,8 @@ void insert(double time, ExtremeInstants& sorted) noexcept {
 }
 
 /// Returns true if every component clearly rises or falls all along a span. after, before: values slightly within the
-/// span by the motion at its ends alone. A sample's correction on the way adds nearly equally to both slopes: it is the
-/// rise of the components beyond the slopes.
+/// span due to the motion at its ends alone. A sample's correction on the way adds nearly equally to both slopes: it is
+/// the rise of the components beyond the slopes.
 bool risesOrFalls(const Components& from, const Components& after, const Components& before,
                   const Components& to) noexcept {
   for (std::size_t i = 0; i < from.size(); ++i) {

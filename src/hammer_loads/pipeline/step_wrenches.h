@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-/// Inputs of the wrench beside the crank's motion.
+/// Inputs of the wrench other than the crank's motion.
 struct StepLoad {
   const HullModel& model;
   const DriveReaction& drive;
@@ -25,7 +25,7 @@ struct StepLoad {
 /// A part of a step without a blow.
 struct SmoothSpan {
   double from{}, to{};          ///< after the step's start [s]
-  CrankEstimate begin, finish;  ///< there
+  CrankEstimate begin, finish;  ///< crank at both ends
 };
 
 /// Instants in a short span where a component of the wrench is least or largest, in order of time [s].
@@ -34,8 +34,8 @@ struct ExtremeInstants {
   std::array<double, 3> time;
 };
 
-/// At most one for each component. A component that rises at one end of the span and falls at the other has its
-/// extreme where the cubic by values and slopes of both ends has it: off by some 1e-4 of the span.
+/// Finds at most one per component. A component that rises at one end of the span and falls at the other has its
+/// extreme where the cubic through values and slopes of both ends has it; error: some 1e-4 of the span.
 ExtremeInstants extremeInstants(const StepLoad& load, const CrankStep& step, const SmoothSpan& span) noexcept;
 
 /// Place of a wrench in a step: at a time after its start [s], or exactly on one side of a passage of the blow.
@@ -49,9 +49,9 @@ struct StepPlace {
   }
 };
 
-/// Calls at(place, crank) in order of time where a component of the wrench is extreme inside the step and on both sides
-/// of each blow, and turn(time) between them where a blow may end a turn. Times are after the step's start [s]. One of
-/// two extremes closer than 1.25 ms may be missed; points on the way to them are given as well.
+/// Calls at(place, crank) in order of time where a component of the wrench is extreme inside the step, and on both
+/// sides of each blow. Calls turn(time) between them where a blow may end a revolution. Times are after the step's
+/// start [s]. One of two extremes closer than 1.25 ms may be missed; points on the way to them are given as well.
 template <typename OnPlace, typename OnTurn>
 void forEachStepExtreme(const StepLoad& load, const CrankStep& step, const OnPlace& at, const OnTurn& turn) noexcept {
   const auto alongSpan = [&](const SmoothSpan& span) {

@@ -13,14 +13,14 @@
 
 namespace hammer_loads {
 
-/// Standard deviation of each joint's torque over the torque beside the weight, root mean squares over a revolution.
-/// The worst joint has 0.02 to 0.34 where the sensors fit the model, 1.5 to 6 with an IMU alone on rock and 0.4 to 6
-/// with pressures alone over a bus (machines of doc/accuracy.md). Torques are useless where this ratio is large and
-/// sensors are the cause. It is judged once a revolution, and holds until the hammer stands.
+/// Ratio of each joint torque's standard deviation to the torque without the weight, root mean squares over a
+/// revolution. The worst joint has 0.02 to 0.34 if the sensors fit the model, 1.5 to 6 with an IMU alone on rock and
+/// 0.4 to 6 with pressures alone over a bus (doc/accuracy.md). Torques are useless where this ratio is large and
+/// sensors are the cause. The verdict is formed once per revolution and holds until the hammer stops.
 class TorqueWorth {
  public:
-  /// At each sample, [N m]: loads on the joints together, the part of the weight, standard deviation. by_sensors:
-  /// pressures show the torques, or an IMU shows a force that is not measured.
+  /// Adds a sample [N m]: total loads on the joints, the part of the weight, standard deviation. by_sensors: pressures
+  /// show the torques, or an IMU shows a force that is not measured.
   void add(const JointVector& total, const JointVector& weight, const JointVector& deviation,
            bool by_sensors) noexcept {
     if (load_.size() != total.size()) load_ = deviation_ = JointVector::Zero(total.size());
@@ -28,7 +28,7 @@ class TorqueWorth {
     deviation_ += deviation.cwiseAbs2();
     by_sensors_ = by_sensors_ || by_sensors;
   }
-  /// At the end of a revolution. A sum over a time in which the hammer stood changes nothing.
+  /// Ends a revolution. A sum over a time in which the hammer stood changes nothing.
   void endTurn(StampNs stamp) noexcept {
     if (isRecent(std::exchange(ended_, stamp), stamp)) {
       ratio_ = worst();
@@ -44,7 +44,7 @@ class TorqueWorth {
  private:
   static constexpr double kUseless = 0.6;
   // Limit: kUseless
-  static constexpr double kSmall = 0.1;  ///< part of the largest joint's torque: a smaller one gives no verdict
+  static constexpr double kSmall = 0.1;  ///< part of the largest joint torque below which a joint is not judged
 
   static bool isRecent(StampNs turn, StampNs stamp) noexcept { return seconds(stamp - turn) < look_back::kFiveTurns; }
   double worst() const noexcept {

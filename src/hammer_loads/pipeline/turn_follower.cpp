@@ -11,9 +11,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kRingPart = 5e-4;  // [s] between points of a turn where a rod vibrates; its peak is by a parabola
+constexpr double kRingPart = 5e-4;  // [s] between points while a rod vibrates; a parabola gives its peak
 // Numerical: kRingPart
-constexpr double kBlind = 3e-3;  // [s], measured on swinging hulls: until then a torque passes for part of the blow
+constexpr double kBlind = 3e-3;  // [s], measured on swinging hulls: a shorter torque looks like part of the blow
 // Prior: kBlind
 
 }  // namespace
@@ -38,7 +38,7 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
           added.force_x, added.force_z};
 }
 
-/// Instant while the rod's spring is followed; origin: of the step's start [s].
+/// Returns the instant while the rod's spring is followed. origin: time of the step's start [s].
 TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
   const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
   const ElasticFollower::Instant there = elastic_->onItsWay(time, drive, hull_);
@@ -51,13 +51,13 @@ TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
           added.force_z};
 }
 
-/// Between points of the turn [s]; pins with joint clearance meet for a few tenths of a millisecond.
+/// Returns the time between points [s]. Pins with joint clearance touch for a few tenths of a millisecond.
 double TurnFollower::partOfStep(bool rings) const noexcept {
   if (!rings) return kPulseStep;
   return elastic_->filter().motion().rod.play > 0.0 ? kRingStep : kRingPart;
 }
 
-/// Points of the turn in (from, to] [s] after the step's start.
+/// Records points of the revolution in (from, to] [s] after the step's start.
 void TurnFollower::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
   const double origin = seconds(step_->start() - epoch_);
@@ -73,7 +73,7 @@ void TurnFollower::recordTo(double from, double to) noexcept {
   }
 }
 
-/// Counts backward passages less the forward ones, since a crank that swings at the dead centre passes it both ways.
+/// Counts backward passages minus the forward ones, since a crank that swings at the dead centre passes it both ways.
 void TurnFollower::countBackward(const CrankStep::Passage& passage) noexcept {
   if (!passage.forward) ++backward_;
   if (passage.forward && !passage.may_strike && backward_ > 0) --backward_;
@@ -92,7 +92,7 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
     if (run_up_)
       endTurn(passage);
     else
-      restart();  // a blow by speeds that are not known well enough to be published
+      restart();  // the speeds at the blow are too uncertain to be published
     from = passage.time + kBesideBlow;
   }
   recordTo(from, step_->length());
@@ -111,7 +111,7 @@ void TurnFollower::trackErrors(const SampleResult& result) noexcept {
                  extreme.ring.force_z, result.load_columns);
 }
 
-/// by_readings: of the crank's covariance, without a rod that may give.
+/// Ends the pulse. by_readings: covariance of the crank without the part of an elastic rod.
 void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& doubt,
                             const Eigen::Matrix3d& by_readings, TurnEnd& end) noexcept {
   end.pulse = turn_.end(at);
@@ -131,7 +131,7 @@ void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, 
   if (is_rings) errors_.addPeakBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
 }
 
-/// Ends the turn; the blow is measured later.
+/// Ends the revolution; the blow is measured later.
 void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd& end = pending_end_;
   end = {};
@@ -146,7 +146,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const double rate = before.acceleration / before.speed;
   endPulse(instant(time, before), before, doubt, by_readings, end);
   errors_.begin(end.stamp);
-  end.mean_hold_down_force =  // times the impulse, once that is known
+  end.mean_hold_down_force =  // multiplied by the impulse once that is known
       last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
   pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, rate, doubt);
   pending_.follow(tracker_->blowFactor());
@@ -158,8 +158,8 @@ void TurnFollower::hullMovedAtBlow(const TipVelocity& hull) noexcept {
   pending_.setHullSpeed(hull.z + model_->mechanism().parameters().striking_distance * hull.rate);
 }
 
-/// An elastic rod takes the rocker up within the turn, not at the blow: what that is of the support's impulse is the
-/// turn's.
+/// Moves the part of the support's impulse with which an elastic rod accelerates the rocker from the blow to the
+/// revolution.
 void TurnFollower::addLaterMomentum(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept {
   const double u_after = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia).u_after;
   const double missing = blow.rocker_speed_after - u_after * blow.crank_speed_after;
@@ -170,8 +170,8 @@ void TurnFollower::addLaterMomentum(const CrankBlow& crank, LinkMomentum& after,
   blow.support_impulse_y -= model_->mechanism().parameters().rocker_inertia_about_pivot * missing;
 }
 
-/// No blow at the dead centre slows the crank so. Where the tool had been met before, its impulses show, uncertain by
-/// what a blow at the dead centre would have; else they are uncertain by what the nearest blow that can be has.
+/// Inflates errors of a blow too strong for the dead centre. If the tool was met early, the impulses are those of that
+/// blow and their error is the difference to the dead centre. Otherwise it is that to the nearest possible blow.
 void TurnFollower::inflateImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept {
   RockerBlow other = end.blow;
   if (early) {
@@ -189,7 +189,7 @@ void TurnFollower::inflateImpossible(CrankBlow crank, bool early, TurnEnd& end) 
   addDoubt(end.blow, other, end.blow_errors);
 }
 
-/// A hull that yields reduces the effective inertia of the rocker, and its acceleration acts on the crank.
+/// Adds the effects of a yielding hull: less effective inertia of the rocker, and an acceleration of the crank.
 void TurnFollower::addHullDeviation(const HullMotionCovariance& hull, CrankBlow& crank) const noexcept {
   const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
   const double per_acceleration = model_->mechanism().rockerFirstMoment() * inertia.u_before / inertia.before();
@@ -198,7 +198,7 @@ void TurnFollower::addHullDeviation(const HullMotionCovariance& hull, CrankBlow&
   crank.factor_std = std::hypot(crank.factor_std, kick / crank.speed);
 }
 
-/// Adds the work of the tool's impulse by the hull's velocity, since the tool rests on the rock and not on the hull.
+/// Subtracts the tool impulse's work at the hull's velocity, since the tool rests on the rock, not on the hull.
 void TurnFollower::countHullSpeed(TurnEnd& end) const noexcept {
   RockerBlow& blow = end.blow;
   if (pending_.hullSpeed()) {
@@ -213,7 +213,7 @@ void TurnFollower::countHullSpeed(TurnEnd& end) const noexcept {
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!pending_.isWaiting()) return;
   if (pending_.isWithheld() && !(tracker_->strikeConsistency() <= CrankTrust::kMost)) return discard();
-  if (tracker_->estimate().position.isMirrored()) {  // there was no tool
+  if (tracker_->estimate().position.isMirrored()) {  // blank firing
     pending_.drop();
     restart();
     --turns_;

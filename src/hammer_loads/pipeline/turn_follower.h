@@ -1,4 +1,4 @@
-/// Turns from blow to blow: their pulses, and their blows while they are measured.
+/// Revolutions from blow to blow: their pulses, and their blows while they are measured.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 
 namespace hammer_loads {
 
-/// State of the mechanism at an instant of a turn, as the recorder needs it.
+/// State of the mechanism at an instant of a revolution, as the recorder needs it.
 struct TurnInstant {
   double time{};          ///< since any fixed origin [s]
   HullWrench wrench;      ///< weight included where the published wrench includes it
@@ -32,25 +32,25 @@ struct TurnInstant {
   double weight_z{};      ///< weight along z [N]
 };
 
-/// Keeps the force and the exact impulses of the present turn in a track of bounded size. A turn with too many instants
-/// loses every other point, but no impulse.
+/// Keeps the force and the exact impulses of the present revolution in a track of bounded size. A revolution with too
+/// many instants loses every other point, but no impulse.
 class TurnRecorder {
  public:
   TurnRecorder();
 
-  /// A turn begins just after a blow.
+  /// Begins a revolution just after a blow.
   void begin(const TurnInstant& after_blow) noexcept;
   /// Replaces the momentum just after the blow by its better estimate.
   void correctBegin(const LinkMomentum& after_blow) noexcept;
-  /// Discards the turn's pulse, as the coming samples may not belong to it.
+  /// Discards the revolution's pulse, as the coming samples may not belong to it.
   void abandon() noexcept { recording_ = false; }
   bool recording() const noexcept { return recording_; }
-  /// Momentum that the turn's load would have given a free hull by the blow that ended the last turn [N s, N m s]. The
-  /// hull returns each turn: its momentum has no trend and no mean, so that weight and blow are not in it. For a
-  /// revolution that was not seen whole it is the momentum of the links before the blow.
+  /// Returns the momentum that the load would have given a free hull by the blow that ended the last revolution [N s, N
+  /// m s]. The hull returns in each revolution: its momentum has no trend and no mean, so that weight and blow are
+  /// excluded. For a revolution that was not observed completely it is the momentum of the links before the blow.
   const LinkMomentum& swing() const noexcept { return swing_; }
   void add(const TurnInstant& instant) noexcept;
-  /// Ends the turn just before a blow; no pulse if the turn was not seen whole or never pushed the hull up.
+  /// Ends the revolution just before a blow; no pulse if it was not observed completely or never pushed the hull up.
   std::optional<HalfSinePulse> end(const TurnInstant& before_blow) noexcept;
 
  private:
@@ -65,11 +65,11 @@ class TurnRecorder {
   bool recording_{};
 };
 
-/// An impulse is the difference of two momenta and the weight's in between (TurnRecorder): so is its error. The sum of
-/// the samples' errors is not: at each of them readings correct the crank, and its momentum with it.
+/// Errors of impulses. An impulse is the difference of two momenta and the weight's between (TurnRecorder), and so is
+/// its error. It is not the sum of the samples' errors: each reading corrects the crank and its momentum.
 class TurnErrors {
  public:
-  /// A turn begins with a blow.
+  /// Begins a revolution with a blow.
   void begin(StampNs blow) noexcept;
   /// Standard deviations of a momentum [N s]: in total, and by readings alone, without an elastic rod.
   struct Momentum {
@@ -84,10 +84,10 @@ class TurnErrors {
   bool rises(double force_z) const noexcept { return last_force_ <= 0.0 && force_z > 0.0; }
   /// Begins a lobe. The momentum along z is stationary here, so that an error of the instant has no effect.
   void rose(StampNs stamp, const MomentumColumns& columns) noexcept { rise_ = {stamp, columns}; }
-  /// The load at a sample, its deviation as of an extreme. rod: of that what a rod makes that may give.
+  /// Adds the load at a sample with its standard deviation as an extreme. rod: part of that due to an elastic rod.
   void sample(double force_z, double deviation, double common, double rod, const LoadColumns& columns) noexcept;
-  /// At the blow that ends the turn. before_blow, at_end: how far the momentum there may be off, by samples and by
-  /// constants [N s]; weight: what constants make of the links' weight [N].
+  /// Ends the revolution with a blow. before_blow, at_end: errors of the momentum there due to samples and to constants
+  /// [N s]. weight: errors of the links' weight due to constants [N].
   PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow, const MomentumColumns& at_end,
                   const MomentumColumns& weight) const noexcept;
   /// Adds the uncertainty of a vibration's peak between samples, which only the model determines: its excess over the
@@ -106,19 +106,19 @@ class TurnErrors {
   StampNs begin_{};
   MomentumColumns at_begin_{MomentumColumns::Zero()};
   Momentum after_blow_;
-  std::optional<Lobe> rise_, lobe_;  ///< lobes begun by the last rise, and the last lobe that counts
-  double last_force_{1.0}, peak_{};  ///< Fz of the last sample; its largest [N]
+  std::optional<Lobe> rise_, lobe_;  ///< lobe begun by the last rise, and the last lobe that is large enough
+  double last_force_{1.0}, peak_{};  ///< last and largest Fz [N]
   NumberError at_peak_;
-  NumberError highest_;  ///< own, rod: of the sample that may be highest, by one of its own deviations
-  double reach_{};       ///< there [N]
+  NumberError highest_;  ///< own, rod: of the sample that is highest with its own deviation added
+  double reach_{};       ///< Fz of that sample plus its deviation [N]
 };
 
-/// The samples after a blow determine its factor: it is estimated once the crank has turned by a further radian, or
-/// earlier if the crank stops, restarts or strikes again.
+/// Measures a blow. Samples after it determine its factor. It is estimated once the crank has turned by a further
+/// radian, or earlier if the crank stops, restarts or strikes again.
 class PendingBlow {
  public:
-  /// time: of the blow [s]; speed of the crank when it reaches the dead centre [rad/s], its rate there [1/s]
-  /// (acceleration over speed), and how far it may be off.
+  /// Begins with a passage. time: of the blow [s]; speed: of the crank at the dead centre [rad/s]; rate: acceleration
+  /// over speed there [1/s]; doubt: uncertainty of the crank there.
   void begin(double time, const CrankPosition& at, double speed, double rate, const CrankUncertainty& doubt) noexcept {
     waiting_ = true;
     time_ = time;
@@ -144,13 +144,13 @@ class PendingBlow {
     early_ = factor.early;
     columns_.bottomRows<2>() = factor.by_constant;
   }
-  /// Errors of take() by independent errors of constants: speed [rad/s], factor [-], inertia (relative).
+  /// Returns errors of take() due to independent errors of constants: speed [rad/s], factor [-], inertia (relative).
   BlowColumns columns() const noexcept {
     BlowColumns columns = columns_;
     if (early_) columns.row(0) = (columns_.row(0) - (blow_.speed / blow_.factor) * columns_.row(1)) / blow_.factor;
     return columns;
   }
-  /// Errors of crankSpeedAfter() by constants [rad/s].
+  /// Returns the errors of crankSpeedAfter() due to constants [rad/s].
   Eigen::Matrix<double, 1, ConstantErrors::kSize> columnsAfter() const noexcept {
     if (early_) return columns_.row(0);
     return blow_.factor * columns_.row(0) + blow_.speed * columns_.row(1);
@@ -163,7 +163,7 @@ class PendingBlow {
   bool isMeasured(double time, const CrankPosition& now) const noexcept {
     return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > look_back::kTurn);
   }
-  /// The hull's own velocity at the striking point along z, at the blow [m/s]; nothing: not measured.
+  /// Sets the hull's velocity along z at the striking point at the blow [m/s]; not called if it is not measured.
   void setHullSpeed(double speed) noexcept { hull_speed_ = speed; }
   const std::optional<double>& hullSpeed() const noexcept { return hull_speed_; }
   double time() const noexcept { return time_; }  ///< time of the blow [s]
@@ -191,7 +191,7 @@ class PendingBlow {
 
 class TurnFollower {
  public:
-  /// Refers to them, which must outlive it. prior: of the hull's motion; null: the hull is held.
+  /// Refers to its arguments, which must outlive it. prior: of the hull's motion; null: the hull is held.
   TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankFilter& tracker,
                const RodRing& rod, const ElasticFollower& elastic, const UnmeasuredHull* prior)
       : model_(&model),
@@ -202,16 +202,16 @@ class TurnFollower {
         elastic_(&elastic),
         prior_(prior) {}
 
-  /// Time begins with this stamp.
+  /// Sets the origin of time.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
-  /// Begins a turn that is not whole, as earlier samples do not belong to it.
+  /// Begins an incomplete revolution, as earlier samples do not belong to it.
   void restart() noexcept;
-  /// Discards the present turn and the blow that is being measured.
+  /// Discards the present revolution and the blow that is being measured.
   void discard() noexcept;
   /// Ends the measurement of the pending blow, which becomes one of the `ends`.
   void finishBlow(SampleResult& result) noexcept;
-  /// Follows the step up to the sample of `result`. Turns whose blow is measured by now are its `ends`: some 50 ms
-  /// after the blow, with its stamp. hull: motion over the step.
+  /// Follows the step up to the sample of `result`. Revolutions whose blow is measured by now are its `ends`, some 50
+  /// ms after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
 
   /// Notes that the last sample's loads were withheld.
@@ -227,19 +227,19 @@ class TurnFollower {
     if (pending_.isWaiting()) pending_.count(true);
     trackErrors(result);
   }
-  bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
-  /// Velocity of the hull at that blow; until it is given, the prior of the hull's motion counts.
+  bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< a blow is still being measured
+  /// Sets the velocity of the hull at that blow; without it, the prior of the hull's motion is used.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
 
   double peakForce() const noexcept {
     return peak_force_;
   }  ///< peak force of the last whole revolution's strike [N], 0 before it
-  std::uint64_t blows() const noexcept { return turns_ - impossible_; }   ///< since the start
-  std::uint64_t impossibleBlows() const noexcept { return impossible_; }  ///< RockerBlow::impossible, not among them
+  std::uint64_t blows() const noexcept { return turns_ - impossible_; }   ///< number since the start
+  std::uint64_t impossibleBlows() const noexcept { return impossible_; }  ///< RockerBlow::impossible, not in blows()
   std::uint64_t blankFirings() const noexcept { return blank_; }  ///< passages onto the mirrored branch, without a tool
   std::uint64_t backwardPasses() const noexcept {
     return backward_;
-  }  ///< number of backward passages of the blow, less those forward again
+  }  ///< number of backward passages of the blow, minus those forward again
 
  private:
   void inflateImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept;
@@ -266,10 +266,10 @@ class TurnFollower {
   TurnRecorder turn_;
   TurnErrors errors_;
   PendingBlow pending_;
-  TurnEnd pending_end_;  ///< end of the revolution by the pending blow
+  TurnEnd pending_end_;  ///< end of the revolution with the pending blow
   HullMotion hull_;
   StampNs epoch_{};                   ///< first sample since the last restart by time
-  std::optional<StampNs> last_blow_;  ///< stamp of the last blow, if the revolution since then was seen whole
+  std::optional<StampNs> last_blow_;  ///< stamp of the last blow, if the revolution since then is complete
   std::uint64_t turns_{}, impossible_{}, backward_{}, blank_{};
   double peak_force_{};
   bool run_up_{};  ///< the last sample's loads are published

@@ -7,7 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::size_t kCapacity = 4096;  // a turn of 0.2 s at 20 kHz
+constexpr std::size_t kCapacity = 4096;  // a revolution of 0.2 s at 20 kHz
 // Numerical: kCapacity
 constexpr Eigen::Index kX = 0, kZ = 1;  // rows of LoadColumns and MomentumColumns
 
@@ -104,7 +104,7 @@ PulseErrors TurnErrors::end(StampNs blow, const HalfSinePulse& pulse, const Mome
   PulseErrors errors;
   const double scale = peak_ > 0.0 ? pulse.amplitude / peak_ : 1.0;  // the peak lies between samples
   errors.amplitude = {scale * at_peak_.columns, scale * at_peak_.own, scale * at_peak_.rod};
-  const double beyond = reach_ - peak_;  // a sample that is hardly known may have been the peak
+  const double beyond = reach_ - peak_;  // an uncertain sample may have been the peak
   if (beyond > errors.amplitude.own && highest_.own > 0.0)
     errors.amplitude.own = beyond, errors.amplitude.rod = beyond * highest_.rod / highest_.own;
   const auto difference = [](const NumberError::Columns& columns, double own, double by_readings) {

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kContacts = 0.012;     // root mean square of the contacts' force over its greatest
 constexpr double kContactsLever = 0.5;  // in parts of l3
-constexpr double kHidden = 0.05;        // part of the file's clearance that readings do not show
+constexpr double kHidden = 0.05;        // part of the file's clearance that is hidden in the readings
 constexpr double kOfDamping = 0.4;      // part of the moment, per unit of the damping ratio
 constexpr double kLasts = 0.1;          // [s]
 constexpr double kFrictionPins = 2.0;   // at both ends of the rocker
-constexpr double kHeld = 0.02;          // [s] for which friction has changed what the rod does
+constexpr double kHeld = 0.02;          // [s] for which friction affects the rod
 // Prior: kContacts, kContactsLever, kHidden, kOfDamping, kLasts, kFrictionPins, kHeld
 // (WornMachine.IsCoveredWithFrictionAndClearance)
 constexpr double kLeastLever = 0.01;  // part of l3: below it the rod's force does not follow from its moment
@@ -77,7 +77,7 @@ UnknownForce::Errors UnknownForce::errors(const LinkMotion& links) const noexcep
   return errors;
 }
 
-/// Friction by the rod's greatest force.
+/// Returns the force just after a blow. Friction is that at the rod's greatest force.
 UnknownForce::Largest UnknownForce::largest() const noexcept {
   constexpr const char* kNames[kSources] = {"the pins' clearance", "the pins' friction", "the rod's damping"};
   const HammerParameters& p = mechanism_->parameters();

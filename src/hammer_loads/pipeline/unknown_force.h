@@ -11,7 +11,7 @@ namespace hammer_loads {
 
 /// A generalised force d on the rocker and a force on the connecting rod, of zero mean and new at each blow. Every load
 /// is linear in them: F = F0 + (dF/dpsi'') d/I. Usual encoders do not show them. Their standard deviations therefore
-/// follow from what the hammer file leaves open and from the size of the rod's vibration, and a model that fits the
+/// follow from the tolerances of the hammer file and from the size of the rod's vibration, and a model that fits the
 /// readings does not reduce them. With N the rod's force, N_max and E its greatest value and its greatest moment on the
 /// rocker over the last revolution, s the time since the blow and D = exp(-(s/100 ms)^2):
 ///
@@ -23,9 +23,9 @@ namespace hammer_loads {
 ///     damping     0.4 zeta E D, with zeta the standard deviation of the damping ratio; a bending mode of the rod is as
 ///                 large
 ///
-/// c and rho are a value of the file and its standard deviation together, since no level has clearance in two
+/// c and rho combine a value of the file and its standard deviation, since no level has clearance in two
 /// dimensions, and only elastic has friction. Where level elastic identifies the pins, c consists of the clearance
-/// along the rod and a twentieth of the file's, and rho is the standard deviation that is left. The factors are those
+/// along the rod and a twentieth of the file's, and rho is the remaining standard deviation. The factors are those
 /// of simulated machines (doc/model.md 6).
 class UnknownForce {
  public:
@@ -33,15 +33,15 @@ class UnknownForce {
   /// Squares of standard deviations of a load: rows force_x [N2], force_z [N2], torque_y [N2 m2], columns sources.
   using Squares = Eigen::Matrix<double, 3, kSources>;
 
-  /// Zero for a rod that is rigid and tight by the hammer file. Refers to the mechanism, which must outlive it.
+  /// Zero for a rod that is rigid and tight in the hammer file. Refers to the mechanism, which must outlive it.
   explicit UnknownForce(const Mechanism& mechanism) noexcept;
 
   /// Advances by a step [s]. passed: the crank passed the dead centre in it. waits: the elastic rod's filter has not
   /// met the tool yet, so that the blow begins later.
   void follow(double step, bool passed, bool waits = false) noexcept;
-  /// Updates c and rho by the pins that the readings show; empty if they show none.
+  /// Updates c and rho with the pins that the readings show; empty if they show none.
   void observe(const std::optional<IdentifiedPins>& pins) noexcept;
-  /// At the end of the step. vibration: acceleration of the rocker beside that of a rigid rod, or its crest [rad/s2].
+  /// Takes the rocker's acceleration relative to a rigid rod's at the step's end, or its crest [rad/s2].
   void vibrates(const LinkMotion& links, double vibration) noexcept;
   /// Errors of the load: squares by source, and the covariance of all sources, whose diagonal is their sum.
   struct Errors {
@@ -56,7 +56,7 @@ class UnknownForce {
     const char *name{}, *key{};
   };
   Largest largest() const noexcept;
-  /// Squares of the errors of a load that is an extreme of the revolution.
+  /// Returns the squares of the errors of a load that is an extreme of the revolution.
   static Squares ofExtreme(Squares squares) noexcept {
     squares.col(kClearance) *= kCrest * kCrest;
     return squares;
@@ -76,7 +76,7 @@ class UnknownForce {
   Greatest greatest() const noexcept {
     return {std::max(now_.moment, last_.moment), std::max(now_.force, last_.force)};
   }
-  /// Force of the contacts while D is 1 [N].
+  /// Returns the force of the contacts for D = 1 [N].
   double contacts() const noexcept;
 
   const Mechanism* mechanism_;
@@ -85,7 +85,7 @@ class UnknownForce {
   double stiffness_{};                                  ///< k [N/m]
   Greatest now_, last_;                                 ///< since the last blow; in the revolution before it
   double held_{}, since_{1.0};                          ///< N, held [N]; s [s]
-  bool passed_{};                                       ///< a blow that has not begun
+  bool passed_{};                                       ///< a passed blow that has not begun
 };
 
 }  // namespace hammer_loads

@@ -7,7 +7,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongestDecay = 10.0;  // [s]
-constexpr double kMostRate = 1.0;       // [rad/s]: no operator swings a boom as fast, no rock throws it so
+constexpr double kMostRate = 1.0;       // [rad/s]: neither operator nor rock moves a boom this fast
 // Limit: kLongestDecay, kMostRate
 
 }  // namespace
@@ -27,7 +27,7 @@ bool VibrationBound::holds(const Vibration& vibration) const noexcept {
   if (!vibration.known()) return true;
   const JointVector rate = JointVector::Constant(vibration.modes().mass.rows(), kMostRate);
   const double others = std::sqrt(std::max(0.0, rate.dot(vibration.modes().mass * rate)));
-  return std::sqrt(2.0 * vibration.energy()) <= 2.0 * (pushed_ + others);  // false also for what is not finite
+  return std::sqrt(2.0 * vibration.energy()) <= 2.0 * (pushed_ + others);  // false also for values that are not finite
 }
 
 double VibrationBound::decayTime(const Vibration& vibration) noexcept {

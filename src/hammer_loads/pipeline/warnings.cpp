@@ -43,7 +43,7 @@ void warnOfUnits(const Pipeline& pipeline, const SampleCounts& counts, std::vect
                       now});
 }
 
-/// Angle or speed are in another unit, so whatever else the readings look like gives no information.
+/// Returns true if angle or speed are in another unit. Other properties of the readings then give no information.
 bool isOtherUnit(const Pipeline& pipeline, const SampleCounts& counts) {
   return pipeline.crank().unit() != CrankUnit::kRadians || counts.inOtherUnit() > counts.accepted;
 }
@@ -68,8 +68,8 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
          true});
 }
 
-/// Instants: jitter of header stamps as it is learned, or stamps refitted by sequence. At work half a count's deviation
-/// hides a jitter.
+/// Warns of jitter of header stamps, as estimated, or of stamps refitted by sequence. At work, half the standard
+/// deviation of an encoder count hides jitter.
 void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double speed_at_work,
                   std::vector<Warning>& warnings) {
   constexpr double kJitter = 1e-4;  // [s]: from there on the wrench is some 0.2 % worse
@@ -101,13 +101,13 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
 constexpr double kRodLooksEccentric = 1.5 * kDegree;
 // Warning: kRodLooksEccentric
 
-/// Part of an amount that such a rod does not explain.
+/// Returns the part of an amount that such a rod does not explain.
 double beyondRod(const Unknown& unknown, double amount) {
   if (std::string_view(unknown.name) == "zero") return std::max(0.0, amount);
   return std::max(0.0, std::abs(amount) - kRodLooksEccentric);
 }
 
-/// Warns of constants whose error the innovations show, by their table.
+/// Warns of constants whose error the innovations show, using the table of constants.
 void warnOfConstants(const ConstantErrors& errors, const ZeroWatch::Stated& zero, const CrankSensor& sensor,
                      bool rod_is_elastic, std::vector<Warning>& warnings) {
   for (std::size_t i = 0; i < kUnknowns.size();) {
@@ -127,7 +127,7 @@ void warnOfConstants(const ConstantErrors& errors, const ZeroWatch::Stated& zero
   }
 }
 
-/// The zero that the readings show, in the sensor's own angle, and what to do.
+/// Returns the text on the zero that the readings show, in the sensor's own angle, and the remedy.
 std::string zeroFarOff(const Pipeline& pipeline, const CrankFilter& filter) {
   const CrankSensor& sensor = pipeline.settings().crank_sensor;
   const ZeroWatch::Stated stated = pipeline.zeroWatch().stated(filter);
@@ -145,7 +145,7 @@ std::string zeroFarOff(const Pipeline& pipeline, const CrankFilter& filter) {
                 action.c_str());
 }
 
-/// Neither the sensor nor the hammer file is blamed for what a rigid model takes the rod's elasticity for.
+/// Returns the text on an elastic rod. Its apparent errors of sensor or hammer file in a rigid model are not reported.
 std::string rodOf(const Pipeline& pipeline, const CrankFilter& filter) {
   const ElasticFollower& elastic = pipeline.elastic();
   if (elastic.isUsed()) {
@@ -163,7 +163,7 @@ std::string rodOf(const Pipeline& pipeline, const CrankFilter& filter) {
       filter.rodEvidence().pickedUp());
 }
 
-/// Cause of the contradiction to the model, by its place in the revolution. strike: before the blow as well.
+/// Returns the cause of the contradiction to the model, from its place in the revolution. strike: also before the blow.
 std::string contradictionOf(const Pipeline& pipeline, bool strike) {
   const CrankFilter& filter = pipeline.crank().tracker();
   const double all = filter.consistency(), before = filter.strikeConsistency();
@@ -191,10 +191,10 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
       all);
 }
 
-/// For readings that contradict the model before the blow.
+/// Returns true if most samples are withheld, as their readings contradict the model before the blow.
 bool mostIsWithheld(const SampleCounts& counts) { return counts.refusedFor(Refusal::kInconsistent) > counts.accepted; }
 
-/// Text for a crank that was withheld and is no longer.
+/// Returns the text for a crank that was withheld and is no longer.
 std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
   return format(
       "crank: %s samples withheld while readings contradicted the model; now they agree (%.2g times the variance). "
@@ -231,7 +231,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   if (pipeline.zeroWatch().isOff())  // anything else that is seen may follow from it
     return warnings.push_back(
         {pipeline.zeroWatch().withholds() ? "zero off" : "zero", zeroFarOff(pipeline, filter), true});
-  // A rod alone hardly makes most of a recording contradict the model before the blow.
+  // A rod alone rarely causes most of a recording to contradict the model before the blow.
   const bool rod_is_elastic = filter.rodEvidence().showsElasticRod() && !mostIsWithheld(pipeline.counts());
   if (filter.isLost())
     warnings.push_back({"lost",

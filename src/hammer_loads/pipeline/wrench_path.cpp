@@ -45,7 +45,7 @@ WrenchPath::Instant WrenchPath::within(const Piece& p, double t) noexcept {
           p.lasting + t * p.impulse + 0.5 * tt * p.from + tt * t / 6.0 * p.slope + tt * tt / 24.0 * p.bend};
 }
 
-/// With the blow at its end.
+/// Returns the instant at the end of a piece, after its blow.
 WrenchPath::Instant WrenchPath::after(const Piece& p) noexcept {
   Instant end = within(p, p.duration);
   end.impulse += p.blow;

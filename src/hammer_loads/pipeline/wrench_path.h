@@ -1,4 +1,4 @@
-/// The load on the hull over the recent past: at any instant, and what it has given by then.
+/// Load on the hull over the recent past, at any instant, with its impulse up to then.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,8 @@
 
 namespace hammer_loads {
 
-/// A part of the step in which no blow lies. Wrenches come from motion of links and drive relative to the hull: without
-/// weight, without what the hull's own motion does to them.
+/// Part of a step without a blow. Wrenches come from motion of links and drive relative to the hull, without weight and
+/// without effects of the hull's own motion.
 struct SmoothPiece {
   double duration{};    ///< [s] >= 0
   HullWrench from, to;  ///< at its ends
@@ -35,7 +35,7 @@ struct WrenchHistory {
   }
 };
 
-/// Force along x and z, moment about D: [N, N, N m], their impulse [N s, N s, N m s].
+/// Path of the load: force along x and z, moment about D [N, N, N m], with impulse [N s, N s, N m s].
 class WrenchPath {
  public:
   /// Load that would be added to an instant on the other side of the last blow, and the probability of that.
@@ -46,18 +46,18 @@ class WrenchPath {
   struct Instant {
     Eigen::Vector3d load;
     Eigen::Vector3d impulse;  ///< from the first step on, blows included
-    Eigen::Vector3d lasting;  ///< the impulse's integral as above [N s2, N s2, N m s2]
+    Eigen::Vector3d lasting;  ///< integral of the impulse over that time [N s2, N s2, N m s2]
   };
 
   void forget() noexcept { count_ = 0, blow_.reset(); }
   bool known() const noexcept { return count_ > 0; }
-  /// Steps in the order of time, each to `end`. beside_from, beside_to: what acts beside the step's own load at its
-  /// ends. A step that does not begin where the last one ended restarts. No allocation.
+  /// Adds a step that ends at `end`; steps follow in order of time. beside_from, beside_to: further loads at its ends.
+  /// A step that does not begin where the last one ended restarts. No allocation.
   void add(StampNs end, const WrenchHistory& step, const HullWrench& beside_from, const HullWrench& beside_to) noexcept;
   /// Returns true if an instant lies within the stored time.
   bool covers(StampNs stamp) const noexcept { return known() && stamp >= oldest().start && stamp <= end_; }
   StampNs end() const noexcept { return end_; }
-  /// After the end: the load stays. Before what is remembered: as at its beginning.
+  /// Returns load and impulses. After the end the load is held; before the stored time they are those at its beginning.
   Instant at(StampNs stamp) const noexcept;
   OtherSide otherSide(StampNs stamp) const noexcept;
 

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-/// The correlations stay.
+/// Sets the variances and keeps the correlations.
 void setVariances(const Eigen::Vector3d& variances, Eigen::Matrix3d& covariance) noexcept {
   const Eigen::Array3d before = covariance.diagonal();
   const Eigen::Vector3d by = (before > 0.0).select(variances.array() / before, 0.0).sqrt();
@@ -73,7 +73,7 @@ bool WrenchSampler::isKnown(double time, const WrenchOutput& output, const Sampl
   return !result.uncertain && !isBesideBlow(*tracker_, output.crank, output.deviation.angle, rod);
 }
 
-/// Stamp of the next output, if it is not after the sample.
+/// Finds the stamp of the next output. Returns true if it is not after the sample.
 bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
   stamp = sample;
   if (rate_ > 0.0) {
@@ -84,7 +84,7 @@ bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
   return stamp <= sample;
 }
 
-/// From where it was added up to. With a rod that gives by crank and rocker, from momentum to momentum as well.
+/// Returns the impulse from added_up_to_ to a time: a difference of momenta, also with an elastic rod.
 LoadImpulse WrenchSampler::motionTo(double time) noexcept {
   if (!elastic_->ranOverStep()) return motionImpulse(*model_, drive_, *step_, added_up_to_, time);
   const ElasticFollower::Impulse impulse = elastic_->impulse(drive_, added_up_to_, time);
@@ -152,7 +152,7 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   return output;
 }
 
-/// Between two samples.
+/// Sets crank and wrench of an output between two samples.
 void WrenchSampler::setInstant(double time, const HullMotion& hull, WrenchOutput& output) const noexcept {
   if (!elastic_->ranOverStep()) {
     output.wrench = hullWrench(*model_, drive_, motionOf(output.crank), hull);
@@ -180,7 +180,7 @@ HullDeviation WrenchSampler::deviation(double time, const CrankEstimate& crank,
                    LinksBeside(*model_, linksAt(*model_, crank.position.angle)), result.hull.motion, result);
 }
 
-/// Bounds the error of a mean: readings enter by the momenta at both ends; a constant's error is the mean of its own.
+/// Bounds the error of a mean. Readings enter through the momenta at both ends, a constant by the mean of its errors.
 void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const SampleResult& result,
                               WrenchOutput& output) noexcept {
   if (kind_ != OutputKind::kMean) return;

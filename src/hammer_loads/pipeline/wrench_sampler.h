@@ -13,23 +13,23 @@
 
 namespace hammer_loads {
 
-/// After a restart the outputs begin with the first sample: that one is the zero of the fixed rate's grid and of the
-/// first mean's interval. Means times intervals add up to the wrench's impulse whatever the rate (blows' own impulses
-/// are in RockerBlow, not here). Refers to its arguments, which must outlive it.
+/// Outputs begin with the first sample after a restart. It is the origin of the fixed rate's grid and of the first
+/// mean's interval. Means times intervals add up to the wrench's impulse at any rate (blows' own impulses are in
+/// RockerBlow, not here). Refers to its arguments, which must outlive it.
 class WrenchSampler {
  public:
   WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankFilter& tracker,
                 const ElasticFollower& elastic, const PipelineSettings& settings);
 
-  /// Outputs restart with the next sample.
+  /// Restarts the outputs with the next sample.
   void forget() noexcept { begun_ = false; }
   /// Appends the outputs up to the result's sample, with which the step ended; links: at the sample. No allocation once
   /// the outputs have the room of mostOutputs().
   void sample(const LinksBeside& links, const SampleResult& result, std::vector<WrenchOutput>& outputs) noexcept;
-  /// Standard deviations of the wrench at an instant of the last sample's step, where the crank is as given; time:
+  /// Returns the standard deviations of the wrench at an instant of the last sample's step, for the given crank. time:
   /// after its start [s].
   HullDeviation deviation(double time, const CrankEstimate& crank, const SampleResult& result) const noexcept;
-  /// Largest number of outputs of one sample.
+  /// Returns the largest number of outputs of one sample.
   std::size_t mostOutputs() const noexcept;
 
  private:
@@ -66,7 +66,7 @@ class WrenchSampler {
   Eigen::Matrix3d beside_{Eigen::Matrix3d::Zero()}, beside_before_{Eigen::Matrix3d::Zero()};
   DriveReaction drive_;                              ///< at the sample
   LoadImpulse impulse_;                              ///< since the last output
-  LoadColumns columns_{LoadColumns::Zero()};         ///< at the last sample
+  LoadColumns columns_{LoadColumns::Zero()};         ///< columns up to which the mean is summed
   LoadColumns column_impulse_{LoadColumns::Zero()};  ///< since the last output, of a mean
   HullWrench momentum_std_;                          ///< at the last output
   HullWrench blow_doubt_;                            ///< ElasticFollower::Impulse::doubt since the last output

@@ -7,25 +7,25 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kSearchShows =
-    3.2 * kDegree;  // by the search, negative: on machines with a right zero it shows up to -2.4 deg
+    3.2 * kDegree;  // negative error shown by the search: with a correct zero up to -2.4 deg
 constexpr double kSearchShowsAhead =
-    2.4 * kDegree;  // by the search, positive: with a right zero it shows up to 0.8 deg
+    2.4 * kDegree;  // positive error shown by the search: with a correct zero up to 0.8 deg
 constexpr double kFilterAgrees = 0.8 * kDegree;
 constexpr double kAgrees = 1.5;   // consistency of readings and model
 constexpr double kOfStep = 0.08;  // part of the rotation between samples: resolution of the search
 constexpr double kDeviations = gate::kVeryRare;
 constexpr double kFilterShows =
-    1.2 * kDegree;  // by the filter, positive: with a right zero it shows up to 0.5 deg, on a light hull 0.9 deg
+    1.2 * kDegree;  // positive error shown by the filter: with a correct zero up to 0.5 deg, on a light hull 0.9 deg
 constexpr double kSearchErrs = 3.2 * kDegree,  // largest error of the search, also at 100 Hz
     kSearchErrsAhead = 1.5 * kDegree;
-constexpr double kSearchDeviation = 2.0 * kDegree;  // standard
-constexpr double kCountsAhead = 0.8 * kDegree;      // by the filter: a zero 3 deg off may look like 1 deg
+constexpr double kSearchDeviation = 2.0 * kDegree;  // standard deviation
+constexpr double kCountsAhead = 0.8 * kDegree;      // shown by the filter: a zero 3 deg off may look like 1 deg
 constexpr int kTurnsToSearch = 8;                   // of a machine whose times no zero explains
 constexpr int kTurnsToShow = 20;                    // readings and model that agree for so long outweigh the search
 constexpr double kRefined = 0.5 * kDegree;
 
-/// Consistency of the readings with the model without the part that an elastic rod explains: such a rod contradicts the
-/// model just after the blow, a wrong zero elsewhere as well.
+/// Returns the consistency of readings and model without the part that an elastic rod explains. Such a rod contradicts
+/// the model just after the blow, a wrong zero elsewhere as well.
 double consistencyBesideRod(const CrankFilter& filter) noexcept {
   const RodEvidence& rod = filter.rodEvidence();
   return rod.showsElasticRod() ? std::max(rod.later(), filter.strikeConsistency()) : filter.consistency();
@@ -46,7 +46,7 @@ double ZeroWatch::follow(const CrankFilter& filter, bool rod_explains, double re
   const Encoder& encoder = filter.encoder();
   if (filter.slips() != slips_) search_.restart(), left_ = false;
   slips_ = filter.slips();
-  // A turn without a tool has other times. A zero that is far off may imitate such a turn, but contradicts the model.
+  // A blank firing has a different time course. A zero that is far off may imitate it, but contradicts the model.
   if (filter.state().position.isMirrored() && !(filter.consistency() > kAgrees)) search_.skipTurn();
   search_.setWanted(filter.constantErrors().turns() < kTurnsToSearch || !agrees(filter));
   const double half_count = encoder.isFiner() ? 0.0 : 0.5 * encoder.resolution();
@@ -54,8 +54,8 @@ double ZeroWatch::follow(const CrankFilter& filter, bool rod_explains, double re
   return toMove(filter, rod_explains);
 }
 
-/// A filter that agrees with the readings and shows no error takes precedence, since a turn without a tool misleads the
-/// search.
+/// Returns true if the filter agrees with the readings and shows no error. It then takes precedence, since a blank
+/// firing misleads the search.
 bool ZeroWatch::agrees(const CrankFilter& filter) noexcept {
   const ConstantErrors& errors = filter.constantErrors();
   const double shown = errors.estimate()[ConstantErrors::kZero], deviation = errors.deviation()[ConstantErrors::kZero];
