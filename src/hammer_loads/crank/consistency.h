@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-constexpr double kMostSurprise = 100.0;  ///< limit for one sample: a single outlier is no alarm
+constexpr double kMostSurprise = 100.0;  ///< limit for one sample, so that a single outlier raises no alarm
 
 /// Running mean of innovation^2 over its variance, over some 500 samples: 1 for a correct model.
 class Consistency {
@@ -25,9 +25,9 @@ class Consistency {
   }
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
-  /// Factor on variances in what the filter learns, at least 1.
+  /// Factor on the variances from which the filter learns, at least 1.
   double growth() const noexcept { return samples_ < kEnough ? 1.0 : publishedGrowth(); }
-  /// Factor on published variances. Missing samples of the mean have the value before the restart.
+  /// Factor on published variances. Samples that the mean still lacks count with the factor before the restart.
   double publishedGrowth() const noexcept {
     const double known = std::min(1.0, static_cast<double>(samples_) / kEnough);
     return std::max(1.0, known * mean_ + (1.0 - known) * before_);
@@ -45,8 +45,8 @@ class Consistency {
   double before_{1.0};  ///< publishedGrowth() before the restart
 };
 
-/// Mean of innovation^2 over its variance by half revolutions before the blow: the lesser of the last two, so that one
-/// disturbance is no contradiction, and one half revolution that agrees ends it.
+/// Mean of innovation^2 over its variance by half revolutions before the blow. The lesser of the last two counts: a
+/// single disturbance raises no alarm, and one half revolution that agrees ends it.
 class StrikeConsistency {
  public:
   void add(double squared_over_variance) noexcept {
@@ -54,7 +54,7 @@ class StrikeConsistency {
     sum_ += std::min(squared_over_variance, kMostSurprise);
     ++samples_;
   }
-  /// Notes a passage of the blow.
+  /// Ends the half revolution at a passage of the blow.
   void endHalfTurn() noexcept {
     if (samples_ == 0) return;
     before_ = std::exchange(last_, sum_ / samples_);
@@ -62,7 +62,7 @@ class StrikeConsistency {
   }
   /// Discards a half revolution that was not seen whole.
   void abandon() noexcept { sum_ = 0.0, samples_ = 0; }
-  /// NaN before two half turns.
+  /// Returns NaN before two half revolutions.
   double mean() const noexcept { return before_ < last_ ? before_ : (before_ >= last_ ? last_ : before_); }
 
  private:
@@ -72,7 +72,7 @@ class StrikeConsistency {
 };
 
 /// Evidence of an elastic rod. Such a rod accelerates the rocker just after the blow, where the linkage has no lever on
-/// it, and its vibration has decayed a quarter of a turn later. A wrong sensor, wrong masses or a soft coupling
+/// it. Its vibration has decayed a quarter of a revolution later. A wrong sensor, wrong masses or a soft coupling
 /// contradict the model elsewhere as well. With 4096 counts at 1 kHz the means of innovation^2 over its variance at
 /// both places are
 ///
@@ -97,15 +97,15 @@ class RodEvidence {
   /// Standard deviation of a reading above which a rod cannot be detected [rad], since errors of the sensor's mounting
   /// would be taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
-  /// Mean while the rod picks the rocker up, and when it has rung out [-].
+  /// Means while the rod accelerates the rocker, and after its vibration has decayed [-].
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }
-  /// Upper bounds by the readings of the square of the expected vibration, and of the missing speed of a released
-  /// rocker, as parts of the expectation; reading: standard deviation of one [rad].
+  /// Upper bounds, from the readings, of the square of the vibration and of the missing speed of a released rocker, as
+  /// parts of the expected values. reading: standard deviation of a reading [rad].
   double share(double reading) const noexcept { return shareOf(picked_up_, reading); }
   double releasedShare(double reading) const noexcept { return shareOf(run_up_, reading); }
-  /// True if the blow is so violent that a rigid mechanism still loses the crank a quarter of a revolution later: rock
-  /// that throws the rocker back (8 to 20 then). The blow that it identifies is wrong.
+  /// Returns true if a rigid mechanism loses the crank even a quarter of a revolution after the blow (8 to 20 then).
+  /// Rock that throws the rocker back has this effect; the identified blow is then wrong.
   bool isLost() const noexcept { return later_.count() > kEnough && later() > mismatch::kUnexplained; }
   bool showsElasticRod() const noexcept {
     return picked_up_.count() > kEnough && pickedUp() > mismatch::kSeen && pickedUp() - 1.0 > kShare * (later() - 1.0);
@@ -117,9 +117,9 @@ class RodEvidence {
     const double doubt = gate::kUsual * std::sqrt(2.0 / place.count());
     return std::clamp((place.mean() - 1.0 + doubt) / mismatch::kUnexplained, 0.0, 1.0);
   }
-  static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
+  static constexpr double kEnough = 40.0;  ///< ten revolutions at 200 Hz; standard deviation of the mean 0.22
   static constexpr double kShare = 5.0;
-  static constexpr double kSamples = 400.0;  ///< samples until it has picked up: some 20 turns at 1 kHz
+  static constexpr double kSamples = 400.0;  ///< samples of the first two means: some 20 revolutions at 1 kHz
   RunningMean<> run_up_{kSamples}, picked_up_{kSamples}, later_{kSamples * (kPi - kRungOut) / kPickedUp};
 };
 

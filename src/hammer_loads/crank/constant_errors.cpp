@@ -10,12 +10,12 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kFirstTurns = 4;   // the drive inertia is learned first
-constexpr int kTurnsToKnow = 6;  // nothing is concluded before
+constexpr int kFirstTurns = 4;   // the drive inertia is identified first
+constexpr int kTurnsToKnow = 6;  // no results before
 constexpr double kUnmodelledCounts =
-    0.5;  // apparent error of a clean machine by an encoder's coarseness: 0.2 to 0.4 deg with 1024 counts
+    0.5;  // counts: apparent error of a correct machine, 0.2 to 0.4 deg with 1024 counts
 // Prior: kUnmodelledCounts
-constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well, before a warning
+constexpr double kUnmodelledDeviations = 2.5;  // factor on a standard deviation before a warning
 
 }  // namespace
 
@@ -64,7 +64,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   ++turns_;
   Matrix covariance = Matrix::Zero();
   covariance.topLeftCorner<kPlace, kPlace>() = fit_.covarianceOfFirst<kPlace>();
-  const auto ofSensor = [&](int i) {  // variance of what is seen, as if the hammer were right
+  const auto ofSensor = [&](int i) {  // variance of a sensor error's estimate, for a correct hammer
     return square(kUnknowns[static_cast<std::size_t>(i)].unmodelled) + growth * covariance(i, i);
   };
   zero_looks_ = covariance.row(kZero).dot(fit_.score());
@@ -80,9 +80,9 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   estimate_ = covariance * fit_.score();
   const Eigen::Matrix<double, kPlace, 1> by_hammer =
       (covariance.topLeftCorner<kPlace, kPlace>() * beside_).rowwise().squaredNorm();
-  // Variance of what is seen; b^2 is by so much less than its estimate's square; what remains after it.
+  // doubt: variance of an estimate of b, by which its square exceeds b^2; certain: root of the remainder.
   Vector doubt = Vector::Zero(), certain = Vector::Zero();
-  double share = 0.0;  // of b that is certain
+  double share = 0.0;  // largest certain part of an estimate's square
   for (int i = 0; i < kPlace; ++i) {
     const double variance = growth * covariance(i, i);
     doubt[i] = ofSensor(i) + by_hammer[i];

@@ -17,8 +17,8 @@
 
 namespace hammer_loads {
 
-/// An innovation is its derivative by the constants times their error, and noise. Information and score of that add up
-/// over the measurements; the oldest fade.
+/// Least squares for errors of constants. An innovation is its derivative by the constants times their errors, plus
+/// noise. Information and score are summed over the measurements; old ones fade.
 template <int constants>
 class ConstantFit {
  public:
@@ -26,26 +26,26 @@ class ConstantFit {
   using Vector = Eigen::Matrix<double, constants, 1>;
   using Matrix = Eigen::Matrix<double, constants, constants>;
 
-  /// Nothing is known but priors: standard deviation of each error, >= 0; 0: it has none, and is not asked.
+  /// Restarts from the priors: standard deviation of each error, >= 0. 0 adds no information: it is not estimated.
   void begin(const Vector& prior) noexcept {
     information_ = (prior.array() > 0.0).select(prior.cwiseAbs2().cwiseInverse(), 0.0).matrix().asDiagonal();
     score_.setZero();
   }
-  /// The square of an innovation beyond the gate counts as the gate's. by_constant: dz/dp - H V. What it weighs.
+  /// Adds an innovation and returns its weight; beyond the gate it counts as the gate. by_constant: dz/dp - H V.
   double learn(double innovation, double variance, const Row& by_constant) noexcept {
     const double weight = weightWithin(gate::kRare, innovation, variance) / variance;
     information_.noalias() += (weight * by_constant.transpose()) * by_constant;
     score_ += (weight * innovation) * by_constant.transpose();
     return weight;
   }
-  /// One of the given constants has been changed by this much.
+  /// Notes that one of the constants has been changed by this amount.
   void shift(int constant, double change) noexcept { score_ += information_.col(constant) * change; }
-  /// Earlier measurements count for this part of themselves.
+  /// Reduces the weight of earlier measurements to this part.
   void fade(double part) noexcept { information_ *= part, score_ *= part; }
 
   const Matrix& information() const noexcept { return information_; }
   const Vector& score() const noexcept { return score_; }
-  /// Covariance of the first `count` constants, as if the others were exact: together they may hardly be separable.
+  /// Covariance of the first `count` constants for exact others, since all together may hardly be separable.
   template <int count>
   Eigen::Matrix<double, count, count> covarianceOfFirst() const noexcept {
     return information_.template topLeftCorner<count, count>().inverse();
@@ -58,12 +58,12 @@ class ConstantFit {
 
 /// Place of a reading on the shaft of the encoder.
 struct ReadingPlace {
-  double offset{};        ///< from the blow, within half a turn [rad]
+  double offset{};        ///< offset from the blow, within half a revolution [rad]
   double speed{};         ///< [rad/s]
   double acceleration{};  ///< [rad/s2]
 };
 
-/// sin and cos within 0.1 %, |x| <= 3/4 of a turn: two parabolas.
+/// Sine and cosine within 0.1 % for |x| <= 3/4 of a revolution, by two parabolas.
 constexpr double roughSine(double x) noexcept {
   const double part = x * (2.0 / kTwoPi), y = 4.0 * part * (1.0 - (part < 0.0 ? -part : part));
   return y * (0.775 + 0.225 * (y < 0.0 ? -y : y));
@@ -77,17 +77,17 @@ struct Unknown {
     kTakenUp,     ///< estimated from the innovations, separately; its owner corrects the constant
     kConsidered,  ///< considered with its prior, not estimated
   };
-  const char* name;  ///< name of its warning; adjacent rows of one name are one amount, root of their squares
+  const char* name;  ///< name of its warning; adjacent rows of one name are one amount, root of the sum of squares
   const char* key;   ///< key in the parameter file
   Use use;
   double prior;                                        ///< default standard deviation
-  double unmodelled;                                   ///< standard deviation that a clean machine shows: kSeen
+  double unmodelled;                                   ///< apparent standard deviation on a correct machine, for kSeen
   double (*of_angle)(const ReadingPlace&);             ///< d(read angle)/dp
   double (*of_speed)(const ReadingPlace&);             ///< d(read speed)/dp
-  double (*of_torque)(const SupplyLaw&, double lead);  ///< d(the filter's torque after a step less before it)/dp
+  double (*of_torque)(const SupplyLaw&, double lead);  ///< d(change of the filter's torque in a step)/dp
   double notable;                                      ///< threshold of the warning
   std::string (*warning)(double amount, double deviation);
-  bool of_reading{};  ///< true if its key is a reading's: the amount there is that of the crank's angle over the
+  bool of_reading{};  ///< true if its key refers to the reading: the amount there is that of the crank angle over the
                       ///< sensor's gain
 };
 
@@ -114,10 +114,10 @@ inline std::string ofEccentricity(double amount, double deviation) {
 
 }  // namespace unknown
 
-/// Table of the constants; those of kSeen are first. Readings of the sensor's place: angle + b0 + b1 sin(angle) + b2
-/// (cos(angle) - 1) [rad], so that b0 alone shows where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of
-/// these; from 0.3 and 0.5 deg on the wrench is some 0.9 % worse. The priors of the speed rows are those of a drive
-/// that filters; with a quarter of them the error in the first second of a lag of 10 ms would be twice the allowed one.
+/// Table of the constants; those of kSeen come first. A sensor reads angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1)
+/// [rad], so that b0 alone shifts the blow. Correct machines show 0.10, 0.11 and 0.23 deg of these. From 0.3 and 0.5
+/// deg on the wrench is some 0.9 % worse. The priors of the speed rows hold for a drive that filters. With a quarter of
+/// them and a lag of 10 ms the error in the first second would be twice the allowed one.
 inline constexpr std::array<Unknown, 7> kUnknowns{{
     {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
      unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero, true},
@@ -140,7 +140,7 @@ inline constexpr std::array<Unknown, 7> kUnknowns{{
      [](const ReadingPlace& at) { return at.speed; }, unknown::notOfTorque, 0.0, nullptr},
 }};
 
-/// Number of constants that are seen; they come first.
+/// Number of constants of kSeen, which come first.
 constexpr int countSeen() noexcept {
   int count = 0;
   for (const Unknown& u : kUnknowns) count += u.use == Unknown::Use::kSeen;
@@ -157,8 +157,8 @@ constexpr int indexOfUnknown(const char* name) {
   return i < kUnknowns.size() ? static_cast<int>(i) : throw "no such unknown";  // in one expression, for GCC 9
 }
 
-/// Errors b of the constants of kUnknowns, in their order, followed by those of the hammer, each in units of its
-/// standard deviation (MachineColumn), which are considered but not estimated. The filter carries the derivative of its
+/// Errors b of the constants of kUnknowns, in their order, followed by those of the hammer in units of their standard
+/// deviations (MachineColumn). The latter are considered but not estimated. The filter carries the derivative of its
 /// state by each of them. An innovation is its derivative by b times b plus noise: weighted least squares over some
 /// minutes.
 ///
@@ -173,7 +173,7 @@ class ConstantErrors {
                        kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
                        kSpeedScale = indexOfUnknown("speed scale");
   static constexpr double kUnknownZero = 0.09;     ///< [rad]: a coupling slips by up to 10 deg
-  static constexpr double kCalibratedZero = 0.02;  ///< [rad]: a zero of a smaller standard deviation needs no proof
+  static constexpr double kCalibratedZero = 0.02;  ///< [rad]: a smaller standard deviation needs no proof
   /// Standard deviation of estimate() by an elastic connecting rod, which imitates an error of the zero [rad].
   static constexpr double kRodHides = 0.01;
   // Prior: kUnknownZero, kRodHides
@@ -187,7 +187,7 @@ class ConstantErrors {
     for (int i = 0; i < kTable; ++i) prior[i] = kUnknowns[static_cast<std::size_t>(i)].prior;
     return prior;
   }
-  /// prior: standard deviations, >= 0. zero_std: of the encoder's zero until the turns show its error [rad], >= 0.
+  /// prior: standard deviations, >= 0. zero_std: that of the encoder's zero until its error is identified [rad], >= 0.
   explicit ConstantErrors(const Vector& prior = priors(), double zero_std = kUnknownZero) noexcept;
 
   /// d(reading)/db.
@@ -198,14 +198,14 @@ class ConstantErrors {
   static Row ofSpeed(const ReadingPlace& at) noexcept {
     return row([&](const Unknown& u) { return u.of_speed(at); }, kIndices);
   }
-  /// d(the filter's torque)/db by a step.
+  /// Derivative by b of the change of the filter's torque in a step.
   static Row ofTorque(const SupplyLaw& supply, double lead) noexcept {
     return row([&](const Unknown& u) { return u.of_torque(supply, lead); }, kIndices);
   }
 
-  /// innovation of an angle, its variance and its derivative by b.
+  /// Adds the innovation of an angle with its variance and its derivative by b.
   void learn(double innovation, double variance, const Row& by_error) noexcept;
-  /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
+  /// Updates the estimate once a revolution. growth: factor on variances; count: count of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 
   /// Sets the improved standard deviation of a considered constant.
@@ -216,35 +216,35 @@ class ConstantErrors {
   void stepZero(double variance) noexcept;
   /// Notes a change of the supply's stiffness [SupplyLaw::unit].
   void shiftSupply(double change) noexcept;
-  /// 0 before some turns. deviation: of the sensor's place alone.
+  /// Estimate of b, 0 before some revolutions, and the standard deviation of its part for the sensor's mounting.
   const Vector& estimate() const noexcept { return estimate_; }
   const Vector& deviation() const noexcept { return deviation_; }
-  /// Error of the sensor's zero by the turns so far, for a correct hammer [rad]; 0 if it does not exceed that of a
-  /// clean machine. It is available from the first turn on, before estimate().
+  /// Error of the sensor's zero by the revolutions so far, for a correct hammer [rad]; 0 if it does not exceed that of
+  /// a correct machine. It is available from the first revolution on, before estimate().
   double zeroSeen() const noexcept { return zero_is_seen_ ? zero_looks_ : 0.0; }
-  /// zeroSeen() without the threshold of a clean machine: an elastic rod has such an error.
+  /// zeroSeen() without its threshold, since an elastic connecting rod causes an apparent error of this kind.
   double zeroLooks() const noexcept { return zero_looks_; }
-  /// Returns true after enough turns for estimate() and deviation().
+  /// Returns true after enough revolutions for estimate() and deviation().
   bool isKnown() const noexcept;
   int turns() const noexcept { return turns_; }
-  /// Returns true if the turns have shown the zero, or if its given deviation is small. Until then moment() contains
-  /// the given deviation, since the estimate of a zero that is 8 deg off may pass through 0 in the first turns.
+  /// Returns true if the revolutions have shown the zero, or if its given deviation is small. Until then moment()
+  /// contains the given deviation, since the estimate of a zero that is 8 deg off may pass through 0 at first.
   bool zeroIsShown() const noexcept { return zeroIsGiven() || (isKnown() && !zero_is_doubted_); }
   bool zeroIsGiven() const noexcept { return zero_given_ < kCalibratedZero; }
-  /// Sets whether the search over the whole turn contradicts estimate().
+  /// Sets whether the search over the whole revolution contradicts estimate().
   void setZeroContradicted(bool doubted) noexcept { zero_is_doubted_ = doubted; }
-  /// The zero's estimate is linear: the filter adapts to a zero that is off, so that 2 deg look like 1.7 deg and 3.4
-  /// deg like 1.1 to 1.6 deg. Standard deviation by that [rad], beside deviation().
+  /// Standard deviation of the zero's estimate due to its linearity [rad], in addition to deviation(). The filter
+  /// adapts to a wrong zero, so that 2 deg appear as 1.7 deg and 3.4 deg as 1.1 to 1.6 deg.
   double zeroNotLinear() const noexcept { return kNotLinear * estimate_[kZero] * estimate_[kZero]; }
   /// Standard deviation of the dead centre's place in the encoder's readings [rad]. It includes the apparent error of a
-  /// correct zero on a clean machine.
+  /// correct zero.
   double zeroDeviation() const noexcept;
   /// Second moment of b by the innovations: contribution of an uncorrected b to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }
-  /// L with L L^T = moment(): its columns are errors that are independent of each other. Beyond the sensor's place it
-  /// is diagonal.
+  /// L with L L^T = moment(): its columns are errors that are independent of each other. Beyond the rows of the
+  /// sensor's mounting it is diagonal.
   const Matrix& root() const noexcept { return root_; }
-  /// Derivatives by the constants become columns of independent errors of one standard deviation each.
+  /// Converts derivatives by the constants to columns of independent errors of one standard deviation each.
   template <int numbers>
   static void toColumns(const Matrix& root, ByConstants<numbers, kSize>& by) noexcept {
     const ByConstants<numbers, kPlace> of_place =
@@ -254,10 +254,10 @@ class ConstantErrors {
   }
 
  private:
-  static constexpr double kNotLinear = 17.0;  ///< [1/rad]: 0.3 deg of 1 deg
+  static constexpr double kNotLinear = 17.0;  ///< [1/rad]: 0.3 deg at an error of 1 deg
   // Prior: kNotLinear
   static constexpr auto kIndices = std::make_integer_sequence<std::size_t, kUnknowns.size()>{};
-  /// Unrolled, so that what does not enter costs nothing.
+  /// Evaluates the row unrolled, so that zero terms cost nothing.
   template <typename Function, std::size_t... i>
   static Row row(const Function& of, std::integer_sequence<std::size_t, i...>) noexcept {
     Row all = Row::Zero();

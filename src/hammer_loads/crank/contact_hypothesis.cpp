@@ -10,9 +10,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kDecided = 12.0;  // logarithm of odds: the less likely belief is set aside, and never less likely
-constexpr double kChange = 9.0;    // as above at which the other one becomes the estimate
-constexpr double kMostFit = 8.0;   // as above that one sample may add: it may be an outlier
+constexpr double kDecided = 12.0;  // logarithm of odds to suspend the less likely belief; also their bound
+constexpr double kChange = 9.0;    // logarithm of odds at which the other belief becomes the estimate
+constexpr double kMostFit = 8.0;   // largest contribution of one sample, which may be an outlier
 
 }  // namespace
 

@@ -10,9 +10,9 @@
 namespace hammer_loads {
 
 /// At each blow a second belief continues without contact: a rocker that meets no tool passes the dead centre onto the
-/// mirrored branch and returns a turn later. Both beliefs are updated by the same samples until one is far more likely.
-/// Near the dead centre an elastic rod may make the correct one unlikely; it is suspended there and examined again
-/// after it.
+/// mirrored branch and returns a revolution later. Both beliefs are updated by the same samples until one is far more
+/// likely. Near the dead centre an elastic rod may make the correct belief unlikely; it is suspended there and examined
+/// again after it.
 class ContactHypothesis {
  public:
   /// belief: about to pass the blow with contact.
@@ -36,7 +36,7 @@ class ContactHypothesis {
   CrankBelief& belief() noexcept { return *belief_; }
 
   /// Updates the second hypothesis, predicted to the sample. Its outliers and jolts count against it. fit: logarithm of
-  /// the sample's likelihood by the estimate; growth: of variances, by the consistency.
+  /// the sample's likelihood by the estimate; growth: factor on variances from the consistency.
   void follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
               double most_speed) noexcept;
   /// Exchanges the beliefs and returns true if the second hypothesis is far more likely. Suspends it if it is far less
@@ -44,13 +44,13 @@ class ContactHypothesis {
   bool choose(CrankBelief& estimate, bool& mirrored) noexcept;
 
  private:
-  static constexpr double kTurnsWithout = 0.5;  // before any was seen
+  static constexpr double kTurnsWithout = 0.5;  // weight before any was observed
   // Prior: kTurnsWithout
 
   std::optional<CrankBelief> belief_;
   double evidence_{};  ///< logarithm of its odds against the estimate
   bool aside_{};       ///< true if it was far less likely since it began
-  double turns_with_{look_back::kManyTurns}, turns_without_{kTurnsWithout};  ///< contact, so far
+  double turns_with_{look_back::kManyTurns}, turns_without_{kTurnsWithout};  ///< decisions so far
 };
 
 }  // namespace hammer_loads

@@ -9,11 +9,11 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
+constexpr double kLeastFactor = 0.01;  // factor of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
 // Prior: kLeastFactor, kMostFactor
 
-/// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].
+/// Adds the uncertainty of a relative change of speed w `since` [s] ago, whose instant is uncertain within dt [s].
 void doubtSpeedChange(double variance, double w, double since, double dt, CrankBelief& b) noexcept {
   using B = CrankBelief;
   const double by_angle = w * since;
@@ -24,13 +24,13 @@ void doubtSpeedChange(double variance, double w, double since, double dt, CrankB
   b.addNoise(B::kSpeed, B::kFactor, w * variance);
 }
 
-/// Faster or further than any crank gets within the step.
+/// Returns true if the state is faster or further than any crank gets within the step.
 bool hasRunAway(const BetweenSamples& s, const ShaftState& state) noexcept {
   return !(std::abs(state.speed) < s.most_speed &&
            std::abs(difference(state.position, s.before.state.position)) <= s.most_speed * s.step + 0.5 * kTwoPi);
 }
 
-/// Onto the way between both, `apart` from the forward one.
+/// Moves the position by `apart` [rad] from the forward path towards the backward one.
 void move(double apart, const CrankPosition& back, CrankPosition& position) noexcept {
   if (position.angle.side == back.angle.side || position.isMirrored() || back.isMirrored()) {
     position.slide(apart);
@@ -50,14 +50,14 @@ double speedOn(const CrankAngle& angle, const ShaftState& way, double factor, bo
 /// States of both paths after dt, at the place between them.
 struct Ways {
   ShaftState forward, back;
-  bool ran_away{};  ///< one of them, which the other stands for
+  bool ran_away{};  ///< true if one path has diverged and was replaced
 };
 
 Ways waysAfter(const BetweenSamples& s, double dt) noexcept {
   const ShaftState &before = s.before.state, &now = s.now.state;
   Ways ways{before, now};
   const bool contact = !before.position.isMirrored() && !now.position.isMirrored();
-  // A tool that was met before the dead centre leaves nothing to strike there, unless it was a blow at that after all.
+  // A tool met before the dead centre leaves nothing to strike there, unless that turned out to be a blow.
   const bool tool_was_none = s.before.struck_early && !s.now.struck_early;
   const Passing passing{s.before.tool_met && !tool_was_none ? 1.0 : s.now.factor, contact};
   advanceState(s.step_model, dt, passing, ways.forward);
@@ -67,7 +67,7 @@ Ways waysAfter(const BetweenSamples& s, double dt) noexcept {
     ways.forward = before;
     ways.forward.position.turn(part * difference(now.position, before.position));
   }
-  const bool at_begin = !(part > 0.0);  // there the way back does not count
+  const bool at_begin = !(part > 0.0);  // there the backward path has no weight
   if (!at_begin) advanceState(s.step_model, dt - s.step, passing, ways.back);
   const bool back_ran_away = !at_begin && hasRunAway(s, ways.back);
   ways.ran_away |= back_ran_away;
@@ -82,7 +82,7 @@ Ways waysAfter(const BetweenSamples& s, double dt) noexcept {
   return ways;
 }
 
-/// The load at the place between both samples, with the hull's motion there.
+/// Returns the estimate at the place between both samples, with the hull's motion there.
 CrankEstimate estimateThere(const BetweenSamples& s, double dt, const ShaftState& state) noexcept {
   ShaftModel there = s.model;
   there.setHullMotion(blend(s.before_hull, s.now_hull, dt / s.step));
@@ -141,7 +141,7 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
           columns->ofSpeed(model, state, state.drive_inertia, load, drive, h, step.blows > 0);
       constexpr int kFirst = ConstantErrors::kTable;
       by_constant.row(kSpeed).middleCols<kMachineColumns>(kFirst) += of_speed;
-      by_constant.row(kAngle).middleCols<kMachineColumns>(kFirst) += 0.5 * h * of_speed;  // it comes evenly
+      by_constant.row(kAngle).middleCols<kMachineColumns>(kFirst) += 0.5 * h * of_speed;  // even change of speed
     }
     addNoise(kAngle, kAngle, speed * h * h / 3.0);
     addNoise(kSpeed, kSpeed, speed + torque * square(b * h) / 3.0);
@@ -199,7 +199,7 @@ bool CrankBelief::inflateBlow(Row row, double innovation, double total, double d
   const double variance = (square(innovation) - total) / squared;
   if (!(variance > 0.0)) return false;
   covariance(kFactor, kFactor) += variance;
-  struck_early = struck_early && square(factor - 1.0) > variance;  // else what was taken for the tool was noise
+  struck_early = struck_early && square(factor - 1.0) > variance;  // otherwise the early contact was noise
   doubtSpeedChange(variance, before, since, dt, *this);
   return true;
 }
@@ -227,12 +227,12 @@ void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double 
       (on_shaft.row(2) - square(belief.state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));
 }
 
-/// Linear in the state's deviation; the acceleration's derivative by the angle by a difference.
+/// Linearised in the state's error; the acceleration's derivative by the angle is a difference quotient.
 CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
                                    double growth, const ConstantErrors::Matrix& root, double torque_part) noexcept {
   const ShaftState& state = belief.state;
   const double inv = 1.0 / (state.drive_inertia + load.inertia), here = acceleration(load, state);
-  constexpr double kStep = 1e-6;  // [rad]: error 1e-6 by curvature, 1e-9 by rounding, both relative
+  constexpr double kStep = 1e-6;  // [rad]: relative errors 1e-6 by curvature and 1e-9 by rounding
   // Numerical: kStep
   CrankAngle beside = state.position.angle;
   beside.offset += kStep;

@@ -16,7 +16,7 @@
 
 namespace hammer_loads {
 
-constexpr double kNoiseStep = 2e-3;  ///< [s] over which the process noise is spread
+constexpr double kNoiseStep = 2e-3;  ///< largest step with its own process noise [s]
 // Numerical: kNoiseStep
 /// Largest change of the inertia's logarithm by one sample: beyond it the linearisation is invalid.
 constexpr double kMostInertiaChange = 0.3;
@@ -35,7 +35,7 @@ struct BlowPrior {
   double mean{1.0};    ///< [-], > 0
   double deviation{};  ///< [-]
   ConstantErrors::Row by_error{
-      ConstantErrors::Row::Zero()};  ///< d(mean)/d(sensor's errors), as it was learned with them
+      ConstantErrors::Row::Zero()};  ///< d(mean)/d(sensor's errors), since it was identified with them
 };
 
 /// Gaussian belief: angle, speed, torque, logarithm of drive inertia, factor of the last blow.
@@ -48,32 +48,32 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   double least_inertia{};  ///< bounds of the drive inertia [kg m2]
   double most_inertia{};   ///< upper bound of the drive inertia [kg m2]
   bool tool_met{};         ///< true if the tool was met before the dead centre, where nothing strikes any more
-  bool struck_early{};     ///< the last blow's factor acted before the dead centre
+  bool struck_early{};     ///< true if the factor of the last blow acted before the dead centre
 
   /// Predicts by dt [s] > 0 with random walks; returns the number of blows. Stops at most_speed [rad/s].
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
               double dt) noexcept;
-  /// Changes its variables. The position may end beyond the blow.
+  /// Adds a change to the variables; the position may then lie beyond the blow.
   void move(const Vector& change) noexcept;
-  /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
-  /// factor and the speed go together.
+  /// Bounds the factor between that of a blow that stops the crank and that of one that drives it. To be called after a
+  /// sample has been used completely, since factor and speed change together.
   void boundFactor() noexcept;
-  /// Scalar measurement of one variable; moves. by_error: what the sensor's errors make of the measurement;
-  /// of_constants: their variances where the measurement is to be weighed by them.
+  /// Corrects by a scalar measurement of one variable. by_error: derivative of the measurement by the sensor's errors;
+  /// of_constants: variances of these errors if they reduce the measurement's weight.
   void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
                const std::optional<ConstantErrors::Row>& of_constants = {}) noexcept;
   /// Removes the correlation with the inertia, so that the next update does not change it.
   void forgetInertiaCoupling() noexcept;
   /// Resets the angle's variance [rad2] and its correlations.
   void forgetAngle(double variance) noexcept;
-  /// Passes the blow late, with the position beyond it already.
+  /// Passes the blow late, when the position is already beyond it.
   void passLate(const ShaftModel& model, const BlowPrior& prior) noexcept;
   /// Adds the uncertainty of a speed that the tool has changed within the last dt [s], relative `deviation`.
   void meetTool(double deviation, double dt) noexcept;
   /// Inflates the variance of the factor of a blow within the last dt [s] until it explains an innovation of variance
   /// `total` of angle or speed. Returns false, without a change, if no factor explains it.
   bool inflateBlow(Row row, double innovation, double total, double dt) noexcept;
-  /// Variances of angle, speed and torque, times `by` where that is above 1.
+  /// Multiplies the variances of angle, speed and torque by `by` if that is above 1.
   void widen(double by) noexcept;
   /// Sets the position exactly at the blow.
   void stopAtBlow() noexcept { state.position.angle.offset = 0.0; }
@@ -93,12 +93,12 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   BlowFactor blowFactor(double growth, const ConstantErrors::Matrix& root) const noexcept;
 };
 
-/// load: the model's at the belief's angle; growth, root: as in CrankBelief::blowFactor(); torque_part of the torque's
-/// deviation counts.
+/// load: load of the model at the belief's angle; growth, root: as in CrankBelief::blowFactor(); torque_part: part of
+/// the torque's standard deviation that counts.
 CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
                                    double growth, const ConstantErrors::Matrix& root, double torque_part) noexcept;
 
-/// Derivatives by the hammer's constants of the acceleration [rad/s2] at the state itself.
+/// Adds the derivatives of the acceleration [rad/s2] by the hammer's constants, at a fixed state.
 void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double acceleration, double inverse_inertia,
                      CrankUncertainty& result) noexcept;
 
@@ -112,11 +112,11 @@ class BlowHistory {
         variance_(kLength, first.deviation * first.deviation, kFirstCounts),
         by_error_(kLength, ConstantErrors::Row::Zero(), kFirstCounts) {}
 
-  /// Takes the factor of a blow, its variance and its derivative by the sensor's errors, estimated from all samples
+  /// Adds the factor of a blow, its variance and its derivative by the sensor's errors, estimated from all samples
   /// since.
   void add(double factor, double variance, const ConstantErrors::Row& by_error) noexcept {
     const double doubt = square(gate::kUsual) * variance;
-    if (!(doubt < variance_.mean() || variance < square(kLeast))) return;  // nothing was learned of it
+    if (!(doubt < variance_.mean() || variance < square(kLeast))) return;  // the samples contain no information on it
     variance_.add(square(factor - mean_.mean()));
     mean_.add(factor);
     by_error_.add(by_error);
@@ -130,7 +130,7 @@ class BlowHistory {
  private:
   /// Weight of the first guess in blows; a small weight lets a wrong conclusion from the first few blows show at once.
   static constexpr double kFirstCounts = 0.1, kLength = 10.0 + kFirstCounts;
-  static constexpr double kLeast = 0.01;  // deviation
+  static constexpr double kLeast = 0.01;  // lower bound of the standard deviation
   static constexpr double kMost = 0.3;
   // Prior: kLeast, kMost
   BlowPrior first_;
@@ -142,7 +142,7 @@ class BlowHistory {
 struct Innovation {
   double value{};                                             ///< measured less predicted
   double total{};                                             ///< variance of the innovation
-  double variance{};                                          ///< the measurement's part of that
+  double variance{};                                          ///< the measurement's part of the variance
   ConstantErrors::Row by_error{ConstantErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
 
   double ratio() const noexcept { return value * value / total; }
@@ -160,11 +160,11 @@ struct WeighedSample {
   /// Variances of the constants that reduce the weight of a speed; empty: none.
   std::optional<ConstantErrors::Row> of_speed{};
 
-  /// Variance of the angle about that at the stamp [rad2].
+  /// Variance of the angle including the error of the stamp [rad2].
   double angleVariance(double speed_there) const noexcept {
     return angle_variance + speed_there * speed_there * timing_variance;
   }
-  /// Returns true if its instant is less certain than the crank's place.
+  /// Returns true if its instant is less certain than the angle of the crank.
   bool isUnsureOfTime(double speed_there) const noexcept {
     return speed_there * speed_there * timing_variance > angle_variance;
   }
@@ -179,7 +179,7 @@ inline Innovation WeighedSample::ofAngle(const CrankBelief& belief) const noexce
           ConstantErrors::ofAngle({offset, belief.encoderSpeed(), 0.0})};
 }
 
-/// An error of the stamp changes the speed by the acceleration.
+/// An error of the stamp changes the speed by that error times the acceleration.
 inline Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept {
   const ShaftState& state = belief.state;
   const ShaftLoad load = model(state.position.angle);
@@ -192,7 +192,7 @@ inline Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftM
           by_error};
 }
 
-/// Estimate of a state at which the model has the load.
+/// Returns the estimate of a state. load: load of the model there.
 inline CrankEstimate estimateOf(const ShaftLoad& load, const ShaftState& state) noexcept {
   return {state.position, state.speed, acceleration(load, state)};
 }
@@ -206,15 +206,15 @@ struct BetweenSamples {
   const HullMotion& before_hull;  ///< at the samples
   const HullMotion& now_hull;
   double step{};        ///< [s]
-  double most_speed{};  ///< from which on an estimate has diverged [rad/s]
+  double most_speed{};  ///< speed from which on an estimate has diverged [rad/s]
 };
 
-/// Weighted mean of the prediction forward from the earlier sample and backward from the later one, each with more
-/// weight near its own end. A prediction that diverges, between impossible samples, is left out. dt after the earlier
-/// one, less than the step [s].
+/// Returns the weighted mean of the prediction forward from the earlier sample and backward from the later one, each
+/// with more weight near its own end. A diverging prediction between impossible samples is left out. dt: time after the
+/// earlier sample, less than the step [s].
 CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;
 
-/// Crank by both paths, each with its own speed and torque, at the place between them. None where one has diverged.
+/// Returns the crank by both paths at the place between, each with its own speed and torque; empty if one diverged.
 std::optional<CrankWays> waysBetween(const BetweenSamples& samples, double dt) noexcept;
 
 }  // namespace hammer_loads

@@ -6,7 +6,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Offset and h within one half turn.
+/// Offset [rad] and h = sqrt(M) w, M = Jc + J, within one half revolution.
 struct Path {
   double offset{};
   double h{};
@@ -19,7 +19,7 @@ struct Shaft {
   double drive_inertia;
 };
 
-/// Torque of drive, weight and the hull's acceleration, which the drive's inertia follows.
+/// Torque of drive, weight and hull acceleration; the drive's inertia follows the latter.
 double torqueOf(const ShaftLoad& load, double torque, double drive_inertia) noexcept {
   return torque + load.weight_torque - drive_inertia * load.hull_acceleration;
 }
@@ -38,7 +38,7 @@ Rates rates(const Shaft& shaft, double h, const ShaftLoad& load) noexcept {
            (load.weight_torque_slope - torque * load.half_inertia_slope * inv) * speed * inv_root}};
 }
 
-/// at: at the start. Order 4 by two derivatives, which need the load at the middle alone (Chan and Tsai 2010).
+/// Order 4 by two derivatives; needs a further load at the middle alone (Chan and Tsai 2010). at: rates at the start.
 Path rungeKutta(const Shaft& shaft, const Path& start, const Rates& at, double dt) noexcept {
   const Path middle{start.offset + 0.5 * dt * (at.first.offset + 0.25 * dt * at.second.offset),
                     start.h + 0.5 * dt * (at.first.h + 0.25 * dt * at.second.h)};
@@ -48,7 +48,7 @@ Path rungeKutta(const Shaft& shaft, const Path& start, const Rates& at, double d
           start.h + dt * (at.first.h + part * (at.second.h + 2.0 * bend.h))};
 }
 
-/// Derivatives of h by (angle, speed, logarithm of drive inertia) at fixed others.
+/// Derivatives of h by angle, speed and logarithm of the drive inertia, each with the others fixed.
 struct Scaling {
   double by_angle, by_speed, by_log_inertia;
 };
@@ -99,17 +99,17 @@ ShaftTransition transition(const Shaft& shaft, double dt, double speed, const Sh
   return f;
 }
 
-/// The transition `first`, then `second`.
+/// Returns the transition by `first`, then by `second`.
 ShaftTransition chained(const ShaftTransition& second, const ShaftTransition& first) noexcept {
   ShaftTransition both = second.leftCols<2>() * first;
   both.rightCols<3>() += second.rightCols<3>();
   return both;
 }
 
-/// A state on the mirrored branch is beyond already; there is nothing to pass.
+/// Returns true if the blow lies in between. A state on the mirrored branch is beyond it already.
 bool passesBlow(Side side, double from, double to) noexcept { return isBeyond(side, to) && !isBeyond(side, from); }
 
-/// One smooth piece of the way, ending at dt or at the blow. total: null where no linearisation is wanted.
+/// Advances by one smooth piece, which ends at dt or at the blow. total: null if no linearisation is needed.
 WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state, ShaftLoad& load,
                       ShaftTransition* total) noexcept {
   const Shaft shaft{model, state.position.angle.side, state.torque, state.drive_inertia};
@@ -134,7 +134,7 @@ WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftSta
   return piece;
 }
 
-/// Forward blows passed; total as in advancePiece().
+/// Returns the number of blows passed forward. total: as in advancePiece().
 int advanceAll(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state, ShaftLoad& load,
                ShaftTransition* total) noexcept {
   int blows = 0, creeping = 0;

@@ -24,14 +24,14 @@ namespace hammer_loads {
 /// is a random walk.
 struct SupplyLaw {
   double stiffness{};   ///< [N m/rad]
-  double mean_speed{};  ///< mean speed of the uniform rotation [rad/s]; 0: not known, nothing leads
+  double mean_speed{};  ///< mean speed of the uniform rotation [rad/s]; 0: not known, no lead
   double unit{};        ///< unit of the stiffness' error among ConstantErrors [N m/rad]
 
   /// Lead of a crank that turned by an angle [rad] in dt [s] over the uniform rotation [rad].
   double lead(double turned, double dt) const noexcept { return mean_speed > 0.0 ? turned - mean_speed * dt : 0.0; }
 };
 
-/// Identification of the law: mean speed of the last turn, stiffness, and mean square of the torque.
+/// Identification of the law: mean speed of the last revolution, stiffness, and mean square of the torque.
 class LearnedSupply {
  public:
   /// unit: largest stiffness [N m/rad], > 0.
@@ -39,15 +39,15 @@ class LearnedSupply {
     law_.unit = unit;
   }
   const SupplyLaw& law() const noexcept { return law_; }
-  /// Notes that the time before is not known.
+  /// Notes that the preceding motion is not known.
   void restart() noexcept {
     law_.mean_speed = 0.0;
     turn_time_ = std::numeric_limits<double>::quiet_NaN();
   }
   void pass(double dt) noexcept { turn_time_ += dt; }  ///< [s]
-  /// A torque [N m] between a blow and the end of its half turn.
+  /// Adds a torque [N m] between a blow and the end of its half revolution.
   void addTorque(double torque) noexcept { half_turn_.add(square(torque)); }
-  /// Once a turn, half a turn after the blow. known: the torques since were those of the supply.
+  /// Ends a revolution, half a revolution after the blow. known: true if the torques since were those of the supply.
   void endTurn(const CrankPosition& at, bool known = true) noexcept {
     if (known && half_turn_.count() > 0.0) usual_.add(half_turn_.mean());
     half_turn_ = {};
@@ -56,9 +56,9 @@ class LearnedSupply {
     from_ = at;
     turn_time_ = 0.0;
   }
-  /// Mean square of those of the last turns [N2 m2]; at first the unit's.
+  /// Mean square of these torques over the last revolutions [N2 m2]; at first the square of the unit.
   double usual() const noexcept { return usual_.mean(); }
-  /// error: of the stiffness, as the innovations show it [unit]. By how much the stiffness changes [unit].
+  /// Corrects the stiffness by its identified error [unit]; returns the change [unit].
   double learn(double error) noexcept {
     const double change = std::clamp(law_.stiffness / law_.unit - error, 0.0, 1.0) - law_.stiffness / law_.unit;
     law_.stiffness += law_.unit * change;
@@ -69,7 +69,7 @@ class LearnedSupply {
   RunningMean<> usual_, half_turn_;
   SupplyLaw law_;
   CrankPosition from_;
-  double turn_time_{std::numeric_limits<double>::quiet_NaN()};  ///< since from_ [s]; NaN: not seen from there
+  double turn_time_{std::numeric_limits<double>::quiet_NaN()};  ///< time since from_ [s]; NaN: not observed from there
 };
 
 /// Adaptation of the torque's random walk, which is given for rough supplies and has little influence with exact
@@ -79,7 +79,7 @@ class LearnedSupply {
 /// is used while stamps are exact.
 class SupplyRoughness {
  public:
-  /// innovation of variance `total`, of which the stamp's jitter has the part `jitter`.
+  /// Adapts the walk by an innovation of variance `total`, of which the stamps' jitter is the part `jitter`.
   void learn(double innovation, double total, double jitter) noexcept {
     const double now = std::clamp(innovation / std::sqrt(total), -gate::kRare, gate::kRare);
     factor_ = jitter > 0.0 ? std::clamp(factor_ * (1.0 + kGain * jitter * now * sum_), kLeast, kMost) : 1.0;
@@ -87,13 +87,13 @@ class SupplyRoughness {
   }
   /// Factor on the given walk [-].
   double factor() const noexcept { return factor_; }
-  /// Factor on the real part of the torque's deviation. A smaller walk has a smaller deviation, while the supply is
+  /// Factor on the real part of the torque's standard deviation. A smaller walk reduces that, while the supply is
   /// unchanged. With this factor the measured coverage is that of exact stamps.
   double deviationFactor() const noexcept { return 1.0 / std::sqrt(std::sqrt(std::min(1.0, factor_))); }
 
  private:
   static constexpr double kGain = 1.0 / look_back::kReadings;
-  static constexpr double kFading = 0.85;              // some 7 samples are looked at
+  static constexpr double kFading = 0.85;              // memory of some 7 samples
   static constexpr double kLeast = 0.25, kMost = 3.0;  // a sudden supply is still followed within some samples
   // Prior: kLeast, kMost
   double factor_{1.0}, sum_{};
@@ -103,22 +103,22 @@ class SupplyRoughness {
 constexpr double kMaxStepAngle = 0.04;  ///< largest crank angle in one piece [rad]
 constexpr int kMaxSteps = 4096;         ///< bounds the work for absurd speeds; steps get longer beyond it
 // Numerical: kMaxStepAngle, kMaxSteps, kMostCreepingPasses
-/// [rad/s]: a slower crank is moved by friction and stopped by the tool; nothing jumps there.
+/// Speed below which friction moves the crank and the tool stops it, without a jump [rad/s].
 constexpr double kSlowCrank = 5.0;
-/// [rad/s]: a crank that creeps over the blow has no defined instant of passing it.
+/// Speed below which the crank creeps over the blow, without a defined instant of passage [rad/s].
 constexpr double kCreeping = 1.0;
-/// Largest number of passages of the blow in one direction. Beyond it both sides push the crank back to the other, and
-/// it stays at the blow.
+/// Largest number of passages of the blow in one direction. Beyond it each side pushes the crank to the other, and it
+/// stays at the blow.
 constexpr int kMostCreepingPasses = 8;
 
 /// Piece of the path.
 struct WayPiece {
   double used;   ///< time used [s]
-  bool at_blow;  ///< ends there
+  bool at_blow;  ///< true if it ends at the blow
 };
 
-/// Part of the step dt after which the crank is at the blow: safeguarded secant on the smooth continuation.
-/// offset_after(t): offset from the blow [rad] after t of dt; start, end: at both ends, of different signs.
+/// Returns the time within dt at which the crank reaches the blow: safeguarded secant on the smooth continuation.
+/// offset_after(t): offset from the blow [rad] after t of dt; start, end: offsets at both ends, of different signs.
 template <typename Function>
 double timeToBlow(const Function& offset_after, double start, double end, double dt) noexcept {
   double low = 0.0, high = dt, f_low = start, f_high = end;
@@ -154,7 +154,7 @@ class ShaftModel {
   }
   /// Returns true for an exact hammer, which has no columns.
   bool isExact() const noexcept { return columns_ == nullptr; }
-  /// A copy that is prepared for many calls of columns().
+  /// Returns a copy that is prepared for many calls of columns().
   ShaftModel tabulated() const {
     ShaftModel copy = *this;
     if (!isExact()) copy.table_ = std::make_shared<const ShaftTable>(columns_->shaftTable());
@@ -175,15 +175,14 @@ class ShaftModel {
   HullMotion hull_;
 };
 
-/// State of the shaft.
 struct ShaftState {
   CrankPosition position;
   double speed{};          ///< w [rad/s]
   double torque{};         ///< net drive torque tau on the crank [N m]
-  double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
+  double drive_inertia{};  ///< Jc: inertia of motor, flywheel and all that rotates with the crank [kg m2]
 };
 
-constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: it would be higher than long
+constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: no tool is that high
 constexpr double kStepsToTool = 1.5;
 
 /// Returns true if the tool may be met within a step of length dt [s].
@@ -199,8 +198,8 @@ double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;
 /// positive and makes its uncertainty relative), factor of the last blow.
 using ShaftMatrix = Eigen::Matrix<double, 5, 5>;
 
-/// d(angle, speed after)/d(angle, speed, torque, logarithm of drive inertia, blow factor before); the others stay. The
-/// blow factor counts only where a blow is passed in between.
+/// d(angle, speed after)/d(angle, speed, torque, logarithm of drive inertia, blow factor before); the other variables
+/// are unchanged. The blow factor counts only if a blow is passed in between.
 using ShaftTransition = Eigen::Matrix<double, 2, 5>;
 
 /// Treatment of a forward passage of the dead centre.
@@ -209,16 +208,16 @@ struct Passing {
   bool contact{true};  ///< false: no tool, the rocker passes smoothly onto the mirrored branch
 };
 
-/// Events of a step beside the motion.
+/// Transition of a step, and the blows in it.
 struct Advance {
   ShaftTransition transition;
-  int blows{};  ///< passed forward, with contact; back in time as above
+  int blows{};  ///< blows passed with contact and positive speed, also in a step back in time
 };
 
 /// Passes the blow for a state on the branch before it, at offset 0 or slightly beyond: to first order the result is
 /// that of a passage at offset 0. The position is continuous, the speed changes by the factor, and the acceleration
 /// jumps; a path that reaches the blow later by d(angle)/w keeps the old acceleration for this time (saltation). The
-/// factor is 1 for a backward turn, and is undone for a step back in time.
+/// factor is 1 for a backward rotation, and is undone for a step back in time.
 void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLoad& load,
               ShaftTransition& total) noexcept;
 
@@ -226,37 +225,37 @@ void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLo
 /// in between. `load` is the model's at the state's angle, before and after the call. A state on the mirrored branch
 /// continues and leaves it smoothly.
 ///
-/// Integrates h = sqrt(Jc + J) w, half the square of which is the kinetic energy: its rate, the torques over
-/// sqrt(Jc + J), has no term with the transfer function's derivative, so its linearisation needs none of third order.
-/// Runge-Kutta of order 4 by two derivatives, steps of at most 0.04 rad: error of a free turn below 1e-7 of the energy;
-/// linearisation of order 2 per step, within 1 % of finite differences at 1 kHz (test).
+/// Integrates h = sqrt(Jc + J) w; h^2/2 is the kinetic energy. Its rate, the torques over sqrt(Jc + J), contains no
+/// derivative of the transfer function, so that its linearisation contains none of third order. Runge-Kutta of order 4
+/// by two derivatives, steps of at most 0.04 rad: error of a free revolution below 1e-7 of the energy; linearisation of
+/// order 2 per step, within 1 % of finite differences at 1 kHz (test).
 Advance advance(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
                 ShaftLoad& load) noexcept;
 /// Advances the state without the linearisation, which costs as much as the state.
 void advanceState(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state) noexcept;
 
-/// A step keeps h = sqrt(M) w, M = Jc + J, but for what the torque adds (crank_dynamics.h). A column dJ of the links'
-/// inertia makes of the speed at its start another h, and of h at its end another speed: w/2 (dJ/M at the start less
-/// dJ/M at the end), the torque's part aside, for which it counts whole. At a blow, where M jumps, two such steps meet.
-/// The columns are of first order in the step.
+/// Effect of the hammer's constants on a step. Without torque a step keeps h = sqrt(M) w, M = Jc + J. A column dJ of
+/// the links' inertia changes h at the start, and the speed that belongs to h at the end. The speed changes by w/2
+/// (dJ/M at the start less dJ/M at the end), plus the effect on the torque's part. Two such steps meet at a blow, where
+/// M jumps. The columns are of first order in the step.
 class ColumnStep {
  public:
   using Columns = Eigen::Matrix<double, 1, kMachineColumns>;
 
-  /// Before the step. inertia: Jc [kg m2].
+  /// Evaluates the columns at the start of the step. inertia: Jc [kg m2].
   ColumnStep(const ShaftModel& model, const ShaftState& from, double inertia, const ShaftLoad& load) noexcept
       : start_(model.columns(from.position.angle)),
         offset_(from.position.angle.offset),
         m_(inertia + load.inertia),
         weight_(load.weight_torque) {}
   /// Changes of the speed [rad/s] at the end of the step by the columns. torque: on the crank beside its links [N m];
-  /// struck: it passed a blow.
+  /// struck: true if it passed a blow.
   Columns ofSpeed(const ShaftModel& model, const ShaftState& to, double inertia, const ShaftLoad& load, double torque,
                   double dt, bool struck) const noexcept {
     const MachineColumns::OnShaft end = model.columns(to.position.angle);
     const double m = inertia + load.inertia;
-    Columns relative = start_.row(0) / m_ - end.row(0) / m;  // of h kept
-    double begin = 0.5;                                      // part of the step
+    Columns relative = start_.row(0) / m_ - end.row(0) / m;  // part at constant h
+    double begin = 0.5;                                      // weight of the start
     if (struck) {
       const CrankAngle before{0.0, Side::kBeforeBlow}, after{0.0, Side::kAfterBlow};
       relative += model.columns(after).row(0) / (inertia + model(after).inertia) -

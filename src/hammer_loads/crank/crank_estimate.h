@@ -24,18 +24,18 @@ struct CrankEstimate {
   double acceleration{};  ///< [rad/s2]
 };
 
-/// Uncertainty of an estimate, by errors that are independent between samples and by constants, whose errors are equal
-/// in all samples.
+/// Uncertainty of an estimate due to errors that are independent between samples, and due to constants, whose errors
+/// are equal in all samples.
 struct CrankUncertainty {
   enum Row : Eigen::Index { kAngle, kSpeed, kAcceleration, kInertia };
 
   Eigen::Matrix3d own{Eigen::Matrix3d::Zero()};  ///< covariance of angle [rad], speed [rad/s], acceleration [rad/s2]
-  /// One standard deviation each of errors that are independent of each other; by rows as above, the last relative to
-  /// the drive's inertia.
+  /// Effects of independent errors of one standard deviation each. Rows as above, the last one relative to the drive's
+  /// inertia.
   ByConstants<4, ConstantErrors::kSize> by_constant{ByConstants<4, ConstantErrors::kSize>::Zero()};
-  double inertia{};  ///< relative deviation of the drive's inertia, beside the constants
+  double inertia{};  ///< relative standard deviation of the drive's inertia, without the part of the constants
 
-  /// Errors of the speed at which the crank passes an angle; an error of its angle delays the passage. rate:
+  /// Errors of the speed at a given crank angle; an error of the angle shifts the instant at which it is passed. rate:
   /// acceleration over speed [1/s].
   Eigen::Matrix<double, 1, ConstantErrors::kSize> speedAtAngle(double rate) const noexcept {
     return by_constant.row(kSpeed) - rate * by_constant.row(kAngle);
@@ -48,14 +48,14 @@ struct CrankWays {
   CrankEstimate forward, back;
 };
 
-/// A blow's factor on the crank: its speed after over its speed before. Deviations are beside the constants.
+/// Factor of a blow: crank speed after it over that before. Standard deviations exclude the part of the constants.
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
   double drive_inertia{};  ///< Jc, on which the blow acts; gives the restitution [kg m2]; 0: not known
   double inertia_std{};    ///< relative [-]
-  bool early{};            ///< true if it acted before the dead centre, where the crank passed with its speed after
-  /// Changes of the factor [-] and, relatively, of the inertia by independent errors of constants, one standard
+  bool early{};            ///< true if it acted before the dead centre, which the crank passed at the changed speed
+  /// Changes of the factor [-] and relative changes of the inertia by independent errors of constants, one standard
   /// deviation each.
   ByConstants<2, ConstantErrors::kSize> by_constant{ByConstants<2, ConstantErrors::kSize>::Zero()};
 };

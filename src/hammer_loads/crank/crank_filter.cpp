@@ -15,23 +15,23 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kKick = 0.35;           // of the speed: what no torque changes between two samples
-constexpr double kLeastInertia = 0.1;    // of the first guess: no drawing is further off
-constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held at constant speed looks that heavy
-constexpr double kRelearn = 0.05;        // relative deviation of the inertia after what it cannot explain
-constexpr double kMostTorque = 3.0;      // times its first deviation: more is what a bad sample left behind
+constexpr double kKick = 0.35;           // part of the speed: no torque changes more between two samples
+constexpr double kLeastInertia = 0.1;    // part of the first guess: nominal parameters are not further off
+constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held at constant speed appears that heavy
+constexpr double kRelearn = 0.05;        // relative standard deviation of the inertia after an unexplained innovation
+constexpr double kMostTorque = 3.0;      // times its initial standard deviation: more is due to a bad sample
 // Prior: kRelearn, kMostTorque
-constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: more is a diverged filter
+constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: beyond it the filter has diverged
 // Limit: kSoundSpeeds
 // Prior: kLeastInertia, kMostInertia
-constexpr int kOneSided = 3;              // innovations in a row beyond 5 deviations: no jitter of stamps
-constexpr int kOneSidedLost = 10;         // the same where readings made no sense: they do again, elsewhere
-constexpr double kSurpriseLength = 50.0;  // samples over which innovations beyond 5 deviations are counted
-constexpr double kManySurprises = 2.5;    // of them: more than a supply's jolts
-constexpr double kSlip = 3e-3;            // [s]: stamps that are off by so much, again and again alike
+constexpr int kOneSided = 3;              // innovations of one sign beyond 5 standard deviations: not jitter
+constexpr int kOneSidedLost = 10;         // such innovations after many restarts: readings are consistent again
+constexpr double kSurpriseLength = 50.0;  // samples over which innovations beyond 5 standard deviations are counted
+constexpr double kManySurprises = 2.5;    // of these: more than jolts of the supply cause
+constexpr double kSlip = 3e-3;            // [s]: largest common error of successive stamps
 
 constexpr double kUnlearnEvery = 3.0;   // [s]
-constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
+constexpr double kDoubtfulAngle = 0.3;  // [rad]: predicted standard deviation beyond which the prediction is useless
 constexpr double kForgetDoubts = 30.0;  // [s]
 
 }  // namespace
@@ -63,7 +63,7 @@ double CrankFilter::mostTorque() const noexcept { return kMostTorque * settings_
 
 void CrankFilter::start(const CrankSample& reading, double jitter) noexcept {
   if (jitter > timing_.deviation())
-    timing_.restart(jitter);  // by the last speed, as no other is known
+    timing_.restart(jitter);  // keeps the last speed, as no other is known
   else
     now_.state.speed = 0.0;
   const WeighedSample sample = weighed(reading);
@@ -73,7 +73,7 @@ void CrankFilter::start(const CrankSample& reading, double jitter) noexcept {
 }
 
 /// Restarts angle and speed by the sample alone; the torque's variance is reset, the identified inertia is kept. The
-/// number of turns is the one nearest to now_.
+/// number of revolutions is the one nearest to now_.
 void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   ShaftState& s = now_.state;
   const double inertia_variance = now_.covariance(Belief::kInertia, Belief::kInertia);
@@ -142,7 +142,7 @@ std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
   counts_intervals_ =
       exceeds(way, to.innovation.total, 2.0 * gate::kImpossible) && !to.innovation.exceeds(gate::kImpossible);
   const EncoderSlip::Step step = followSlip(to.dt, to.innovation, to.sample);
-  if (step == EncoderSlip::Step::kPerhaps) {  // else an outlier as any other
+  if (step == EncoderSlip::Step::kPerhaps) {  // ignored as an outlier until the next sample decides
     countSurprise(true);
     return ignore(to.last, to.innovation);
   }
@@ -150,7 +150,7 @@ std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
   const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (deviation < kDoubtfulAngle) return std::nullopt;
   if (!now_.isSound(mostSpeed())) now_ = to.last;
-  // The next would restart too.
+  // Discards a speed so uncertain that the next sample would restart as well.
   if (!(std::sqrt(speed_variance_) * to.dt < kDoubtfulAngle)) to.sample.speed.reset();
   return begin(to.sample);
 }
@@ -180,7 +180,7 @@ std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
   return std::nullopt;
 }
 
-/// reading: of the encoder, as it came [rad].
+/// reading: raw reading of the encoder [rad].
 Tracking CrankFilter::accept(const SampleStep& to, double reading) noexcept {
   sample_ = to.sample;
   angle_fit_ = withoutRod(to.dt, to.innovation).logLikelihood();
@@ -219,7 +219,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
   countSurprise(side != 0);
   const bool one_sided = std::abs(unexplained_) >= (isLost() ? kOneSidedLost : kOneSided);
   if (side != 0 && !one_sided && (surprises_ > kManySurprises || isLost())) {
-    innovation.variance = squared / square(gate::kImpossible);  // with many like it on both sides: the stamps
+    innovation.variance = squared / square(gate::kImpossible);  // many on both sides: jittering stamps
   } else if (side != 0) {
     const double factor = (squared / square(gate::kUsual) - innovation.variance) / now_.encoderVariance(Belief::kAngle);
     now_.widen(factor);
@@ -228,7 +228,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
     double& inertia = now_.covariance(Belief::kInertia, Belief::kInertia);
     if (!HAMMER_LOADS_ABLATE(relearn)) inertia = std::max(inertia, square(kRelearn));
   }
-  if (surprises_ > kManySurprises) now_.forgetInertiaCoupling();  // they would teach it nonsense
+  if (surprises_ > kManySurprises) now_.forgetInertiaCoupling();  // they would bias the inertia
   now_.correct(Belief::kAngle, innovation.value, innovation.variance, innovation.by_error);
 }
 
@@ -274,7 +274,7 @@ std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double 
     angle_alone.speed.reset();
     return begin(angle_alone);
   }
-  now_.forgetAngle(square(innovation.value));  // the sequence lost a sample: time is off, not the motion
+  now_.forgetAngle(square(innovation.value));  // a sample was lost: the time is wrong, not the motion
   return std::nullopt;
 }
 
@@ -296,7 +296,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
     witness_->by_scale = by_error[ConstantErrors::kSpeedScale];
   }
   if (sample.speed) correctSpeed(sample, dt, struck);
-  if (!mirrored_ && now_.state.position.isMirrored()) now_.stopAtBlow();  // pushed by the speed
+  if (!mirrored_ && now_.state.position.isMirrored()) now_.stopAtBlow();  // moved there by the speed's correction
   now_.boundFactor();
   if (contested && hypothesis_.isThere()) {
     predict(dt, mirrored_, hypothesis_.belief());
@@ -334,7 +334,7 @@ void CrankFilter::inflateByRod(double angle, double speed) noexcept {
   rod_.angle = angle, rod_.speed = speed;
 }
 
-/// Innovation for a rigid mechanism, without the variance by a rod.
+/// Returns the innovation for a rigid mechanism, without the variance added for an elastic rod.
 Innovation CrankFilter::withoutRod(double dt, Innovation innovation) const noexcept {
   innovation.total = std::max(innovation.variance, innovation.total - square(rod_.angle) - square(dt * rod_.speed));
   return innovation;
@@ -373,7 +373,7 @@ CrankUncertainty CrankFilter::uncertaintyOf(const CrankBelief& belief, const Sha
   return motionUncertainty(model_, load, belief, consistency_.publishedGrowth(), errors_.root(), part);
 }
 
-/// (10) Learns once a turn, half a turn after the blow, when all samples that determine it are known.
+/// (10) Learns once a revolution, half a revolution after the blow, when all samples that determine it are known.
 void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   supply_.pass(dt);
   const CrankPosition &from = last.state.position, &to = now_.state.position;
@@ -390,14 +390,14 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
     blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_constant.row(Belief::kFactor));
 }
 
-/// (10) Other than the sensor's errors, that of the supply's stiffness is corrected.
+/// (10) Corrects the supply's stiffness by its estimated error; the sensor's errors are not corrected.
 void CrankFilter::learnSupply() noexcept {
   const double change = supply_.learn(errors_.estimate()[ConstantErrors::kSupply]);
   now_.move(now_.by_constant.col(ConstantErrors::kSupply) * change);
   errors_.shiftSupply(change);
 }
 
-/// (10) ratio: of the innovation before a tool or a slip was used.
+/// (10) ratio: square of the innovation over its variance, before a contact with the tool was included.
 void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept {
   if (std::abs(now_.state.speed) <= kLearnSpeed) return;
   consistency_.add(ratio);

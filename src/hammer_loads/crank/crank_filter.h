@@ -21,8 +21,8 @@ namespace hammer_loads {
 /// Assumptions of the filter about sensors and supply.
 struct CrankFilterSettings {
   CrankSensor sensor;            ///< mounting of the encoder
-  double angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings
-  double angle_noise{};          ///< standard deviation beside the count [rad], >= 0
+  double angle_resolution{};     ///< encoder count [rad], >= 0; 0: identified from the readings
+  double angle_noise{};          ///< standard deviation in addition to the count [rad], >= 0
   double timing_noise{};         ///< standard deviation of a stamp, first guess [s], >= 0
   double speed_noise{};          ///< standard deviation of a measured speed, first guess [rad/s], > 0
   double torque_walk{};          ///< random walk of the net torque [N m/sqrt(s)], > 0
@@ -32,23 +32,23 @@ struct CrankFilterSettings {
   double initial_inertia_std{};  ///< relative [-], >= 0
   double max_speed{};            ///< bound of an unknown speed [rad/s], > 0
   double blow_factor{1.0};       ///< a blow's factor on the crank's speed, first guess [-], > 0
-  ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< deviations of kUnknowns, each in its unit
-  double zero_std{ConstantErrors::kUnknownZero};  ///< deviation of the encoder's zero before the first turns [rad]
+  ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< standard deviations, units of kUnknowns
+  double zero_std{ConstantErrors::kUnknownZero};  ///< standard deviation of the encoder's zero at first [rad]
   double blow_std{0.25};  ///< standard deviation of blow_factor, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
   // Prior: blow_std
 };
 
 /// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
-/// speed. The step between samples and its linearisation are advance()'s, through the blow as well. Steps (1) to (10)
-/// of model.md 6.
+/// speed. advance() computes the step between samples and its linearisation, through the blow as well. Steps (1) to
+/// (10) of model.md 6.
 ///
-/// Learned beside the state: drive inertia within a few turns; encoder count, noise of measured speeds and jitter of
-/// the stamps within some hundred samples, and where they jitter the torque's walk; what the blows do within ten of
-/// them; how the torque follows the crank within a turn, within some ten turns.
+/// Identified beside the state: drive inertia within a few revolutions; encoder count, noise of measured speeds and
+/// jitter of the stamps within some hundred samples, and with jitter the torque's walk; the factor of the blows within
+/// ten blows; the law of the torque (SupplyLaw) within some ten revolutions.
 ///
-/// An angle that contradicts the prediction inflates the filter's covariance, so that a supply that differs from a slow
-/// random walk is followed with less smoothing instead of being refused. An outlier is ignored once; a second one in a
-/// row that agrees with it restarts the filter. Near the blow there are no outliers, since the tool may be met some
+/// An angle that contradicts the prediction inflates the filter's covariance. A supply that differs from a slow random
+/// walk is therefore followed with less smoothing instead of being refused. An outlier is ignored once; a second one in
+/// a row that agrees with it restarts the filter. Near the blow there are no outliers, since the tool may be met some
 /// degrees early or take most of the speed.
 class CrankFilter {
  public:
@@ -66,8 +66,8 @@ class CrankFilter {
   /// to the uncertainty.
   void inflateByRod(double angle, double speed) noexcept;
 
-  /// Starts at a sample; the identified constants of the machine are kept. jitter: of the coming stamps, learned anew
-  /// where it is larger than that of the stamps so far [s].
+  /// Starts at a sample; the identified constants of the machine are kept. jitter: that of the coming stamps [s]; if it
+  /// exceeds the present one, the jitter is identified again.
   void start(const CrankSample& sample, double jitter = 0.0) noexcept;
   /// Updates by the next sample, dt > 0 [s] after the last accepted one. No allocation.
   Tracking update(double dt, const CrankSample& sample) noexcept;
@@ -103,7 +103,7 @@ class CrankFilter {
   double driveInertia() const noexcept {
     return now_.state.drive_inertia < kHeld * first_guess_ ? now_.state.drive_inertia : 0.0;
   }
-  /// Time of the last step beyond its stamps, by lost samples [s]; < 0: one that was counted there was lost later.
+  /// Time by which lost samples lengthen the last step beyond its stamps [s]; < 0: a counted loss occurred later.
   double lostTime() const noexcept { return lost_time_; }
   /// Returns true if the last reading excludes that the step was longer or shorter by an interval.
   bool countsIntervals() const noexcept { return counts_intervals_; }
@@ -126,14 +126,14 @@ class CrankFilter {
   /// Factor by which variances are multiplied before they are published.
   double growth() const noexcept { return consistency_.growth(); }
   /// Covariance of (angle, speed, torque, logarithm of drive inertia, blow factor) at the last accepted sample, as the
-  /// filter computes it; what it publishes is multiplied by the consistency where that is above 1.
+  /// filter computes it. Published covariances are multiplied by the consistency where that is above 1.
   const ShaftMatrix& covariance() const noexcept { return now_.covariance; }
   const Encoder& encoder() const noexcept { return encoder_; }
   /// The last accepted sample with its noise.
   const WeighedSample& sample() const noexcept { return sample_; }
   /// Time after its stamp at which the prediction reaches the last angle [s].
   double instantOff() const noexcept { return instant_off_; }
-  /// Logarithm of the likelihood of its angle before the update, without a constant.
+  /// Logarithm of the likelihood of the last angle before the update, without a constant.
   double angleFit() const noexcept { return angle_fit_; }
   /// Identified noise of measured speeds [rad/s].
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }
@@ -148,12 +148,12 @@ class CrankFilter {
   /// Mean of innovation^2 over its variance of the last some 500 samples: near 1 where readings and model agree; NaN
   /// before 200.
   double consistency() const noexcept { return consistency_.mean(); }
-  /// Consistency in the half revolutions before the blow alone, the lesser of the last two. An elastic rod or a blow
-  /// that lasts changes little there, so that a contradiction means another machine or another sensor.
+  /// Consistency in the half revolutions before the blow alone, the lesser of the last two. An elastic rod or a
+  /// prolonged blow changes little there, so that a contradiction means another machine or another sensor.
   double strikeConsistency() const noexcept { return strike_consistency_.mean(); }
-  /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
+  /// Estimated errors of crank_zero_rad and of the eccentricity, updated once a revolution.
   const ConstantErrors& constantErrors() const noexcept { return errors_; }
-  /// Steps of the encoder on its shaft, which the filter has followed.
+  /// Slips of the encoder on its shaft that the filter has followed.
   const EncoderSlip& encoderSlip() const noexcept { return slip_; }
   /// Evidence of an elastic rod in the innovations, by place.
   const RodEvidence& rodEvidence() const noexcept { return rod_evidence_; }
@@ -166,20 +166,20 @@ class CrankFilter {
 
  private:
   static constexpr double kLearnSpeed = kSlowCrank;
-  static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
+  static constexpr double kToolSeen = gate::kVeryRare;  ///< gate for contact with the tool
   static constexpr double kHeld = 10.0;                 ///< times the first guess: no drive is as heavy
   // Limit: kHeld
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
-  static constexpr double kSteps = 20.0;  ///< in their mean
+  static constexpr double kSteps = 20.0;  ///< samples in the mean step
   // Numerical: kSteps
 
   /// Prediction to a sample, and its innovation.
   struct SampleStep {
-    const CrankBelief& last;  ///< at the one before
+    const CrankBelief& last;  ///< at the sample before
     WeighedSample sample;
     double dt{};      ///< [s]
-    bool struck{};    ///< a blow within it
-    double read{};    ///< angle before any lag is taken off [rad]
+    bool struck{};    ///< true if the step contains a blow
+    double read{};    ///< angle before the lag is subtracted [rad]
     double behind{};  ///< subtractLag() [rad]
     Innovation innovation{};
   };
@@ -188,12 +188,12 @@ class CrankFilter {
   Tracking accept(const SampleStep& to, double reading) noexcept;
   void countSurprise(bool surprised) noexcept;
   const CrankBelief& before() const noexcept { return earlier_[before_]; }
-  /// The last two and the step between them.
+  /// Returns the last two samples and the step between them.
   BetweenSamples lastStep() const noexcept {
     return {model_, step_model_, before(), now_, before_hull_, now_hull_, step_, mostSpeed()};
   }
   CrankUncertainty uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
-  /// At now_ with the latest motion of the hull.
+  /// Returns the load at now_ with the latest motion of the hull.
   ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }
   WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
@@ -247,7 +247,7 @@ class CrankFilter {
   HullMotion before_hull_;  ///< at the last but one sample
   CrankFilterSettings settings_;
   double first_guess_;      ///< first guess of the drive inertia [kg m2]
-  double unlearn_after_{};  ///< time until it may be taken up again [s]
+  double unlearn_after_{};  ///< time until the inertia may be discarded again [s]
   Encoder encoder_;
   WeighedSample sample_;
   double angle_fit_{};
@@ -256,7 +256,7 @@ class CrankFilter {
     double angle{}, speed{};  ///< [rad], [rad/s]
     bool followed{};
   } rod_;                    ///< inflateByRod() since the last sample
-  bool rod_hides_branch_{};  ///< rod_.followed when the branch was last doubted
+  bool rod_hides_branch_{};  ///< rod_.followed when the other branch was last tested
   TimingNoise timing_;
   SupplyRoughness roughness_;
   LearnedSupply supply_;
@@ -266,11 +266,11 @@ class CrankFilter {
   ConstantErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;                     ///< at the last sample, corrected by it
-  ShaftLoad load_;                      ///< there, with now_hull_
-  bool hull_moved_{true};               ///< since then
-  std::array<CrankBelief, 2> earlier_;  ///< at the last but one sample; the other is in work
-  std::size_t before_{};                ///< place of the former
-  ShaftLoad before_load_;               ///< there, with before_hull_
+  ShaftLoad load_;                      ///< load at now_, with now_hull_
+  bool hull_moved_{true};               ///< the hull's motion was set since then
+  std::array<CrankBelief, 2> earlier_;  ///< at the last but one sample; the other is scratch
+  std::size_t before_{};                ///< index of the former
+  ShaftLoad before_load_;               ///< load at before(), with before_hull_
   double step_{};                       ///< between these two [s]
   ContactHypothesis hypothesis_;        ///< hypothesis with contact where now_ has none, or the other way round
   bool mirrored_{};                     ///< now_ had no contact and is on the mirrored branch

@@ -15,19 +15,19 @@ namespace {
 using Belief = CrankBelief;
 
 constexpr double kNearCounts = 4.0;       // counts from the blow within which the encoder decides its side
-constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
-constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
+constexpr double kCertain = gate::kRare;  // standard deviations of the stamp within which an edge decides nothing
+constexpr double kToolDeviation = 0.5;    // part of the crank's speed that an early contact may take
 constexpr double kHiddenBranch = 0.25;    // probability: the other branch is then two standard deviations away
-constexpr double kRingOver = 0.8;         // [rad] behind the blow: a rod's vibration is not taken for a torque any more
-constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
+constexpr double kRingOver = 0.8;         // [rad] after the blow: a rod's vibration no longer looks like a torque
+constexpr double kToolSeenByStamps = gate::kImpossible;  // gate for contact with jittering stamps
 // Prior: kToolDeviation, kHiddenBranch
 
 constexpr double kSpeedNoiseGain = 1.0 / look_back::kReadings;
-constexpr double kLeastSpeedNoise = 0.3;  // of the first guess
+constexpr double kLeastSpeedNoise = 0.3;  // part of the first guess
 constexpr double kNotSlip = 0.04;         // [rad] from the blow: there the tool stops and throws the crank
-constexpr double kBeganOfLate = 0.5;      // beginnings of late: some 1.4 s after a single one
-constexpr double kStrikeBegins = 0.6;     // [rad] before the blow: a rod that gives is calm until there
-constexpr double kRodMoves = 0.017;       // [rad] of a reading at most, there: worn pins, a rod that was learned
+constexpr double kBeganOfLate = 0.5;      // recent restarts: some 1.4 s after a single one
+constexpr double kStrikeBegins = 0.6;     // [rad] before the blow: an elastic rod does not vibrate until there
+constexpr double kRodMoves = 0.017;       // [rad]: largest effect of worn pins and an identified rod on readings there
 
 }  // namespace
 
@@ -44,7 +44,7 @@ bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSam
   bool seen = angle.exceeds(jitters ? kToolSeenByStamps : kToolSeen);
   if (sample.speed) {
     const Innovation speed = sample.ofSpeed(now_, model_);
-    const bool slower = speed.value < 0.0;  // a stamp does not move it
+    const bool slower = speed.value < 0.0;  // an error of the stamp does not change it
     seen = (slower && speed.exceeds(kToolSeen)) || (seen && (!jitters || (slower && speed.exceeds(gate::kUsual))));
   }
   if (!seen) return false;
@@ -63,7 +63,7 @@ bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const Weigh
     const Innovation speed = sample.ofSpeed(now_, model_);
     const double ratio = speed.value * angle.value > 0.0 ? speed.ratio() : 0.0;
     if (ratio > square(kToolSeen)) return now_.inflateBlow(Belief::kSpeed, speed.value, speed.total, dt);
-    by_angle = by_angle && ratio > 1.0;  // the prior may explain the speed; where both go one way it is the blow
+    by_angle = by_angle && ratio > 1.0;  // the prior may explain the speed; equal signs show the blow
   }
   return by_angle && now_.inflateBlow(Belief::kAngle, angle.value, angle.total, dt);
 }
@@ -101,7 +101,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
   const double doubt =
       kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
   if (angle.offset > -doubt && now_.state.speed > -1.0) {
-    now_.stopAtBlow();  // it stands or goes on, whatever a count or a stamp says
+    now_.stopAtBlow();  // it stands or moves on, within the errors of count and stamp
   } else {
     angle.side = Side::kBeforeBlow;
   }
@@ -111,7 +111,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
 std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
   if (HAMMER_LOADS_ABLATE(encoder_edge) || encoder_.isFiner() || settings_.angle_noise > 0.0 || angle_lag_.isThere())
     return std::nullopt;
-  constexpr double kEdge = 1e-6;  // of a count
+  constexpr double kEdge = 1e-6;  // part of a count
   // Numerical: kEdge
   const double count = encoder_.resolution(), edge_tolerance = kEdge * count;
   const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
@@ -121,7 +121,7 @@ std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
   return std::nullopt;
 }
 
-/// (7) The estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
+/// (7) Keeps the estimate from passing the blow before the encoder does, since the wrench jumps at the blow.
 void CrankFilter::applyReadSide(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
                                 double reading) noexcept {
   CrankAngle& angle = now_.state.position.angle;
@@ -146,13 +146,13 @@ void CrankFilter::beginHypothesis(const CrankBelief& belief) noexcept {
     hypothesis_.begin(belief);
 }
 
-/// (9) The vibration of a rod may pass for the torque that shows a missed tool: the question then stays open to the
-/// next dead centre.
+/// (9) Returns the probability of the other branch. A rod's vibration may resemble the torque that shows blank firing;
+/// both branches then remain possible until the next dead centre.
 double CrankFilter::otherBranch() const noexcept {
   return std::max(hypothesis_.probability(), mirrored_ && rod_hides_branch_ ? kHiddenBranch : 0.0);
 }
 
-/// (9) Switches to the second hypothesis if it explains a sample that the estimate does not.
+/// (9) Returns true if the second hypothesis explains the sample.
 bool CrankFilter::hypothesisExplains(double dt, const WeighedSample& sample) noexcept {
   if (!hypothesis_.isOpen()) return false;
   CrankBelief other = hypothesis_.belief();
@@ -160,9 +160,9 @@ bool CrankFilter::hypothesisExplains(double dt, const WeighedSample& sample) noe
   return !sample.ofAngle(other).exceeds(gate::kRare);
 }
 
-/// (9) Examines the other branch half a turn after a blow. On a wrong branch no sample need contradict the estimate,
-/// because the estimated torque compensates the blow. If the supply never has such a torque, the other branch is tried
-/// with a usual one.
+/// (9) Examines the other branch from 0.8 rad after a blow on. On a wrong branch no sample need contradict the
+/// estimate, because the estimated torque compensates the blow. If the supply never has such a torque, the other branch
+/// is tried with a usual one.
 void CrankFilter::checkContact() noexcept {
   if (HAMMER_LOADS_ABLATE(contact_by_torque) || !(now_.state.position.angle.offset > kRingOver)) return;
   supply_.addTorque(now_.state.torque);
@@ -177,7 +177,7 @@ void CrankFilter::checkContact() noexcept {
   hypothesis_.beginWithEvenOdds(other);
 }
 
-/// (2) Angle and speed of the crank from those of its sensor, with their noise.
+/// (2) Converts the readings of the sensor to angle and speed of the crank, with their noise.
 WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   const double angle = encoder_.angle(reading.angle);
   WeighedSample sample{CrankAngle::fromAngle(angle).offset, reading.speed};
@@ -192,7 +192,7 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   return sample;
 }
 
-/// (10) Noise of stamps and speeds, given and identified.
+/// (10) Updates the standard deviations of latency, speed lag and speed scale, as given and as identified.
 void CrankFilter::updateConsidered() noexcept {
   const double ahead =
       std::hypot(angle_lag_.deviation(), speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0);
@@ -223,7 +223,7 @@ bool CrankFilter::findLag() noexcept {
   return true;
 }
 
-/// (2) The rest was learned of other angles.
+/// (2) Moves the encoder's zero and discards what was identified with the old one.
 bool CrankFilter::applyZero() noexcept {
   if (zero_moves_ == 0.0) return false;
   encoder_.slip(std::exchange(zero_moves_, 0.0));
@@ -233,7 +233,7 @@ bool CrankFilter::applyZero() noexcept {
   return true;
 }
 
-/// (2) read: the angle as it was read; returns how far it is behind [rad].
+/// (2) Subtracts the lag from the sample and returns it [rad]. read: angle as it was read [rad].
 double CrankFilter::subtractLag(const CrankBelief& last, double dt, bool struck, double read,
                                 WeighedSample& sample) const noexcept {
   const double behind = angle_lag_.behind(last.encoderSpeed() + speedJump(struck), now_.encoderSpeed(), dt);
@@ -255,7 +255,7 @@ double CrankFilter::speedJump(bool struck) const noexcept {
   return struck ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
 }
 
-/// (8) As it is without the speed, by the estimate at the angle; one that began anew of late is no judge.
+/// (8) Compares the speed with the estimate that does not contain it, except shortly after a restart.
 void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
   if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
     return speed_trust_.restart();
@@ -275,7 +275,7 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
         (*sample.of_speed)[ConstantErrors::kSpeedLag] * (square(by - of_state) - square(before - of_state));
   }
   fit_ += innovation.logLikelihood();
-  // Effects of lag and scale pass for noise, so that the speeds get a lower weight.
+  // Effects of lag and scale count as noise, which lowers the weight of the speeds.
   const double known = now_.encoderVariance(Belief::kSpeed) + innovation.variance;
   const double squared = std::min(square(innovation.value), square(gate::kImpossible) * known);
   if (!innovation.exceeds(gate::kImpossible))
@@ -286,7 +286,7 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - known), floor);
 }
 
-/// (1) Once more, over another time.
+/// (1) Repeats the prediction over another time.
 void CrankFilter::predictTo(SampleStep& to, double dt) noexcept {
   now_ = to.last;
   to.dt = dt;
@@ -310,7 +310,7 @@ void CrankFilter::followLostTime(SampleStep& to) noexcept {
   }
 }
 
-/// Whole intervals by which the reading is ahead, where samples are taken at equal ones [s]; by its speed alone.
+/// Returns the whole intervals by which the reading is ahead [s], for samples at equal intervals; uses the speed alone.
 double CrankFilter::timeLost(double dt, const Innovation& innovation) const noexcept {
   const double speed = now_.encoderSpeed();
   const double interval = clock_.interval;
@@ -321,7 +321,7 @@ double CrankFilter::timeLost(double dt, const Innovation& innovation) const noex
   return whole * interval;
 }
 
-/// Returns true if an elastic rod may have caused the innovation: any but a large step of a crank that has calmed down.
+/// Returns true if an elastic rod may be the cause: of any innovation but a large one well before the blow.
 bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
   const CrankAngle& at = now_.state.position.angle;
   const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
@@ -329,7 +329,7 @@ bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
          !(calm && std::abs(innovation.value) > kRodMoves);
 }
 
-/// (5) Whether a step of the reading would differ from the crank's own and from what a rod that rings moves.
+/// (5) Returns true if a slip can be distinguished from the crank's motion and from the vibration of a rod.
 bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
@@ -339,7 +339,7 @@ bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& 
 
 /// (5) Subtracts a detected slip from the reading.
 EncoderSlip::Step CrankFilter::followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept {
-  // From the largest one way to the largest the other way: half its change times the square of the time.
+  // The torque may reverse from one extreme to the other: half its change times the square of the time.
   const double by_torque = square(dt) * settings_.initial_torque_std / now_.state.drive_inertia;
   const double speed = now_.encoderSpeed(), usual = usual_step_.mean();
   const EncoderSlip::Step step = slip_.follow(innovation.value, growth() * innovation.total, by_torque, speed * usual,

@@ -54,7 +54,7 @@ double CrankSensor::reading(double angle) const noexcept {
   return place_.zero + seen / gain_;
 }
 
-/// Newton for the angle within the turn, kept in a bracket: the reading grows with the angle everywhere.
+/// Newton's method within the revolution, kept in a bracket, since the reading grows with the angle everywhere.
 double CrankSensor::angle(double reading) const noexcept {
   if (identity_) return reading;
   const double seen = (reading - place_.zero) * gain_;

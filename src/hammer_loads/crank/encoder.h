@@ -14,24 +14,24 @@
 
 namespace hammer_loads {
 
-/// Keys `crank_*` of the same names with the unit appended.
+/// Mounting of the sensor; the keys `crank_*` have the same names with the unit appended.
 struct CrankSensorPlace {
   double zero{};                   ///< reading at the blow [rad]
-  int direction{1};                ///< 1, or -1 for an encoder that counts against the crank's turn
-  double ratio{1.0};               ///< encoder turns per crank turn [-], > 0
-  double eccentricity[2]{};        ///< once and twice a turn [rad], >= 0
+  int direction{1};                ///< 1, or -1 for an encoder that counts against the crank's rotation
+  double ratio{1.0};               ///< encoder revolutions per crank revolution [-], > 0
+  double eccentricity[2]{};        ///< once and twice a revolution [rad], >= 0
   double eccentricity_phase[2]{};  ///< [rad]
 };
 
-/// reading = zero + direction ratio (angle + sum a_n [sin(n angle + phase_n) - sin(phase_n)]), n = 1, 2: an encoder
-/// that sits off its centre by a part a_1 of its radius, or on an oval one. Its terms vanish at the blow, so that the
-/// zero alone shows where that is. A measured speed is the reading's derivative.
+/// reading = zero + direction ratio (angle + sum a_n [sin(n angle + phase_n) - sin(phase_n)]), n = 1, 2. The encoder is
+/// off centre by a part a_1 of its radius, or oval. The terms vanish at the blow, so that the zero alone shows its
+/// place. A measured speed is the derivative of the reading.
 ///
-/// An encoder that is geared to the crank must count its turns on (readings not wrapped), unless its turn is a whole
-/// number of the crank's.
+/// An encoder that is geared to the crank must not wrap its readings, unless its revolution is a whole number of the
+/// crank's.
 class CrankSensor {
  public:
-  /// The reading is the angle, to the last bit.
+  /// Creates a sensor whose reading is the angle, to the last bit.
   CrankSensor() = default;
   /// Refuses a direction other than 1 and -1, a ratio of 0, eccentricity with a ratio other than 1, and eccentricity by
   /// which the reading might turn back: a_1 + 2 a_2 >= 1.
@@ -41,7 +41,7 @@ class CrankSensor {
   double angle(double reading) const noexcept;
   /// Crank speed [rad/s] from a measured one at a crank angle [rad].
   double speed(double angle, double measured) const noexcept;
-  /// Crank angle per reading, its mean over the turn [-].
+  /// Crank angle per reading, its mean over the revolution [-].
   double gain() const noexcept { return gain_; }
   const CrankSensorPlace& place() const noexcept { return place_; }
   bool isIdentity() const noexcept { return identity_; }
@@ -64,20 +64,20 @@ class CrankSensor {
   bool centred_{true};
 };
 
-/// Readings finer than this are those of a sensor without counts [rad].
+/// Smallest count; a sensor with finer readings is one without counts [rad].
 constexpr double kFinestCount = kTwoPi / 65536.0;
 /// Tolerance of a multiple, as part of a count: sensors in single precision round by 4e-4 of 2 pi/4096.
 constexpr double kCountTolerance = 1e-3;
 // Numerical: kCountTolerance
 // Limit: kFinestCount
 
-/// An encoder counts down to the last whole count, so a reading means the middle of its count. The count is read off
-/// the readings: the largest whole part of a turn of which all their differences are multiples. Until there are enough
-/// readings, the count is the given one or 2 pi/4096. Readings finer than 2 pi/65536 are those of a sensor without
-/// counts: they are used directly, with the variance of the count assumed before, as their noise is not stated.
+/// An encoder counts down to the last whole count, so a reading means the middle of its count. The count is identified
+/// from the readings: the largest whole part of a revolution of which all their differences are multiples. Until there
+/// are enough readings, the count is the given one or 2 pi/4096. Readings finer than 2 pi/65536 are those of a sensor
+/// without counts: used directly, with the variance of the count assumed before, as their noise is not stated.
 class Encoder {
  public:
-  /// given: count [rad]; 0: to be read off.
+  /// given: count [rad]; 0: to be identified.
   explicit Encoder(double given, const CrankSensor& place = {}) noexcept
       : place_(place), given_(given > 0.0), assumed_(given > 0.0 ? given : kUsual) {}
 
@@ -90,7 +90,7 @@ class Encoder {
   double speed(double angle, double measured) const noexcept { return place_.speed(angle, measured); }
   /// Follows a slip on the shaft: readings are larger by this angle of the crank [rad] from now on.
   void slip(double angle) noexcept { place_.slip(angle); }
-  /// Crank angles between which a reading lies; the lower one within half a turn of the blow [rad].
+  /// Crank angles between which a reading lies; the lower one within half a revolution of the blow [rad].
   struct Edges {
     double low, high;
   };
@@ -108,7 +108,7 @@ class Encoder {
     const double count = place_.gain() * resolution();
     return count * count / 12.0;
   }
-  /// Count in force [rad of the encoder]; with a finer sensor the one assumed.
+  /// Count in use [rad of the encoder]; for a finer sensor the assumed one.
   double resolution() const noexcept { return isKnown() && !isFiner() ? count_ : assumed_; }
   bool isFiner() const noexcept { return finer_readings_ >= kEnough; }
   /// Returns true after enough readings to know the count.
@@ -123,7 +123,7 @@ class Encoder {
   static constexpr int kEnough = 2;
   static constexpr double kSame = kCountTolerance * kFinestCount;
   static constexpr int kEnoughStrays = 4;
-  static constexpr int kEnoughToKnow = 24;  // differences: all even or all multiples of three by chance: 1e-7
+  static constexpr int kEnoughToKnow = 24;  // differences; all even or multiples of three by chance: 1e-7
 
   static bool isMultiple(double difference, double count) noexcept {
     const double counts = difference / count, whole = std::nearbyint(counts);
@@ -142,7 +142,7 @@ class Encoder {
     strays_ = 0;
     if (fits) {
       if (agreeing_ < kEnoughToKnow) ++agreeing_;
-      if (isKnown()) finer_readings_ = 0;  // a damaged one made it seem so
+      if (isKnown()) finer_readings_ = 0;  // a damaged reading had suggested it
     } else {
       agreeing_ = 0;
       if (!isFiner() && !reduceTo(difference)) ++finer_readings_;
@@ -164,7 +164,7 @@ class Encoder {
     return ++strays_ < kEnoughStrays;
   }
 
-  /// The largest whole part of a turn that divides both the count so far and the difference (Euclid). False: none.
+  /// Reduces the count to the largest part of a revolution that also divides the difference (Euclid). False: none.
   bool reduceTo(double difference) noexcept {
     double large = count_, small = difference;
     for (int i = 0; i < 64 && small > 0.5 * kFinestCount; ++i) {
@@ -184,28 +184,28 @@ class Encoder {
   double count_{kTwoPi};  ///< largest that all differences so far allow [rad]
   std::optional<double> last_;
   double stray_{};  ///< the last reading that did not fit
-  int strays_{};    ///< such readings, one after the other
+  int strays_{};    ///< number of such readings in succession
   int agreeing_{};  ///< differences in a row that fit the count
   int finer_readings_{};
 };
 
-/// Detection of a slip. The crank's inertia limits its change between two readings to some milliradians, which
-/// continues. If a reading is suddenly further off and the next one by the same amount, the sensor has moved; the step
-/// states by how much, to the count. The stamps must not jitter by as much (a clock that was set has the same effect,
-/// but changes the length of its step), and the blow must not be near. Large innovations in every turn have another
-/// cause; some turns without one are required before.
+/// Detection of a slip. The crank's inertia limits unpredicted changes between two readings to some milliradians, and
+/// they continue. If a reading is suddenly further off and the next one by the same amount, the sensor has moved by it,
+/// to the count. The stamps must not jitter as much, and the blow must not be near. A clock that was set has the same
+/// effect, but changes the length of the step. Large innovations in every revolution have another cause; some
+/// revolutions without one are required before.
 class EncoderSlip {
  public:
   enum class Step { kNone, kPerhaps, kSlipped };
 
-  /// [rad]: an innovation that no working machine makes between two samples; the sensor is another one, and the
+  /// Largest innovation of a working machine between two samples [rad]. Beyond it the sensor is another one, and the
   /// estimate restarts.
   static constexpr double kMost = 0.5;
   // Limit: kMost
 
-  /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
-  /// in a step of usual length; longer: in what this one lasts beyond that [rad]. possible: place and samples before
-  /// allow it. kPerhaps: the sample must not be used; the next one decides, and its step begins at the same sample.
+  /// Tests the innovation of an angle with its variance. by_torque: effect of the largest torque within the step; way:
+  /// rotation in a step of usual length; longer: rotation in the excess of this step [rad]. possible: place and earlier
+  /// samples allow it. kPerhaps: the sample must not be used; the next decides, with a step from the same sample.
   Step follow(double innovation, double total, double by_torque, double way, double longer, bool possible) noexcept {
     const double seen = std::exchange(seen_, 0.0), before = std::exchange(before_, innovation);
     if (seen != 0.0) {
@@ -233,33 +233,33 @@ class EncoderSlip {
   double deviation() const noexcept { return deviation_; }  ///< standard deviation of last() [rad]
 
  private:
-  /// Returns true if the last slip is at most some turns old, so that a step back belongs to it.
+  /// Returns true if the last slip is at most some revolutions old, so that a step back belongs to it.
   bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < look_back::kTurnsToKnow; }
 
   static constexpr double kSame = 0.4;  // relative; a crank that was pushed is off by twice as much in the next sample
-  static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
+  static constexpr double kOfClock = 0.5;  // part of the innovation: a set clock changes the step as much
   double before_{};                        ///< innovation of the sample before [rad]
   double seen_{};                          ///< innovation that may be a slip [rad]; else 0
   double last_{}, deviation_{};
   int count_{}, quiet_turns_{}, turns_since_{};
 };
 
-/// A low-pass of first order, lag y' = angle - y: by the exact answer to an even acceleration within a step, angle - y
-/// is lag (w - lag w') and what is left of the step's start. A reading that is late by as much looks alike but for
-/// lag^2 w'/2. Measured speeds show it (SpeedTrust): they cannot be ahead of their crank.
+/// First-order low-pass of the angle, lag y' = angle - y. For a constant acceleration within a step, angle - y is
+/// exactly lag (w - lag w') plus the decaying initial value. A pure delay differs from it by lag^2 w'/2 alone. Measured
+/// speeds reveal the lag (SpeedTrust), since they cannot be ahead of their crank.
 class AngleLag {
  public:
   bool isThere() const noexcept { return lag_ > 0.0; }
-  double lag() const noexcept { return lag_; }              ///< taken off the readings [s]
+  double lag() const noexcept { return lag_; }              ///< lag subtracted from the readings [s]
   double deviation() const noexcept { return deviation_; }  ///< standard deviation of lag() [s]
-  /// more: seen in readings from which lag() has been taken off [s]; deviation: of it.
+  /// Adds a remaining lag, found in readings from which lag() is subtracted [s]; deviation: standard deviation [s].
   void correct(double more, double deviation) noexcept {
     lag_ = std::max(0.0, lag_ + more);
     deviation_ = deviation;
   }
-  /// Restarts the readings at an even speed [rad/s].
+  /// Restarts the readings at a constant speed [rad/s].
   void begin(double speed) noexcept { behind_ = lag_ * speed; }
-  /// After a step of dt [s] > 0 from one speed to another [rad/s], how far the reading is behind [rad].
+  /// Returns how far the reading is behind [rad] after a step of dt [s] > 0 from one speed to another [rad/s].
   double behind(double from, double to, double dt) const noexcept {
     if (!isThere()) return 0.0;
     const double bent = lag_ * (to - from) / dt;

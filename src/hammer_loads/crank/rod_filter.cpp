@@ -13,18 +13,18 @@ namespace {
 constexpr double kFirstRestitution = 0.16, kRestitutionDeviation = 0.1;
 constexpr double kPlaceDeviation = 5e-3;  // [rad]: a millimetre
 // Prior: kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
-constexpr double kOtherPlace = 2e-2;  // [rad] after a blow that this one does not explain: a retainer is 5 mm away
+constexpr double kOtherPlace = 2e-2;  // [rad] after an unexplained blow: a retainer is 5 mm away
 // Prior: kOtherPlace
-constexpr double kWalks[] = {0.005, 0.01, 5e-6, 5e-5, 0.02, 4e-3};  // of the learned rows from blow to blow
+constexpr double kWalks[] = {0.005, 0.01, 5e-6, 5e-5, 0.02, 4e-3};  // identified rows, from blow to blow
 // Prior: kWalks
 constexpr double kLeastStiffness = 5e7, kMostStiffness = 1e11;  // [N/m]
 constexpr double kLeastDamping = 0.02, kMostDamping = 20.0;
 // Prior: kLeastStiffness, kMostStiffness, kLeastDamping, kMostDamping
-constexpr double kLongest = 5e-4, kLongestLater = 1e-3;  // [s] of a part: near the blow the lever changes fast
+constexpr double kLongest = 5e-4, kLongestLater = 1e-3;  // [s]: longest part; near the blow the lever changes fast
 // Numerical: kLongest, kLongestLater
 constexpr double kNear = 0.25;  // [rad]
 // Numerical: kNear
-constexpr double kAngleDoubt = 1e-4, kSpeedDoubt = 0.02, kInertiaDoubt = 0.01;  // of a rigid rod's filter
+constexpr double kAngleDoubt = 1e-4, kSpeedDoubt = 0.02, kInertiaDoubt = 0.01;  // added to a rigid rod's estimate
 // Prior: kAngleDoubt, kSpeedDoubt, kInertiaDoubt
 constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;  // [rad], [rad/s]
 // Prior: kSettledX, kSettledSpeed
@@ -36,7 +36,7 @@ constexpr double kHeld = 0.02;         // T [s]
 // Prior: kNotCoulomb, kUnidentified, kHeld
 constexpr int kEnough = 8;
 
-/// Sets the rows of an error that a step or a bound changes; of: the displaced motion.
+/// Sets the rows of an error that a step or a bound changes. of: displaced motion; from: undisplaced motion.
 void follow(const RodMotion& of, const RodMotion& from, Eigen::Ref<RodFilter::Belief::Vector> error) noexcept {
   error[RodFilter::kAngle] = of.state.angle.offset - from.state.angle.offset;
   error[RodFilter::kSpeed] = of.state.speed - from.state.speed;
@@ -116,7 +116,7 @@ RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
   return m;
 }
 
-/// first: links of the step's first part, which machines at the same angle share.
+/// Advances a motion and returns its blow. first: links of the step's first part, shared by machines at the same angle.
 std::optional<TwoBodies::Blow> RodFilter::advance(double dt, bool strikes, RodMotion& m,
                                                   TwoBodies::LinksMemo& first) const noexcept {
   const TwoBodyDrive by = drive(m);
@@ -153,7 +153,7 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   TwoBodies::LinksMemo memo;
   blow_ = advance(dt, true, there, memo);
   const bool struck = there.state.angle.side == Side::kAfterBlow;
-  const Eigen::Index count = struck && !hasStruck() ? kSize : kRestitution;  // of the columns that a step moves
+  const Eigen::Index count = struck && !hasStruck() ? kSize : kRestitution;  // number of columns that a step moves
   const TwoBodyState& last = blow_ ? blow_->before : motion_.state;
   if (!hasStruck()) rocker_before_ = bodies_.links(last.angle).rocker.u * last.speed + last.beside_speed;
   Belief::Matrix moved = root_;
@@ -176,7 +176,7 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   if (hasStruck()) addFriction(dt);
 }
 
-/// At the end of a step of dt [s].
+/// Adds the noise of friction at the end of a step of dt [s].
 void RodFilter::addFriction(double dt) noexcept {
   const double inertia = bodies_.mechanism().parameters().rocker_inertia_about_pivot;
   const LinkMotion links = bodies_.links(motion_.state.angle);

@@ -8,18 +8,18 @@
 
 namespace hammer_loads {
 
-/// Everything that decides the motion around a blow.
+/// State and parameters that determine the motion around a blow.
 struct RodMotion {
   TwoBodyState state;
-  double torque{};       ///< net, on the crank [N m]
+  double torque{};       ///< net torque on the crank [N m]
   double inertia{};      ///< Jc [kg m2]
   double restitution{};  ///< restitution of the rocker on the tool [-]
   RodSpring rod;
-  double place{};  ///< psi at which the tool is met [rad]: its contact's depth is part of it
+  double place{};  ///< psi at contact with the tool, including the depth of the contact [rad]
 };
 
 /// The crank before the blow is estimated with a rigid mechanism; the rod's spring matters from some 15 ms before it
-/// until half a turn later. The filter begins there with the belief of the crank's filter. Stiffness, damping and
+/// until half a revolution later. The filter begins there with the belief of the crank's filter. Stiffness, damping and
 /// restitution are identified from blow to blow: the readings contain little information on the vibration of one blow,
 /// but enough on that of ten.
 ///
@@ -31,7 +31,7 @@ struct RodMotion {
 /// the friction radius and of its standard deviation; N is the rod's greatest force of the last T.
 class RodFilter {
  public:
-  /// Inertia, stiffness and damping ratio by their logarithms.
+  /// Rows of the state; inertia, stiffness and damping ratio as logarithms.
   enum Row : Eigen::Index {
     kAngle,
     kSpeed,
@@ -43,15 +43,15 @@ class RodFilter {
     kDamping,
     kPlay,
     kFriction,
-    kRestitution,  ///< from here on: what counts at the tool alone
+    kRestitution,  ///< from here on: rows that matter at the tool alone
     kPlace,
     kSize
   };
   using Belief = GaussianBelief<kSize, 0>;
 
-  /// Pins hold both ways at once, or have joint clearance and can only push.
+  /// Tight pins transmit tension and compression; pins with joint clearance can only push.
   enum class Pins { kTight, kPlay };
-  /// Refers to the mechanism, which must outlive it. A value that its RodSpring leaves at 0 begins at a first guess.
+  /// Refers to the mechanism, which must outlive it. A value of 0 in its RodSpring is replaced by a first guess.
   RodFilter(const Mechanism& mechanism, Pins pins) noexcept;
 
   /// Begins with the belief of the crank's filter before a blow.
@@ -61,11 +61,11 @@ class RodFilter {
   /// Updates by a sample of the crank. Returns false if it contradicts the model.
   bool update(const WeighedSample& sample) noexcept;
   bool isRunning() const noexcept { return running_; }
-  /// Nothing is learned.
+  /// Ends without learning.
   void abandon() noexcept { running_ = false; }
-  /// Keeps the identified values of rod and tool for the coming blows, if the readings agreed; else resets them.
+  /// Keeps the identified values of rod and tool for the coming blows if the readings agreed; else resets them.
   void learn() noexcept;
-  /// Logarithm of the likelihood of the samples since the beginning, but for a constant.
+  /// Logarithm of the likelihood of the samples since the beginning, without a constant.
   double fit() const noexcept { return fit_; }
   /// Returns true if the readings of the last blow agreed, so that the rod's estimate may be published.
   bool isProven() const noexcept { return proven_; }
@@ -73,18 +73,18 @@ class RodFilter {
   const RodMotion& motion() const noexcept { return motion_; }
   /// Returns true if it has moved since it began, so that there is a last step.
   bool hasMoved() const noexcept { return running_ && samples_ > 0; }
-  /// Within that, by the way forward from the sample before; time after it [s].
+  /// Motion within the last step, predicted from the sample before; time: after that sample [s].
   RodMotion between(double time) const noexcept;
   /// Blow within that step, its time from the start of the step [s].
   const std::optional<TwoBodies::Blow>& blowOfStep() const noexcept { return blow_; }
   bool hasStruck() const noexcept { return motion_.state.angle.side == Side::kAfterBlow; }
   double sinceBlow() const noexcept { return since_blow_; }        ///< [s]
   double rockerBefore() const noexcept { return rocker_before_; }  ///< psi' at the tool [rad/s]
-  /// Independent errors of one standard deviation each, columns; innovations larger than expected are in it.
+  /// Independent errors of one standard deviation each, as columns, increased where innovations exceed expectation.
   Belief::Matrix errors() const noexcept;
   /// Motion displaced by an error.
   RodMotion displaced(const Belief::Vector& by) const noexcept;
-  /// Standard deviation of the friction radius [m]; the part that does not follow Coulomb's law is in it.
+  /// Standard deviation of the friction radius [m], including the part that does not follow Coulomb's law.
   double frictionDeviation() const noexcept;
   double deviation(Row row) const noexcept { return std::sqrt(growth() * belief_.covariance(row, row)); }
 
@@ -108,7 +108,7 @@ class RodFilter {
   Belief::Matrix root_{Belief::Matrix::Zero()};                 ///< root of its covariance
   static constexpr Eigen::Index kLearned = kSize - kStiffness;  ///< the last rows
   using Learned = Eigen::Matrix<double, kLearned, kLearned>;
-  RodMotion first_, learned_;  ///< rod, restitution, rod and place alone
+  RodMotion first_, learned_;  ///< rod, restitution and place alone
   Learned first_covariance_;
   Learned learned_covariance_;
   double fit_{};

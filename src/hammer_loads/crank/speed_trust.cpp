@@ -10,16 +10,16 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSpeedTurns = 30.0;  // of lag and scale: some 6 s at work
+constexpr double kSpeedTurns = 30.0;  // memory for lag and scale: some 6 s at work
 constexpr double kMostScale = 0.5;
 constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
-constexpr double kNotableScale = 0.01;  // likewise
-constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
-constexpr double kMostOfOne = 0.999;    // of a correlation
+constexpr double kNotableScale = 0.01;  // less also remains within the noise
+constexpr double kLeastTurns = 1.5;     // more than one, to know their scatter
+constexpr double kMostOfOne = 0.999;    // largest correlation
 // Prior: kMostScale
 // Numerical: kMostOfOne
 
-/// Over what is seen.
+/// Returns the ratio of an amount to the smallest significant one.
 double shown(double amount, double notable, double deviation) noexcept {
   return std::abs(amount) / std::max(notable, gate::kVeryRare * deviation);
 }
@@ -32,7 +32,7 @@ double SpeedTrust::lateBy(double dt, double acceleration, double jump) const noe
   return settled + std::exp(-dt / kLag) * (late_ + jump / kLag - settled);
 }
 
-/// b = speed - y by the exact answer to an even acceleration: b' = acceleration - b/lag.
+/// Exact solution for b = speed - y with a constant acceleration: b' = acceleration - b/lag.
 void SpeedTrust::follow(double dt, const Witness& now) noexcept {
   late_ = lateBy(dt, now.acceleration, now.jump);
   const bool continues = std::exchange(begun_, true);
@@ -59,7 +59,7 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
   last_ = row;
 }
 
-/// The turn counts by what its own best fit leaves, so that one in which the estimate was lost counts little.
+/// Weights the revolution by the residuals of its own best fit, so that one with a lost estimate counts little.
 void SpeedTrust::endTurn() noexcept {
   constexpr int kFitted = decltype(deviation_)::RowsAtCompileTime;  // lag and scale
   if (count_ <= 2 * kFitted) return;
@@ -71,7 +71,7 @@ void SpeedTrust::endTurn() noexcept {
   const Row best(1.0, -fit[0], -fit[1]);
   const double sum = best.dot(same_ * best);
   const double rho = std::clamp(best.dot(next_ * best) / sum, 0.0, kMostOfOne);
-  const double counts = (1.0 - rho) / (1.0 + rho) * (count_ - kFitted) / sum;  // of a row, over one of unit variance
+  const double counts = (1.0 - rho) / (1.0 + rho) * (count_ - kFitted) / sum;  // weight of a row
   square_ = same_(0, 0) / count_;
   constexpr double kKept = 1.0 - 1.0 / kSpeedTurns;
   information_ = kKept * information_ + counts * of_turn;
@@ -90,7 +90,7 @@ void SpeedTrust::endTurn() noexcept {
   scatter_ -= change.dot(2.0 * score_ - information_ * change);
   score_ -= information_ * change;
   deviation_ = covariance.diagonal().cwiseSqrt();
-  // Rows are linear about what lag and scale were then.
+  // Rows are linearised about the lag and scale of their time, so that a large change discards them.
   if (std::abs(change[0]) > gate::kRare * deviation_[0] || std::abs(change[1]) > gate::kRare * deviation_[1])
     information_.setZero(), score_.setZero(), scatter_ = seen_turns_ = 0.0;
   lags_.follow(shown(lag_, kNotableLag, deviation_[0]));

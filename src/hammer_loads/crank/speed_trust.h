@@ -31,7 +31,7 @@ class SpeedTrust {
   struct Witness {
     double measured{};      ///< [rad/s]
     double speed{};         ///< [rad/s]
-    double acceleration{};  ///< there [rad/s2]
+    double acceleration{};  ///< acceleration at that instant [rad/s2]
     double by_lag{};        ///< change of `speed` by a lag of the speeds used so far [rad/s2]
     double by_scale{};      ///< change of `speed` by their scale [rad/s]
     double jump{};          ///< jump of the speed by a blow since the sample before [rad/s]
@@ -39,14 +39,14 @@ class SpeedTrust {
   };
   /// Reduction of the present speed by a lag of kLag, over kLag [rad/s2]; dt, acceleration, jump: as below.
   double lateBy(double dt, double acceleration, double jump) const noexcept;
-  /// dt [s], > 0, after the sample before.
+  /// Adds a speed and the estimate without it, dt [s] > 0 after the sample before.
   void follow(double dt, const Witness& now) noexcept;
-  /// Once a turn.
+  /// Updates lag and scale once a revolution.
   void endTurn() noexcept;
 
   /// Returns true if speeds may be used.
   bool isTrusted() const noexcept { return !lags() && !isOutOfScale(); }
-  bool isKnown() const noexcept { return turns_ >= look_back::kTurnsToKnow; }  ///< lag and scale
+  bool isKnown() const noexcept { return turns_ >= look_back::kTurnsToKnow; }  ///< lag and scale are known
   /// Returns true if both are known to be negligible.
   bool areGood() const noexcept { return isKnown() && are_good_; }
   bool lags() const noexcept { return isKnown() && lags_.isEngaged(); }
@@ -60,16 +60,15 @@ class SpeedTrust {
   static constexpr double kLag = kUnknowns[indexOfUnknown("speed lag")].prior;  ///< [s]
   static constexpr double kScale = kUnknowns[indexOfUnknown("speed scale")].prior;
 
-  /// Residual of a speed over its expected deviation, and its derivatives by lag and scale.
+  /// Residual of a speed over its expected standard deviation, and its derivatives by lag and scale.
   using Row = Eigen::Vector3d;
   Row last_{Row::Zero()};
   Eigen::Matrix3d same_{Eigen::Matrix3d::Zero()}, next_{same_};  ///< sums of products of rows; of neighbouring rows
-  int count_{};                                                  ///< rows in them
-  double square_{};                                              ///< mean, of the residuals of the turn before
+  int count_{};                                                  ///< number of rows in these sums
+  double square_{};                                              ///< mean square of the residuals, last revolution
   Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};         ///< information on lag and scale, by revolutions
   Eigen::Vector2d score_{Eigen::Vector2d::Zero()};
-  double scatter_{},
-      seen_turns_{};  ///< mean squares of the turns' own fits over those expected, summed; number of turns
+  double scatter_{}, seen_turns_{};  ///< squares explained by each revolution's own fit, summed; number of revolutions
   Eigen::Vector2d deviation_{Eigen::Vector2d::Zero()};
   double lag_{}, scale_{};
   Latch lags_{1.0}, out_of_scale_{1.0};

@@ -12,31 +12,31 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMemorySamples = 4096.0;   // samples
-constexpr double kScatterSamples = 300.0;   // over which scatter is learned, but no fewer than kWarm runs
-constexpr int kWarm = 20;                   // runs from which on the line is good enough to judge by
-constexpr int kUnsure = 300;                // stamps that show a miscount before them, however they jitter
-constexpr int kFewest = 3;                  // runs from which on a loss shows
-constexpr int kTries = 4;                   // resets of a line for a loss: jitter looks alike
+constexpr double kScatterSamples = 300.0;   // samples for the identification of scatter, but at least kWarm runs
+constexpr int kWarm = 20;                   // runs after which the line can judge stamps
+constexpr int kUnsure = 300;                // stamps that may show a miscount before them, despite jitter
+constexpr int kFewest = 3;                  // runs after which a loss is visible
+constexpr int kTries = 4;                   // resets of a line for a loss, as jitter looks alike
 constexpr int kFirst = 4;                   // runs until there is a line
-constexpr int kKnown = 6;                   // runs until regular bursts show themselves
-constexpr double kAlone = 1.02;             // samples in the mean: stamps do not repeat
-constexpr double kBurst = 2.0;              // samples in the mean
+constexpr int kKnown = 6;                   // runs until regular bursts are recognised
+constexpr double kAlone = 1.02;             // mean samples per stamp: stamps do not repeat
+constexpr double kBurst = 2.0;              // mean samples per stamp: stamps come in bursts
 constexpr double kRegular = 0.1;            // scatter of bursts over the time between them
-constexpr double kClip = gate::kVeryRare;   // root mean squares: a stamp further off counts as that far off
-constexpr double kExact = 0.01;             // of the interval: stamps without scatter have this much
-constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for certain
-constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
-constexpr double kOneStamp = 0.3;           // of it that a single stamp contributes: drivers are late now and then
+constexpr double kClip = gate::kVeryRare;   // root mean squares at which a residual is clipped
+constexpr double kExact = 0.01;             // part of the interval: scatter assumed for exact stamps
+constexpr double kGap = gate::kImpossible;  // root mean squares: a later stamp is not scatter
+constexpr double kEvidence = 16.0;          // logarithm of the likelihood ratio of a loss: by chance in 14 h at 1 kHz
+constexpr double kOneStamp = 0.3;           // part of it that a single stamp contributes: drivers are late occasionally
 constexpr double kLeastIndependence = 0.2;
 constexpr double kNoLoss = 3.0;         // logarithm of the odds that none was lost: 20 to 1
-constexpr double kLeastScatter = 0.15;  // of the interval: a run's beginning is not known better
-constexpr double kBent = 0.2;           // of the line's memory, for which the correction is linear
-constexpr double kGrown = 2.0;          // scatter about the line over that of white jitter with such steps
+constexpr double kLeastScatter = 0.15;  // part of the interval: a run's beginning is not known better
+constexpr double kBent = 0.2;           // part of the line's memory: range of the linear correction
+constexpr double kGrown = 2.0;          // scatter about the line relative to white jitter with such steps
 
 // Limits of the sequence.
-constexpr double kMany = 5.0;              // irregular stamps of a thousand: not a single late message
-constexpr double kHeldUp = 0.1;            // of the interval: a message that waited behind a late one
-constexpr double kSingle = 1.5;            // likewise
+constexpr double kMany = 5.0;              // irregular stamps in a thousand: more than a single late message
+constexpr double kHeldUp = 0.1;            // part of the interval: a message that waited behind a late one
+constexpr double kSingle = 1.5;            // irregular stamps in a thousand: a single one
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
 // Numerical: kExact, kLeastStep
 
@@ -91,7 +91,7 @@ void SteadyClockFit::endRun() noexcept {
   step_square_ += gain * (square(step) - step_square_);
   end_mean_ += gain * (used - end_mean_);
   if (mean_length_ < kAlone && exceeds(end_mean_, end_square_ / (kScatterSamples * independence()), gate::kImpossible))
-    remembered_ = std::min(remembered_, kScatterSamples);  // samples that were lost unseen have bent the line
+    remembered_ = std::min(remembered_, kScatterSamples);  // undetected losses have bent the line
 }
 
 /// Bound to which residuals are clipped [ns].
@@ -115,17 +115,17 @@ void SteadyClockFit::skip(double intervals) noexcept {
 /// Weight of a stamp: correlated lateness of successive stamps is less information than independent lateness.
 double SteadyClockFit::independence() const noexcept {
   const double alike = end_square_ > 0.0 ? std::clamp(1.0 - 0.5 * step_square_ / end_square_, 0.0, 1.0) : 0.0;
-  return std::max(kLeastIndependence, (1.0 - alike) / (1.0 + alike));  // a loss makes them alike as well
+  return std::max(kLeastIndependence, (1.0 - alike) / (1.0 + alike));  // a loss correlates them as well
 }
 
-/// off: lateness of a stamp; step: from the previous one. A stamp that follows a late one at once was delayed by it and
-/// gives no information on lost samples. A single stamp suffices if stamps repeat, as the last sample of each waited
-/// least.
+/// Adds the evidence of a stamp. off: its lateness; step: from the previous one. A stamp that follows a late one at
+/// once was delayed by it and gives no information on lost samples. A single stamp suffices if stamps repeat, as the
+/// last sample of each waited least.
 void SteadyClockFit::gatherEvidence(double off, double scatter, double step) noexcept {
   const bool repeats = mean_length_ >= kAlone;
   const bool held_up = is_late_ && step < 0.5 * interval_ && !repeats;
   is_late_ = off > kGap * scatter || (held_up && off > 0.5 * interval_);
-  const bool is_fine = runs_ > square(2.0 * scatter / (kLeastScatter * interval_));  // the line at its end
+  const bool is_fine = runs_ > square(2.0 * scatter / (kLeastScatter * interval_));  // the line is accurate at its end
   if (!repeats && (unsure_stamps_ == 0 || !is_fine)) return;
   const double per_interval = (repeats ? 1.0 : independence()) * interval_ / square(scatter);
   const double most = repeats ? kEvidence + 1.0 : kOneStamp * kEvidence;
@@ -151,13 +151,13 @@ double SteadyClockFit::correctCount() noexcept {
 }
 
 /// Returns true if a sample was lost within the bursts that the line begins with, which cannot count it yet. Jitter
-/// looks alike. After a shorter burst the readings of a slow crank have passed for duplicates.
+/// looks alike. After a shorter burst the readings of a slow crank were taken for duplicates.
 bool SteadyClockFit::lostWhileUnknown(double residual) const noexcept {
   if (begun_ == kTries || runs_ < kFewest || runs_ >= kKnown || !inBursts()) return false;
   return run_length_ == longest_ && std::abs(residual - start_mean_) > 0.5 * interval_;
 }
 
-/// residual: of a run's first sample; step: of its stamp from the one before. Corrects the count of samples.
+/// Corrects the count of samples. residual: that of a run's first sample; step: from the previous stamp to its own.
 void SteadyClockFit::watchLost(double residual, double step) noexcept {
   if (lostWhileUnknown(residual)) {
     const int begun = begun_ + 1;
@@ -221,7 +221,7 @@ StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) 
   const bool may_be_burst = repeats == Repeats::kWithinCount || (repeats == Repeats::kAtRest && !doubled_);
   if (header == *header_ && repeats != Repeats::kNo && !(may_be_burst && irregularity_ > kMany)) {
     uncounted_ = uncounted_ || repeats != Repeats::kAtWork;
-    if (repeats == Repeats::kAtWork && !std::exchange(doubled_, true)) fit_.begin(header);  // it may have counted some
+    if (repeats == Repeats::kAtWork && !std::exchange(doubled_, true)) fit_.begin(header);  // the fit may contain some
     return {Kind::kDuplicate, header};
   }
   const std::int64_t back = newest_ - header;
@@ -245,7 +245,7 @@ std::int64_t StampSequence::skip(double time) noexcept {
 StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   rounding_.add(header - *header_);
   const bool repeats = header == *header_;
-  if (uncounted_ && repeats) {  // they were not: stamps come in bursts
+  if (uncounted_ && repeats) {  // no duplicates: stamps come in bursts
     fit_.begin(header);
     uncounted_ = false;
   }
@@ -259,7 +259,7 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;
   const bool knows = fit_.isKnown() && (steady_ || !fit_.inBursts());
   awaits_line_ = awaits_line_ && !(knows && fit_.explains()) && fit_.runs() < kWarm;
-  const bool single = irregularity_ < kSingle && fit_.runs() > 0;  // one alone is no burst
+  const bool single = irregularity_ < kSingle && fit_.runs() > 0;  // a single repetition is no burst
   if (awaits_line_ || (repeats && !knows && !single)) return {Kind::kDuplicate, header};
   std::int64_t instant = header;
   if (steady_) {

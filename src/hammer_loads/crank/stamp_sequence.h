@@ -1,4 +1,4 @@
-/// Instants of crank samples whose stamps are rounded, repeat, come in bursts or change places, and recognition of a
+/// Instants of crank samples whose stamps are rounded, repeat, come in bursts or out of order. Recognition of a
 /// controller that reads the encoder in a task of its own and sends the reading later.
 #pragma once
 
@@ -74,62 +74,62 @@ class ControllerTask {
 
   // Numerical: kCommon, kTolerance
   static constexpr std::array<int, 11> kPeriods{2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20};  ///< [ms]
-  static constexpr std::int64_t kCommon = 240000000;  ///< multiple of all periods [ns]: its turns' powers are theirs
+  static constexpr std::int64_t kCommon = 240000000;                ///< common multiple of all periods [ns]
   using Turns = std::array<std::complex<double>, kPeriods.size()>;  ///< exp(2 pi i instant/period) of each
   static constexpr double kRecognised = 0.5;                        ///< by chance once in exp(100)
   static constexpr double kDivides = 0.1;  ///< share of a period up to which an interval counts as whole periods
-  static constexpr double kMost = 0.5;     ///< share of the mean interval by which one may differ from it
+  static constexpr double kMost = 0.5;     ///< share of the mean interval by which one may differ
   static constexpr double kLongest = 0.1;  ///< [s]
   static constexpr double kOften = 0.2, kStuck = 0.98;
 
   RunningMean<> step_{look_back::kReadings}, repeats_{look_back::kReadings};
   Turns taken_{};        ///< means of exp(2 pi i instant/period)
-  double readings_{};    ///< in it
+  double readings_{};    ///< number of readings in the means
   double grid_{};        ///< period of the grid [s]; 0: none
   std::int64_t last_{};  ///< stamp [ns]
 };
 
-/// Knowledge of the time before a sample that is one of equal intervals.
+/// Sampling of a sensor with equal intervals, as known before a sample.
 struct SampleClock {
   double interval{};        ///< [s]; 0 if not known or not constant
-  double suspected_loss{};  ///< time by which the sample's stamp is late, in whole intervals [s]; it may only be late
+  double suspected_loss{};  ///< lateness of the sample's stamp in whole intervals [s], perhaps without a loss
   bool may_have_lost{};     ///< the stamp allows for lost samples before it
 };
 
-/// Estimate of a sensor's own clock from the stamps of its samples: a line by sequence number, whose offset and
-/// interval are found by least squares over all samples so far, later over the last 4000 (expanding, then fading
-/// memory). Delays that do not depend on the sequence average out; a constant one is not observable. The last of
-/// several samples with one stamp is used, as it waited least. Lost samples are counted by whole intervals: a test of
-/// likelihood between none and one lost, as fast as the stamps' scatter allows.
+/// Estimate of a sensor's own clock from the stamps of its samples: a line by sequence number. Its offset and interval
+/// are found by least squares over all samples so far, later over the last 4000 (expanding, then fading memory). Delays
+/// that do not depend on the sequence average out; a constant one is not observable. Of several samples with one stamp
+/// the last is used, as it waited least. Lost samples are counted by whole intervals: a likelihood test between none
+/// and one lost, as fast as the stamps' scatter allows.
 class SteadyClockFit {
  public:
   void begin(std::int64_t stamp) noexcept;
-  /// Takes the next sample's stamp [ns]; returns its instant on the line so far [ns].
+  /// Adds the next sample's stamp [ns]; returns its instant on the line so far [ns].
   std::int64_t add(std::int64_t stamp) noexcept;
   /// Notes lost samples before the last one: it and the following ones are later by this number of intervals.
   void skip(double intervals) noexcept;
-  /// Returns true if the last stamp agrees with no loss before it and would show a loss.
+  /// Returns true if the last stamp excludes a loss before it.
   bool contradictsLoss() const noexcept;
-  /// Takes whether the readings show that none was lost before the last sample. While they do, stamps that wander by
-  /// whole intervals do not move the line.
+  /// Sets whether the readings exclude a loss before the last sample. While they do, stamps that wander by whole
+  /// intervals do not move the line.
   void confirm(bool counted) noexcept;
   /// Number of lost samples that would explain the lateness of the last stamp; a stamp that is merely late looks alike.
   double suspected() const noexcept { return suspected_; }
-  /// Returns true if the last stamp showed that samples before it were counted too many.
+  /// Returns true if the last stamp showed that too many samples were counted before it.
   bool movedBack() const noexcept { return moved_back_; }
   double interval() const noexcept { return interval_; }  ///< [ns]
-  /// Time by which the last stamp is later than the scatter makes it [ns]; else 0.
+  /// Lateness of the last stamp if it exceeds the scatter [ns]; else 0.
   double lateness() const noexcept;
   /// Root mean square of the stamps about the line [ns].
   double scatter() const noexcept { return std::sqrt(end_square_); }
-  /// Root mean square by which a stamp errs that is taken as it is: the scatter, and where some stamps repeat the wait
-  /// for the last sample [ns].
+  /// Root mean square error of a stamp that is used without refitting: the scatter and, if stamps repeat, the wait for
+  /// the last sample [ns].
   double stampError() const noexcept { return std::hypot(scatter(), (mean_length_ - 1.0) * interval_); }
   int runs() const noexcept { return runs_; }  ///< stamps after the first one
-  bool isKnown() const noexcept;               ///< stamps enough for a line and for how many samples have one stamp
+  bool isKnown() const noexcept;               ///< enough stamps for a line and the samples per stamp
   bool inBursts() const noexcept;              ///< several samples come with each stamp
-  /// Equal intervals explain the stamps: their scatter about the line does not grow beyond that of their steps, or is
-  /// small beside the time from burst to burst.
+  /// Returns true if equal intervals explain the stamps: their scatter about the line does not grow beyond that of
+  /// their steps, or is small beside the time from burst to burst.
   bool explains() const noexcept;
 
  private:
@@ -142,7 +142,7 @@ class SteadyClockFit {
 
   std::int64_t origin_{};  ///< first stamp [ns]; all else relative to it, so that no digits are lost
   std::int64_t stamp_{};   ///< last [ns]
-  double instant_{};       ///< on the line, of the last sample [ns]
+  double instant_{};       ///< instant of the last sample on the line [ns]
   double interval_{};      ///< [ns]
   double residual_{};      ///< stamp less instant, of the last sample [ns]
   double end_residual_{};  ///< residual of the last sample of the run before [ns]
@@ -172,17 +172,17 @@ class SteadyClockFit {
   double remembered_{1.0};  ///< runs in the line's memory
   int unsure_stamps_{};     ///< number of stamps that may still show a miscount which no reading has excluded
   bool moved_back_{};
-  bool is_late_{};  ///< the last stamp is later than scatter makes it
+  bool is_late_{};  ///< the last stamp is later than the scatter explains
   int runs_{};
   int begun_{};  ///< number of resets of the line for a loss
 };
 
-/// A clock that is read in whole steps rounds down, up or to the nearest: the stamps do not say which, and all samples
-/// are off alike by up to half a step from their middle. Stamps at even steps may be exact; those that are rounded are
-/// uneven by whole steps.
+/// Detection of stamps that a clock rounds to whole steps, down, up or to the nearest. All samples then have a common
+/// error of up to half a step, which the stamps do not show. Evenly spaced stamps may be exact; rounded ones are uneven
+/// by whole steps.
 class StampRounding {
  public:
-  /// From one stamp to the next [ns].
+  /// Adds the difference between successive stamps [ns].
   void add(std::int64_t difference) noexcept {
     while (step_ < kSteps.size() && !isWhole(difference, kSteps[step_])) ++step_, stamps_ = uneven_ = 0;
     if (step_ == kSteps.size()) return;
@@ -198,7 +198,7 @@ class StampRounding {
 
  private:
   static constexpr std::array<std::int64_t, 6> kSteps{10000000, 5000000, 2000000, 1000000, 500000, 100000};  ///< [ns]
-  static constexpr std::int64_t kTolerance = 1000;  // [ns]: of stamps that were numbers of seconds on their way
+  static constexpr std::int64_t kTolerance = 1000;  // [ns]: rounding of stamps transmitted in seconds
   static constexpr int kMany = 100;                 // stamps that are judged together
   static constexpr int kUneven = 10;                // of them: some samples are late or lost
 
@@ -216,62 +216,62 @@ class StampRounding {
 /// Instants that the samples get.
 enum class CrankStamps {
   kAuto,    ///< header stamps as they are, unless they repeat or change places
-  kHeader,  ///< header stamps; what does not follow them is refused
+  kHeader,  ///< header stamps; a stamp out of order is refused
   kSteady,  ///< taken at equal intervals: header stamps refitted by the sequence of arrival
 };
 
-/// The sequence of samples is their order of arrival. A sample without irregular ones among the last thousand keeps its
-/// header stamp, bit for bit, however irregular the intervals. Where a few stamps repeat or run back a little, the
-/// sample gets an instant between its neighbours; where many do and the sensor evidently samples at equal intervals,
-/// all get the line through the stamps so far. Only the first sample of each burst counts until the line is known, six
-/// bursts on. A burst at rest without speeds looks like duplicates: the line begins anew with the first burst that
-/// moves. It uses no later samples; instants strictly increase until a restart.
+/// Assigns instants to samples in their order of arrival. A sample keeps its header stamp, bit for bit, if the last
+/// thousand contain no irregular one, however uneven the intervals. If a few stamps repeat or go back a little, the
+/// sample gets an instant between its neighbours. If many do and the sensor samples at equal intervals, all samples get
+/// instants on the line through the stamps so far. Until the line is known, after six bursts, only the first sample of
+/// each counts. A burst at rest without speeds looks like duplicates: the first moving burst restarts the line. No
+/// later samples are used; instants strictly increase until a restart.
 class StampSequence {
  public:
   enum class Kind {
-    kPlaced,      ///< the instant holds
-    kDuplicate,   ///< repetition of the message, which changes nothing; of a crank at rest it may be one of a burst. Or
-                  ///< another one with the same stamp, whose instant is not known yet
-    kOutOfOrder,  ///< with kHeader: not after the last; else: so far back that the next one shows whether time ran back
-    kRestart,     ///< placed, but nothing before it continues: a gap, or time ran back
+    kPlaced,      ///< the instant is valid
+    kDuplicate,   ///< repeated message without effect, at rest perhaps part of a burst; or another message with the
+                  ///< same stamp, whose instant is not known yet
+    kOutOfOrder,  ///< kHeader: not after the last; else: far back, and the next one shows whether time went back
+    kRestart,     ///< placed, without continuing the past: a gap, or time went back
   };
   struct Place {
     Kind kind{Kind::kPlaced};
     std::int64_t stamp{};  ///< instant [ns]
   };
 
-  /// stale_after: gap or way back from which on a sample starts anew [s].
+  /// stale_after: gap, or step back in time, beyond which a sample restarts the sequence [s].
   StampSequence(CrankStamps mode, double stale_after) noexcept;
 
   /// Comparison of a message's values with those of the message before.
   enum class Repeats {
     kNo,
-    kAtRest,       ///< equal, as of a crank that rests
-    kWithinCount,  ///< equal, as of a crank that turns by less than a count meanwhile
-    kAtWork,       ///< equal though the crank turns: a measured speed, or an angle that moves on, cannot repeat
+    kAtRest,       ///< equal, as for a crank at rest
+    kWithinCount,  ///< equal, as for a crank that turns by less than a count
+    kAtWork,       ///< equal although the crank turns: a measured speed or a moving angle cannot repeat
   };
-  /// header: stamp of the message that arrives [ns].
+  /// Places the next message. header: its stamp [ns].
   Place place(std::int64_t header, Repeats repeats) noexcept;
-  /// The readings show that samples were lost before the last one: it and the coming ones are so much later [s], whole
-  /// intervals. Its instant [ns].
+  /// Notes that samples were lost before the last one, as the readings show: it and the coming ones are later by `time`
+  /// [s], whole intervals. Returns its instant [ns].
   std::int64_t skip(double time) noexcept;
   SampleClock clock() const noexcept {
     if (!steady_ || !fit_.isKnown()) return {};
     const double interval = 1e-9 * fit_.interval();
     return {interval, interval * fit_.suspected(), !fit_.contradictsLoss()};
   }
-  /// Time by which a header stamp that counts is later than others are [s]; else 0.
+  /// Lateness of a header stamp that is used as it is [s]; else 0.
   double lateness() const noexcept { return steady_ ? 0.0 : 1e-9 * fit_.lateness(); }
-  /// The readings show that the last stamp is late and its sample is not: it counts as two irregular ones.
+  /// Counts the last stamp as two irregular ones: the readings show that it is late and its sample is not.
   void countLate() noexcept { irregularity_ += 2.0; }
   /// See SteadyClockFit.
   void confirm(bool counted) noexcept { fit_.confirm(counted); }
-  /// Step of which header stamps are whole multiples though the samples are not taken so [s]; 0: none.
+  /// Step to which the header stamps are rounded [s]; 0: none.
   double rounding() const noexcept { return rounding_.step(); }
   /// Returns true if the last sample's instant on the line was not after the one before, and was set just after it.
   bool isCrowded() const noexcept { return is_crowded_; }
-  /// Error of the stamps that were refitted before the last restart [s]; 0: none was. They are taken as they are until
-  /// there is a line again.
+  /// Error of the stamps if they were refitted before the last restart [s], else 0. They are used unchanged until there
+  /// is a line again.
   double errorBeforeRestart() const noexcept { return error_before_restart_; }
   /// Returns true while stamps are refitted by sequence.
   bool isSteady() const noexcept { return steady_; }
@@ -289,10 +289,10 @@ class StampSequence {
   std::optional<std::int64_t> rewound_;  ///< header stamp of the last message, if it was refused as out of order
   std::int64_t newest_{};                ///< latest header stamp since the beginning [ns]
   std::int64_t placed_{};                ///< instant of the last message [ns]
-  double irregularity_{};                ///< irregular stamps of late
+  double irregularity_{};                ///< recent irregular stamps
   std::uint64_t irregular_{};
-  bool doubled_{};    ///< messages do come twice
-  bool uncounted_{};  ///< messages passed for duplicates since the beginning of the fit
+  bool doubled_{};    ///< messages are sent twice
+  bool uncounted_{};  ///< messages were taken for duplicates since the fit began
   bool steady_{};
   bool is_crowded_{};
   bool awaits_line_{};             ///< stamps came in bursts before the restart: none has an instant without a line

@@ -12,15 +12,15 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kEvery = 8;                 // turns between evaluations, once the first ones are done
-constexpr double kSameTurn = 0.2;         // relative change of a turn's time: otherwise the machine starts or stops
+constexpr int kEvery = 8;                 // revolutions between evaluations after the first ones
+constexpr double kSameTurn = 0.2;         // relative change of a revolution's time at start and stop
 constexpr double kInertiaKnown = 0.5;     // standard deviation of the logarithm of Jc
 constexpr double kStiffnessKnown = 30.0;  // standard deviation of K [N m/rad]
 constexpr double kLeastEnergy = 1.0;      // [J]
 constexpr double kLongestMove = 0.1;      // [rad] of the zero in one step of the fit
 // Numerical: kLeastEnergy, kLongestMove
-constexpr double kStated = 0.06;    // largest standard deviation of a zero that is stated [rad]
-constexpr double kStepGain = 0.02;  // of the mean step
+constexpr double kStated = 0.06;    // largest standard deviation of a zero that is reported [rad]
+constexpr double kStepGain = 0.02;  // gain of the mean step
 constexpr int kFineSteps = 5;
 constexpr int kCandidates = 12;  // places of the blow whose fit is improved
 // Prior: kInertiaKnown, kStiffnessKnown
@@ -61,7 +61,7 @@ void ZeroSearch::add(double angle, double step, const HullMotion& hull) noexcept
   }
 }
 
-/// Time at a place between the second and the third of the last samples: a cubic where the steps are long.
+/// Returns the time at a place between the second and third of the last samples, by a cubic if the steps are long.
 double ZeroSearch::timeAt(double angle) const noexcept {
   const Point &from = last_[1], &to = last_[2];
   const bool grows = last_[1].angle - last_[0].angle > 1e-4 && last_[3].angle - last_[2].angle > 1e-4;
@@ -84,7 +84,7 @@ void ZeroSearch::pass(double place_time, std::int64_t place) noexcept {
     ++passed_;
   }
   place_time_ = place_time;
-  if (before != kPlaces / 2 - 1) return;  // half a turn from the blow of a right zero
+  if (before != kPlaces / 2 - 1) return;  // half a revolution from the blow with a correct zero
   if (passed_ == kPlaces && !skips_) endTurn();
   skips_ = false;
   passed_ = 0;
@@ -115,7 +115,7 @@ ZeroSearch::Table ZeroSearch::tableAt(double zero) const noexcept {
   return table;
 }
 
-/// Calls use(Stretch) for the stretches between places that are compared, in order; blow: the place where it is.
+/// Calls use(Stretch) for the stretches between places that are compared, in order; blow: place of the blow.
 template <typename Use>
 void ZeroSearch::forEachStretch(int blow, const Table& table, const Use& use) const noexcept {
   double all = 0.0;
@@ -137,7 +137,7 @@ void ZeroSearch::forEachStretch(int blow, const Table& table, const Use& use) co
   }
 }
 
-/// Linear least squares of the energy halfway between places; blow: the place where it is.
+/// Linear least squares of the energy halfway between places; blow: place of the blow.
 ZeroSearch::Vector ZeroSearch::guess(int blow, const Table& table) const noexcept {
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   Eigen::Vector4d score = Eigen::Vector4d::Zero();
@@ -155,7 +155,7 @@ ZeroSearch::Vector ZeroSearch::guess(int blow, const Table& table) const noexcep
   return unknowns;
 }
 
-/// One step of Gauss and Newton; what it returns has the squares before the step.
+/// Makes one Gauss-Newton step; the returned squares are those before the step.
 ZeroSearch::Fit ZeroSearch::step(int blow, const Table& table, const Vector& x, bool with_zero) const noexcept {
   const double drive = drive_inertia_ * std::exp(x[kInertia]);
   Fit fit;
@@ -199,7 +199,7 @@ ZeroSearch::Fit ZeroSearch::step(int blow, const Table& table, const Vector& x, 
   return fit;
 }
 
-/// Standard deviation [rad]; infinite where the fit has none.
+/// Returns the standard deviation of the zero [rad]; infinite if the fit has none.
 double ZeroSearch::deviationOfZero(const Fit& fit) const noexcept {
   Vector unit = Vector::Zero();
   unit[kZero] = 1.0;
@@ -210,7 +210,7 @@ double ZeroSearch::deviationOfZero(const Fit& fit) const noexcept {
 void ZeroSearch::evaluate() noexcept {
   found_.reset();
   ++evaluations_;
-  // Samples beyond the blow bend the times of the places before it.
+  // Samples beyond the blow distort the times of the places before it.
   to_ = kPlaces - 1 - static_cast<int>(step_ / turn_time_ * kPlaces);
   if (to_ < kFrom + kPlaces / 4) return;
   for (const double time : times_)

@@ -1,4 +1,4 @@
-/// Search for the encoder's zero over the whole turn, by the times at which the crank passes places of a turn.
+/// Search for the encoder's zero over the whole revolution, by the times at which the crank passes places of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,10 +13,10 @@ namespace hammer_loads {
 ///
 ///     (Jc + J(phi)) w^2/2 = E0 + tau phi + K integral(W t - phi) dphi + work of the weight,
 ///
-/// phi = angle since a quarter of a turn after the blow, W = mean speed, K = stiffness of the supply. The time from one
-/// place to the next follows from it. The search fits the mean times of some turns by E0, tau, K, the logarithm of Jc
-/// and the error of the zero (Gauss-Newton), starting from each of 48 places of the turn. The quarter of a turn after
-/// the blow is left out: an elastic connecting rod vibrates there, and restitution and blank firing act there.
+/// phi = angle since a quarter of a revolution after the blow, W = mean speed, K = stiffness of the supply. The time
+/// from one place to the next follows from it. The search fits the mean times of some revolutions by E0, tau, K, the
+/// logarithm of Jc and the error of the zero (Gauss-Newton), starting from each of 48 places. It leaves out the quarter
+/// after the blow, where an elastic connecting rod vibrates and where restitution and blank firing act.
 ///
 /// The result is independent of the filter and of measured speeds. It is accurate to some 2 deg, since the supply is
 /// not linear and errors of the lengths of 0.3 mm shift it by up to 1.6 deg. The filter refines it.
@@ -25,20 +25,20 @@ class ZeroSearch {
   /// drive_inertia: first guess [kg m2], > 0.
   ZeroSearch(const ShaftModel& model, double drive_inertia) noexcept : model_(model), drive_inertia_(drive_inertia) {}
 
-  /// The crank's angle by the zero in force [rad], and the time since the sample before [s]; 0: that is not known.
-  /// hull: its motion, for the weight. Allocates nothing; 0.2 ms in a turn that is evaluated.
+  /// Adds a sample. angle: crank angle by the present zero [rad]; step: time since the sample before [s], 0 if not
+  /// known; hull: its motion, for the weight. Allocates nothing; takes 0.2 ms in a revolution that is evaluated.
   void add(double angle, double step, const HullMotion& hull) noexcept;
-  /// Sets whether the fit is computed where it is due; the times are gathered all the same.
+  /// Sets whether a due fit is computed; the times are collected in any case.
   void setWanted(bool wanted) noexcept { wanted_ = wanted; }
-  /// Discards the present turn, whose times are not those of a blow.
+  /// Discards the present revolution, whose times are not those of a blow.
   void skipTurn() noexcept { skips_ = true; }
-  /// Restarts the collection of turns after the encoder has moved.
+  /// Restarts the collection of revolutions after the encoder has moved.
   void restart() noexcept;
   struct Found {
-    double error{};      ///< error of the zero in force: the crank's angle by it at the blow [rad], in (-pi, pi]
+    double error{};      ///< error of the present zero: crank angle by it at the blow [rad], in (-pi, pi]
     double deviation{};  ///< standard deviation by the scatter of the times alone [rad]
   };
-  /// Empty before three turns, and if no place of the blow explains the times, as at constant speed.
+  /// Result; empty before three revolutions, and if no place of the blow explains the times, as at constant speed.
   const std::optional<Found>& found() const noexcept { return found_; }
   /// Mean rotation of the crank between samples [rad].
   double stepAngle() const noexcept { return turn_time_ > 0.0 ? kTwoPi * step_ / turn_time_ : kTwoPi; }
@@ -60,13 +60,13 @@ class ZeroSearch {
     Vector unknowns{Vector::Zero()};
     Matrix information{Matrix::Zero()};
   };
-  /// Reflected inertia and weight's torque from place to place of a turn that begins at the blow.
+  /// Reflected inertia and weight's torque from place to place of a revolution that begins at the blow.
   struct Table {
     std::array<double, 2 * kPlaces + 1> inertia;  ///< at places and halfway between them [kg m2]
     std::array<double, kPlaces> weight;           ///< halfway [N m]
   };
 
-  /// Between two places of a turn; angle, work of the weight and the lead's integral since the first place.
+  /// Part between two places; angle, work of the weight and the lead's integral count from the first place.
   struct Stretch {
     std::size_t place{};
     double took{};       ///< [s]
@@ -91,15 +91,15 @@ class ZeroSearch {
   double drive_inertia_;
   std::array<Point, 4> last_;  ///< the latest samples, the oldest first
   int samples_{};              ///< number of these, up to 4
-  std::int64_t place_{};       ///< the last one that was passed
+  std::int64_t place_{};       ///< last place that was passed
   std::optional<double> place_time_;
-  std::array<double, kPlaces> turn_{}, times_{};  ///< from place to place [s]: of this turn, mean of the last ones
+  std::array<double, kPlaces> turn_{}, times_{};  ///< from place to place [s]: this revolution, mean of the last
   bool skips_{}, wanted_{true};
-  int passed_{};                     ///< places of this turn
-  double turn_time_{};               ///< mean of the turns [s]
-  double step_{};                    ///< mean of the samples [s]
+  int passed_{};                     ///< places of this revolution
+  double turn_time_{};               ///< mean time of a revolution [s]
+  double step_{};                    ///< mean time between samples [s]
   int to_{kPlaces - 1};              ///< end of the places that are compared
-  int turns_{}, due_{kTurnsToKnow};  ///< collected; evaluated next
+  int turns_{}, due_{kTurnsToKnow};  ///< revolutions collected; and at next fit
   std::optional<Found> found_;
   int evaluations_{};
   static constexpr int kTurnsToKnow = 3;

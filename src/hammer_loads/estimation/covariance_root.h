@@ -1,4 +1,4 @@
-/// A covariance as errors that are independent of each other.
+/// Conversion between a covariance and errors that are independent of each other.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,15 +6,15 @@
 
 namespace hammer_loads {
 
-/// L with L L^T = covariance, lower triangular, also where some error is certain to be zero: its columns are errors of
-/// one standard deviation each.
+/// Returns lower triangular L with L L^T = covariance, also where some error is certain to be zero. Its columns are
+/// errors of one standard deviation each.
 template <int size>
 Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, size, size>& covariance) noexcept {
-  constexpr double kRounding = 1e-12;  // relative, for a variance: a smaller pivot is a rounded zero
+  constexpr double kRounding = 1e-12;  // relative to a variance: a smaller pivot is a rounded zero
   // Numerical: kRounding
   Eigen::Matrix<double, size, size, Eigen::RowMajor> root = Eigen::Matrix<double, size, size>::Zero();
   for (Eigen::Index j = 0; j < size; ++j) {
-    const auto rest = [&](Eigen::Index i) {  // scalars: blocks of a size that changes cost twice as much
+    const auto rest = [&](Eigen::Index i) {  // scalars: blocks of variable size cost twice as much
       double sum = covariance(i, j);
       for (Eigen::Index k = 0; k < j; ++k) sum -= root(i, k) * root(j, k);
       return sum;
@@ -28,8 +28,8 @@ Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, siz
   return root;
 }
 
-/// Covariance of some numbers, a row each, by errors that are independent of each other, a column each. Symmetric to
-/// the last bit.
+/// Returns the covariance of some numbers, a row each, by independent errors, a column each. It is symmetric to the
+/// last bit.
 template <typename Errors>
 auto covarianceOf(const Eigen::MatrixBase<Errors>& errors) noexcept {
   Eigen::Matrix<double, Errors::RowsAtCompileTime, Errors::RowsAtCompileTime> covariance;

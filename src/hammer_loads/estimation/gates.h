@@ -1,4 +1,4 @@
-/// Gates by a number of standard deviations: one vocabulary for what noise makes and what it does not. And latches.
+/// Gates as numbers of standard deviations, which separate noise from other effects, and latches.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace hammer_loads {
 
-/// Deviations of a Gaussian, and how often one alone is beyond them. Measurements come a thousand times a second: what
-/// is to happen by noise once an hour at most needs five.
+/// Standard deviations of a normal distribution, and how often a value is beyond them. At a thousand measurements a
+/// second, noise exceeds five about twice an hour.
 namespace gate {
 constexpr double kUsual = 2.0;       ///< 5 in 100
 constexpr double kRare = 3.0;        ///< 3 in 1000: three times a second
@@ -21,26 +21,26 @@ namespace odds {
 constexpr double kLikely = 2.0;  ///< 7 to 1
 }  // namespace odds
 
-/// Means of innovation^2 over its variance. A right model has 1, or a little less; what they are at machines that are
-/// wrong is said where they are used.
+/// Levels of the mean of innovation^2 over its variance. A correct model has 1, or a little less. Values for wrong
+/// models are stated where the levels are used.
 namespace mismatch {
-constexpr double kSeen = 2.0;         ///< something else shows
+constexpr double kSeen = 2.0;         ///< an error of the model is visible
 constexpr double kUnexplained = 3.0;  ///< level for a warning
 constexpr double kContradicts = 4.0;  ///< the model is wrong
 }  // namespace mismatch
 
-/// Returns true if an innovation of that variance is beyond this many deviations; false for NaN.
+/// Returns true if an innovation of that variance is beyond this many standard deviations; false for NaN.
 constexpr bool exceeds(double innovation, double variance, double deviations) noexcept {
   return square(innovation) > square(deviations) * variance;
 }
 
-/// Weight of an innovation: 1 within this many deviations; beyond, its square counts as that of the gate.
+/// Weight of an innovation: 1 within this many standard deviations; beyond, its square counts as that of the gate.
 inline double weightWithin(double deviations, double innovation, double variance) noexcept {
   const double ratio = square(innovation) / variance, most = square(deviations);
   return ratio > most ? most / ratio : 1.0;
 }
 
-/// A value that hovers about one level does not make it flicker. Where the level is no number it is released.
+/// Latch with hysteresis: a value near one level does not make it flicker. NaN releases it.
 class Latch {
  public:
   static constexpr double kReleased = 0.5;  ///< part of the level at which it engages

@@ -1,5 +1,5 @@
-/// Gaussian belief about some variables beside constants that are not known exactly: covariance and what the constants
-/// do to it.
+/// Gaussian belief about some variables beside constants that are not known exactly: covariance and effect of the
+/// constants.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,15 +11,14 @@
 
 namespace hammer_loads {
 
-/// Schmidt's consider filter (Friedland's separate bias): x are `variables` that are corrected; p are the errors of
-/// `constants`, which are not. The mean of x is its owner's: it may live on a circle or have bounds. This is what is
-/// known about it,
+/// Schmidt's consider filter (Friedland's separate bias). The `variables` x are corrected; the errors p of the
+/// `constants` are not. The owner keeps the mean of x, which may be on a circle or bounded. Its error is
 ///
 ///     mean - x = e + V p,  e ~ N(0, P) independent of p,
 ///
-/// P the covariance as if all constants were right, V = d(mean)/dp. Whatever the covariance of p is, and whenever it
-/// becomes known, that of the mean's error is P + V cov(p) V^T: grown(). An innovation is (dz/dp - H V) p and noise;
-/// ConstantFit gathers what that says of p.
+/// with the covariance P for correct constants and V = d(mean)/dp. For any covariance of p, known now or later, the
+/// covariance of the mean's error is P + V cov(p) V^T: grown(). An innovation is (dz/dp - H V) p plus noise;
+/// ConstantFit estimates p from it.
 ///
 /// Fixed sizes, no allocation, nothing throws. P stays symmetric to the last bit.
 template <int variables, int constants>
@@ -34,8 +33,8 @@ struct GaussianBelief {
   Matrix covariance{Matrix::Zero()};   ///< P
   Effect by_constant{Effect::Zero()};  ///< V
 
-  /// By a transition F = d(after)/d(before) that is the identity but for some rows; f: those, in the order of `rows`.
-  /// P <- F P F^T, V <- F V.
+  /// Predicts by a transition F = d(after)/d(before) that is the identity except for some rows; f: these, in the order
+  /// of `rows`. P <- F P F^T, V <- F V.
   template <Eigen::Index... rows>
   void predict(const Eigen::Matrix<double, int{sizeof...(rows)}, variables>& f) noexcept {
     constexpr Eigen::Index changed[] = {rows...};
@@ -52,14 +51,14 @@ struct GaussianBelief {
       for (int k = 0; k <= i; ++k) covariance(changed[i], changed[k]) = covariance(changed[k], changed[i]) = both(i, k);
     }
   }
-  /// Covariance of two variables, or variance of one, grows by a noise that is independent of everything.
+  /// Adds independent noise to the covariance of two variables, or to the variance of one.
   void addNoise(Eigen::Index i, Eigen::Index k, double value) noexcept {
     covariance(i, k) += value;
     if (i != k) covariance(k, i) = covariance(i, k);
   }
 
-  /// Takes a measurement of one variable with noise of a variance >= 0. measured_by_constant: what the constants make
-  /// of the reading itself. The gain: the owner moves its mean by that times the innovation.
+  /// Corrects by a measurement of one variable with noise of a variance >= 0. measured_by_constant: derivative of the
+  /// reading by the constants. Returns the gain; the owner moves its mean by gain times innovation.
   Vector correct(Eigen::Index row, double variance, const ConstantRow& measured_by_constant) noexcept {
     const Vector column = covariance.col(row), gain = column / (covariance(row, row) + variance);
     applyGain(gain, column, variance, measured_by_constant - by_constant.row(row));
@@ -74,9 +73,9 @@ struct GaussianBelief {
     applyGain(gain, column, variance, measured_by_constant - seen * by_constant);
     return gain;
   }
-  /// Corrects by a measurement of one variable where the constants have these variances, independent of each other. The
-  /// gain is Schmidt's: the least total error if they are not corrected. 0, or none at all: as if the constant were
-  /// right.
+  /// Corrects by a measurement of one variable where the constants have these variances, independent of each other.
+  /// Schmidt's gain gives the least total error without a correction of the constants. A variance of 0, or none at all,
+  /// stands for a correct constant.
   Vector correct(Eigen::Index row, double variance, const ConstantRow& measured_by_constant,
                  const std::optional<ConstantRow>& of_constants) noexcept {
     if (!of_constants) return correct(row, variance, measured_by_constant);
@@ -91,32 +90,32 @@ struct GaussianBelief {
     return gain;
   }
 
-  /// A variable's mean is worth this variance now, whatever the others are.
+  /// Sets the variance of a variable and removes its correlations.
   void forget(Eigen::Index i, double variance) noexcept {
     covariance.row(i).setZero();
     covariance.col(i).setZero();
     covariance(i, i) = variance;
   }
-  /// Replaces a mean that the owner has drawn; effect: of the constants on it.
+  /// Replaces the belief about a variable whose mean the owner has set. effect: its derivative by the constants.
   void draw(Eigen::Index i, double variance, const ConstantRow& effect = ConstantRow::Zero()) noexcept {
     forget(i, variance);
     by_constant.row(i) = effect;
   }
-  /// The belief about a variable stays; coming measurements of the others teach nothing of it, nor the other way round.
+  /// Removes the correlations of a variable, so that it and the others do not correct each other.
   void decouple(Eigen::Index i) noexcept { forget(i, covariance(i, i)); }
-  /// Deviations are this much larger, variable by variable.
+  /// Multiplies the standard deviations by these factors, variable by variable.
   void widen(const Vector& by) noexcept { covariance = (by.asDiagonal() * covariance * by.asDiagonal()).eval(); }
 
-  /// Covariance of the variables where that of the constants is as given; growth: what noise is to be multiplied with.
+  /// Returns the covariance of the variables for a given one of the constants. growth: factor on the noise.
   Matrix grown(double growth, const ConstantMatrix& of_constants) const noexcept {
     return growth * covariance + (by_constant * of_constants) * by_constant.transpose();
   }
-  /// Neither infinite nor negative.
+  /// Returns true if the covariance is finite and its diagonal is not negative.
   bool isSound() const noexcept { return covariance.allFinite() && (covariance.diagonal().array() >= 0.0).all(); }
 
  private:
-  /// P <- P - K c^T. The corrected covariance is never below K R K^T (Joseph's form): a diagonal that rounding takes
-  /// below that is worth nothing.
+  /// P <- P - K c^T. The diagonal is kept at or above that of K R K^T (Joseph's form), below which only rounding can
+  /// take it.
   void applyGain(const Vector& gain, const Vector& column, double variance, const ConstantRow& seen) noexcept {
     if constexpr (constants > 0) by_constant.noalias() += gain.lazyProduct(seen);  // Eigen 3.3 has no such product
     for (Eigen::Index j = 0; j < variables; ++j) {

@@ -1,4 +1,4 @@
-/// Mean of what came lately.
+/// Mean with fading weights of older values.
 #pragma once
 
 #include <algorithm>
@@ -6,18 +6,18 @@
 
 namespace hammer_loads {
 
-/// Mean of all values at first, later with weights that fall by 1 - weight/length from one value to the next. Weights
-/// are a count or a time, length is in their unit.
+/// Mean of all values at first; later the weights decrease by 1 - weight/length from one value to the next. Weights are
+/// a count or a time, and length is in their unit.
 template <typename Value = double>
 class RunningMean {
  public:
   /// Mean of all values with equal weights.
   RunningMean() noexcept : RunningMean(std::numeric_limits<double>::infinity()) {}
-  /// length > 0; first: counts as this many values, in [0, length].
+  /// length > 0; first: initial mean, which counts as `first_counts` values, in [0, length].
   explicit RunningMean(double length, const Value& first = Value(), double first_counts = 0.0) noexcept
       : length_(length), count_(first_counts), mean_(first) {}
 
-  /// weight: > 0; nothing weighs more than all.
+  /// Adds a value; weight > 0. A weight of at least length replaces the mean.
   void add(const Value& value, double weight = 1.0) noexcept {
     count_ = std::min(count_ + weight, length_);
     mean_ += std::min(1.0, weight / count_) * (value - mean_);

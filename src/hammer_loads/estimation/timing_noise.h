@@ -1,4 +1,4 @@
-/// Jitter of the samples' stamps, learned from residuals of the angles.
+/// Jitter of the samples' stamps, identified from residuals of the angles.
 #pragma once
 
 #include <algorithm>
@@ -10,22 +10,22 @@
 
 namespace hammer_loads {
 
-/// A stamp off by d shows an angle off by w d: the innovation's variance has a part w^2 sigma_t^2. Its maximum of
-/// likelihood is followed sample by sample (score over information, both by the normal distribution), within some 200
-/// samples that turn. Jitter has no memory, what a model lacks has: innovations are seen by the half square of their
-/// differences. Jitter that the encoder's count alone could explain counts as zero: exact stamps stay exact.
+/// An error d of a stamp appears as an angle error w d: the innovation's variance contains w^2 sigma_t^2. The maximum
+/// likelihood estimate of it is tracked sample by sample (score over information, normal distribution), over some 200
+/// samples in motion. Jitter is uncorrelated, model errors are not: half the squares of the innovations' differences
+/// are used. Jitter that the count alone could explain counts as zero, so that exact stamps remain exact.
 class TimingNoise {
  public:
   /// first_guess: standard deviation [s], >= 0.
   explicit TimingNoise(double first_guess = 0.0) noexcept : variance_(first_guess * first_guess) {}
-  /// Learns anew from this deviation [s], which counts until the samples show another one.
+  /// Restarts from this standard deviation [s], which is used until the samples show another one.
   void restart(double deviation) noexcept {
     *this = TimingNoise(deviation);
     information_ = 1.0 / square(variance_);
   }
 
-  /// innovation [rad] of variance `total`, the jitter's part included; speed w [rad/s]; step [s] since
-  /// the sample before.
+  /// Adds an innovation [rad] of variance `total`, including jitter, at speed w [rad/s]. step: time since the sample
+  /// before [s].
   void learn(double innovation, double total, double speed, double step = 0.0) noexcept {
     const double change = innovation - last_;
     last_ = innovation;
@@ -39,11 +39,11 @@ class TimingNoise {
         std::min(0.5 * change * change / total, square(samples_ < kLearning ? gate::kUsual : gate::kRare));
     const double before = variance_;
     variance_ = std::max(0.0, variance_ + gain * (clipped - 1.0) * lever / information_);
-    // Samples show the less of a stamp the more it jitters.
+    // More jitter reduces the information of a sample on it.
     information_ /= square(1.0 + std::sqrt(information_) * (variance_ - before));
   }
 
-  /// Variance of a stamp [s2]; exactly zero where no jitter is seen.
+  /// Variance of a stamp [s2]; exactly zero if no jitter is detected.
   double variance() const noexcept {
     return square(variance_) * information_ > square(gate::kRare) * kGain ? variance_ : 0.0;
   }
@@ -51,13 +51,12 @@ class TimingNoise {
 
  private:
   static constexpr double kGain = 1.0 / look_back::kReadings;
-  static constexpr int kLearning =
-      60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
-  static constexpr double kFirstCounts = 50.0;  // samples that the first guess stands for
+  static constexpr int kLearning = 60;          // samples that count less: a wrong inertia looks like jitter
+  static constexpr double kFirstCounts = 50.0;  // weight of the first guess in samples
   static constexpr double kFirstOfSparse =
-      10.0;  // samples of the first guess at sparse samples, as the filter at 100 Hz would restart until then
+      10.0;  // as above for sparse samples, since the filter at 100 Hz would restart until then
   static constexpr double kSparse = 0.008;  // [s]
-  static constexpr double kVisible = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
+  static constexpr double kVisible = 9e-8;  // [s2]: samples that cannot show 0.3 ms are not used
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};

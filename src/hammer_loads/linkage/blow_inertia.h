@@ -1,4 +1,4 @@
-/// The mechanism at the instant of its blow, where crank and rocker are free of each other.
+/// Inertia of the mechanism at the instant of its blow, where crank and rocker move independently.
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace hammer_loads {
 /// l1 phi'. Kinetic energy 1/2 (crank phi'^2 + 2 coupling phi' psi' + rocker psi'^2). Level linkage: J1 and J2 as in
 /// LinkMoments; else crank = Jc, coupling = 0, rocker = I. Neglects impulses along rod and rocker.
 ///
-/// A blow has two parts. The tool turns psi' from u- w- to R |u-| w- while the crank's momentum crank phi' + coupling
-/// psi' stays. Then the linkage takes both onto the branch psi' = u+ phi': that impulse does no work along (1, u+).
+/// A blow has two parts. The tool changes psi' from u- w- to R |u-| w-; the crank's momentum crank phi' + coupling psi'
+/// is kept. Then the linkage takes both onto the branch psi' = u+ phi'; that impulse does no work along (1, u+).
 struct BlowInertia {
   double crank{};     ///< with the drive [kg m2]
   double coupling{};  ///< [kg m2]
@@ -30,7 +30,7 @@ struct BlowInertia {
   double freeRocker() const noexcept { return rocker - coupling * coupling / crank; }
   /// Crank speed after over before for a restitution R of rocker on tool.
   double factor(double restitution) const noexcept { return withoutRebound() + restitution * perRestitution(); }
-  /// Restitution by a factor; at level rocker R = (k (Jc + I u+^2) - Jc)/(I u+ |u-|).
+  /// Restitution from a factor; at level rocker R = (k (Jc + I u+^2) - Jc)/(I u+ |u-|).
   double restitution(double factor) const noexcept { return (factor - withoutRebound()) / perRestitution(); }
   /// Factor of the rebound without an impulse within the linkage: 1 for a massless rod.
   double smoothFactor() const noexcept { return (crank + coupling * u_before) / (crank + coupling * u_after); }

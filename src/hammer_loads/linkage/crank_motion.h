@@ -37,7 +37,7 @@ struct CrankAngle {
   }
 
   /// phi - 2 pi n in [-pi, pi] [rad], with 2 pi in two parts: error below the rounding of the result (for large n: of
-  /// pi) and 6e-33 rad per turn, instead of 2.4e-16 per turn.
+  /// pi) and 6e-33 rad per revolution, instead of 2.4e-16.
   static double wrapToPi(double phi) noexcept {
     constexpr double kTwoPiHigh = 6.283185307179586232e+00;
     constexpr double kTwoPiLow = 2.449293598294706414e-16;
@@ -46,7 +46,7 @@ struct CrankAngle {
   }
 };
 
-/// An offset from the blow [rad] that the side does not have.
+/// Returns true for an offset from the blow [rad] that is not on the given side.
 inline bool isBeyond(Side side, double offset) noexcept {
   return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0;
 }
@@ -57,18 +57,18 @@ struct CrankMotion {
   double acceleration{};  ///< e [rad/s2]
 };
 
-/// Unwound crank position: 2 pi * blow + angle.offset [rad]. Keeping the whole turns apart means that days of work cost
-/// no precision. `blow` counts passages of the blow; the nearest one is at offset 0.
+/// Unwound crank position: 2 pi * blow + angle.offset [rad]. Whole revolutions are kept apart, so that days of work
+/// cost no precision. `blow` counts passages of the blow; the nearest one is at offset 0.
 ///
 /// A rocker that meets no tool passes the blow smoothly onto the mirrored branch, psi(phi) = -psi(2 pi - phi), and
-/// comes back a turn later just as smoothly: there the offset has the other sign than its side's.
+/// returns a revolution later just as smoothly: there the offset has the other sign than its side's.
 struct CrankPosition {
   std::int64_t blow{};
   CrankAngle angle;
 
   bool isMirrored() const noexcept { return angle.side == Side::kBeforeBlow ? angle.offset > 0.0 : angle.offset < 0.0; }
 
-  /// Moves to the neighbouring blow's half turn when the offset leaves [-pi, pi]; never crosses a blow.
+  /// Moves to the half revolution of the neighbouring blow when the offset leaves [-pi, pi]; never crosses a blow.
   void renormalise() noexcept {
     if (std::abs(angle.offset) <= 0.5 * kTwoPi) return;
     const bool up = angle.offset > 0.0;
@@ -83,8 +83,8 @@ struct CrankPosition {
     renormalise();
   }
 
-  /// Turns by delta [rad], passing the blow when the offset changes sign. A delta beyond 1e15 rad, which a diverged
-  /// estimate may ask for, leaves no number.
+  /// Turns by delta [rad], passing the blow when the offset changes sign. A delta beyond 1e15 rad, as from a diverged
+  /// estimate, results in NaN.
   void turn(double delta) noexcept {
     if (delta == 0.0) return;  // at the blow itself the side must not change
     const double offset = angle.offset + delta;

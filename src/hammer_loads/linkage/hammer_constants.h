@@ -1,4 +1,4 @@
-/// Table of the constants of a hammer's drawing, one row each, for hammer file, deviations and columns.
+/// Table of a hammer's nominal parameters, one row each, for hammer file, standard deviations and columns.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct HammerConstant {
     kFollows,  ///< no column: it follows from other constants
   } enters;
   enum class Sign { kAny, kNotNegative, kPositive } sign;  ///< sign that a possible hammer has
-  bool optional{};  ///< a hammer file may leave it out; then the default of HammerParameters counts
+  bool optional{};  ///< a hammer file may leave it out; then the default of HammerParameters is used
 };
 
 namespace constant {
@@ -59,7 +59,7 @@ double guessed(const HammerParameters& p) {
 
 inline constexpr std::size_t kHammerConstantCount = std::tuple_size_v<HammerDeviations>;
 
-/// In the order of the file, the lengths first. Absent deviations: contract.
+/// Constants in the order of the file, the lengths first. For absent standard deviations see the contract.
 inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstants = [] {
   using namespace constant;
   using P = HammerParameters;
@@ -96,12 +96,12 @@ inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstan
   }};
 }();
 
-/// A constant's value in the unit of its key.
+/// Returns a constant's value in the unit of its key.
 inline double inFile(const HammerConstant& constant, double value) {
   return std::string(constant.unit) == "deg" ? value / kDegree : value;
 }
 
-/// Place of a key in kHammerConstants, if it is there.
+/// Returns the index of a key in kHammerConstants, if it is there.
 inline std::optional<std::size_t> indexOfConstant(const std::string& key) {
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i)
     if (kHammerConstants[i].key == key) return i;

@@ -31,7 +31,7 @@ struct HullMotion {
   bool turns() const noexcept { return rate != 0.0 || acceleration != 0.0; }
 };
 
-/// Motion on the line from a (part 0) to b (part 1); of equal motions that motion to the bit.
+/// Interpolates linearly from a (part 0) to b (part 1); equal motions are returned to the last bit.
 inline HullMotion blend(const HullMotion& a, const HullMotion& b, double part) noexcept {
   return {{a.gravity.x + part * (b.gravity.x - a.gravity.x), a.gravity.z + part * (b.gravity.z - a.gravity.z)},
           a.rate + part * (b.rate - a.rate),
@@ -46,7 +46,7 @@ struct Motion {
   double sin_psi{}, cos_psi{};
   double u{};               ///< dpsi/dphi [-], P0 (4)
   double du{};              ///< d2psi/dphi2 [1/rad], P0 (5)
-  double sin_half{};        ///< s = sin(phi/2) >= 0 within the turn
+  double sin_half{};        ///< s = sin(phi/2) >= 0 within the revolution
   double cos_half{};        ///< c = cos(phi/2), negative before the blow
   double r{};               ///< sqrt(lambda2 lambda3/lambda0 - s^2)
   double inv_r{};           ///< 1/r
@@ -186,7 +186,7 @@ HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker& linkage, CrankAngle
 /// Rod angle beta [rad] in (-pi, pi].
 inline double rodAngle(const LinkMotion& l) noexcept { return std::atan2(l.beta.im, l.beta.re); }
 
-/// The factor that turns each link's direction into its second time derivative.
+/// Factors that convert each link's direction to its second time derivative.
 struct LinkAccelerations {
   Planar crank, rod, rocker;  ///< i angle'' - angle'^2 [1/s2]
 };
@@ -209,8 +209,8 @@ HAMMER_LOADS_INLINE Planar linkCoupling(const Mechanism& mechanism, const LinkMo
 
 /// Accelerations that a turning hull adds to the links: Coriolis, centrifugal and Euler acceleration (model.md 3). A
 /// mass at r from D that moves at r' relative to the hull gets r (i alpha - Omega^2) + 2 i Omega r' beside the
-/// acceleration of D, which is part of the effective gravity. The loads are linear in it: everything here is added. To
-/// be multiplied by directions as LinkAccelerations are; a link that turns at w gets i alpha - Omega (Omega + 2 w).
+/// acceleration of D, which is part of the effective gravity. The loads are linear in it, so the terms are added. They
+/// multiply directions like LinkAccelerations; a link that turns at w gets i alpha - Omega (Omega + 2 w).
 struct TurningAccelerations {
   LinkAccelerations links;
   Planar hull;  ///< acceleration of points fixed to the hull [1/s2]
@@ -238,7 +238,7 @@ inline MomentsAboutD momentsAboutDRocker(const Mechanism& mechanism, const Motio
   return {inertia, 0.0, 0.0, inertia * m.u, inertia * m.du};
 }
 
-/// Level linkage. A stands at -pivot.
+/// Level linkage. Pin A is at -pivot.
 inline MomentsAboutD momentsAboutDLinkage(const Mechanism& mechanism, const LinkMotion& l) noexcept {
   const HammerParameters& p = mechanism.parameters();
   const LinkMoments& k = mechanism.moments();

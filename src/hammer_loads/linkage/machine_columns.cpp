@@ -5,13 +5,13 @@ namespace {
 
 using Enters = HammerConstant::Enters;
 
-/// With the rod that closes the linkage; nothing where there can be no such hammer.
+/// Returns the hammer with the rod that closes the linkage; empty if no such hammer can exist.
 std::optional<Mechanism> closed(HammerParameters p) {
   p.lengths.rod = p.lengths.pivot_distance + p.lengths.rocker - p.lengths.crank;
   return Mechanism::make(p).value;
 }
 
-/// The hammer with a constant so far off.
+/// Returns the hammer with one constant changed by `by`.
 std::optional<Mechanism> shifted(HammerParameters p, const HammerConstant& constant, double by) {
   constant.field(p) += by;
   return closed(p);

@@ -22,13 +22,13 @@ struct LinkMasses {
   enum Index {
     kMass,              ///< total mass of the links [kg]
     kAtA,               ///< mass of crank and connecting rod, concentrated at A [kg]
-    kCrank,             ///< and the next: C1 [kg m]
-    kRod = 4,           ///< and the next: C2 [kg m]
+    kCrank,             ///< this and the next: C1 [kg m]
+    kRod = 4,           ///< this and the next: C2 [kg m]
     kRocker = 6,        ///< C3 [kg m]
     kCrankInertia,      ///< J1 [kg m2]
     kRodInertia,        ///< J2 [kg m2]
     kRockerInertia,     ///< I [kg m2]
-    kCoupling,          ///< and the next: l1 m2 rho2 [kg m2]
+    kCoupling,          ///< this and the next: l1 m2 rho2 [kg m2]
     kWithinDrive = 12,  ///< crankWithinDrive() [kg m2]
     kSize
   };
@@ -62,39 +62,39 @@ inline bool haveLikeMotion(const Mechanism& a, const Mechanism& b) noexcept {
   return place(a) == place(b);
 }
 
-/// Most columns of a machine; those that it does not have are zero.
+/// Largest number of columns of a machine; missing ones are zero.
 constexpr int kMachineColumns = 20;
 
-/// A column is the change of a load, a state or a number by one standard deviation of a constant: columns of one
-/// hammer are independent, and the sum of their squares is a variance (JCGM 100, 5.1.2). The other hammer is a part
-/// `step` of the deviation away, and what it changes counts 1/step times. Lengths keep the change point: the rod
-/// follows.
+/// A column is the change of a load, a state or a number by one standard deviation of a constant: columns of one hammer
+/// are independent, and the sum of their squares is a variance (JCGM 100, 5.1.2). The other hammer is off by a part
+/// `step` of the standard deviation, and its effect is divided by step. The rod's length follows changed lengths, so
+/// that the change point is kept.
 struct MachineColumn {
-  /// A rod whose centre of mass is half its length away bends an energy by a third of its slope; a tenth of that leaves
-  /// a derivative, and 1e-14 of rounding.
+  /// A rod whose centre of mass is off by half its length changes an energy nonlinearly, by a third of the slope. A
+  /// tenth of that change leaves a derivative, and 1e-14 of rounding.
   static constexpr double kStep = 0.1;
 
   Mechanism mechanism;  ///< hammer with the changed constant
   Level level;          ///< level of that hammer; kLinkage for the column of what a simpler level neglects
   HammerConstant::Enters enters;
-  double step;       ///< kStep, or 1 of what a level leaves out
+  double step;       ///< kStep; 1 for the column of what a level neglects
   std::string name;  ///< key of the constant, or the level that leaves something out
   bool of_masses;    ///< true if the change of the loads of a given motion is linear in LinkMasses
 
-  /// links: of the hammer itself at the angle.
+  /// Returns the links at the angle. links: those of the unchanged hammer.
   LinkMotion linksAt(CrankAngle angle, const LinkMotion& links) const noexcept {
     return enters == HammerConstant::Enters::kMotion ? linkMotion(mechanism.linkage(), angle) : links;
   }
 };
 
-/// Columns over a turn, linear between points some 0.7 deg apart: within a hundredth of each column's largest value
-/// (test), at a third of the time or less.
+/// Columns over a revolution, linear between points some 0.7 deg apart: within a hundredth of each column's largest
+/// value (test), at a third of the time or less.
 template <int rows>
 class ColumnTable {
  public:
   using Point = ByConstants<rows, kMachineColumns>;
 
-  /// at(angle): the columns there.
+  /// at(angle): columns at an angle.
   template <typename At>
   explicit ColumnTable(const At& at) {
     for (int i = -kBeyond; i <= kPoints; ++i) {
@@ -104,7 +104,7 @@ class ColumnTable {
   }
   /// Returns false for an angle of the mirrored branch that is further beyond the blow.
   static bool covers(CrankAngle angle) noexcept { return fromBlow(angle) >= -kBeyond; }
-  /// angle: one that it covers. Beyond half a turn it extrapolates; an angle that is not a number has no columns.
+  /// Returns the columns at a covered angle. It extrapolates beyond half a revolution; a NaN angle gives NaN.
   Point at(CrankAngle angle) const noexcept {
     const double place = fromBlow(angle) + kBeyond;
     const int i = static_cast<int>(std::min(kBeyond + kPoints - 1.0, place));  // the last where it is not a number
@@ -113,7 +113,7 @@ class ColumnTable {
   }
 
  private:
-  static constexpr int kPoints = 256;          ///< parts of half a turn
+  static constexpr int kPoints = 256;          ///< parts of half a revolution
   static constexpr int kBeyond = kPoints / 2;  ///< points on the mirrored branch
   static constexpr double kWidth = 0.5 * kTwoPi / kPoints;
   static double fromBlow(CrankAngle angle) noexcept {
@@ -126,23 +126,23 @@ using ShaftTable = ColumnTable<4>;
 
 class MachineColumns {
  public:
-  /// One standard deviation of each column on three loads; on the shaft: of inertia, half its slope, weight's torque.
+  /// Effect of each column's standard deviation on three loads; on the shaft: inertia, half its slope, weight's torque.
   using Effect = ByConstants<3, kMachineColumns>;
   using OnShaft = Effect;
 
   MachineColumns(const Mechanism& mechanism, Level level);
 
   const std::vector<MachineColumn>& columns() const noexcept { return columns_; }
-  /// One standard deviation of each column that is of masses, on loads of a given motion; by: those of LinkMasses.
+  /// Effects of the columns of masses on loads of a given motion; by: derivatives of these loads by LinkMasses.
   Effect byMasses(const LinkMasses::Effect& by) const noexcept {
     Effect effects = Effect::Zero();
     for (const Part& part : parts_) effects.col(part.column) += part.size * by.col(part.mass);
     return effects;
   }
-  /// Hammer whose constants are off by this many standard deviations each, in the columns' order; none where it cannot
-  /// exist. The column of a level's neglect has no effect.
+  /// Hammer whose constants are off by this many standard deviations each, in the columns' order; empty if it cannot
+  /// exist. The column of what a level neglects has no effect.
   std::optional<Mechanism> hammerOff(const Eigen::VectorXd& errors) const;
-  /// load: at the angle, without what the hull's own motion adds.
+  /// Effects on the shaft's load at the angle, without the terms of the hull's own motion.
   OnShaft onShaft(CrankAngle angle, Gravity gravity) const noexcept;
   ShaftTable shaftTable() const;
 

@@ -8,10 +8,10 @@
 namespace hammer_loads {
 namespace {
 
-/// Largest accepted miss of the change-point condition, relative to the crank (model.md 2).
+/// Largest accepted error of the change-point condition, relative to the crank (model.md 2).
 constexpr double kChangePointTolerance = 1e-3;
 
-/// The first of kHammerConstants, which CrankRocker::make() checks.
+/// Number of lengths; they come first in kHammerConstants and are checked by CrankRocker::make().
 constexpr std::size_t kLengths = 4;
 
 using Sign = HammerConstant::Sign;
@@ -25,7 +25,7 @@ void check(const char* key, double value, const char* unit, Sign sign, std::vect
 
 double squaredSize(Planar a) { return a.re * a.re + a.im * a.im; }
 
-/// With the corrected rod length.
+/// Returns the moments of the links with the corrected rod length.
 LinkMoments momentsOf(const HammerParameters& p, const CrankRocker::Ratios& ratios) {
   const Planar to_hull{std::cos(p.rocker_com_angle), -std::sin(p.rocker_com_angle)};
   const Planar crank_com{p.crank_com_along, p.crank_com_across};

@@ -18,7 +18,7 @@ namespace hammer_loads {
 struct RodSpring {
   double stiffness{};        ///< k [N/m]; 0: not known
   double damping_ratio{};    ///< damping ratio of an oscillator of kReference on k [-]; 0: not known
-  double play{};             ///< free way of both pins together [m], >= 0
+  double play{};             ///< joint clearance of both pins together, along the rod [m], >= 0
   double friction_radius{};  ///< radius of a pin's friction circle, coefficient of friction times pin radius [m], >= 0
 
   static constexpr double kReference = kTwoPi * 200.0;                                      ///< [rad/s]
@@ -44,7 +44,7 @@ inline RodSpring usualDeviation(const RodSpring& rod) noexcept {
           rod.damping_ratio > 0.0 ? 0.4 * rod.damping_ratio : 0.8 * RodPrior::kDamping, 1e-4, 1e-3};
 }
 
-/// deviation: standard, in the units of the rod. A stiffness that is neither known nor in doubt is that of a rigid rod.
+/// deviation: standard deviations of rod. A stiffness that is neither known nor uncertain is that of a rigid rod.
 inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexcept {
   RodPrior prior{rod, 0.0, 0.0, deviation.play, deviation.friction_radius, true};
   if (!(rod.stiffness > 0.0)) prior.rod.stiffness = deviation.stiffness > 0.0 ? prior.kStiffness : prior.kStiffest;
@@ -55,13 +55,13 @@ inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexce
   return prior;
 }
 
-/// The pins as the readings show them.
+/// Clearance and friction of the pins as identified from the readings.
 struct IdentifiedPins {
   double clearance{};            ///< joint clearance along the rod, of both pins together [m]; 0 if they are tight
   double friction_radius_std{};  ///< standard deviation of RodSpring::friction_radius [m]
 };
 
-/// y'' = -square y - 2 decay y', exactly over a time, with any damping.
+/// Damped oscillator y'' = -square y - 2 decay y', solved exactly for any damping.
 struct Oscillator {
   double square{};  ///< square of the undamped angular frequency [rad2/s2], > 0
   double decay{};   ///< [1/s], >= 0
@@ -151,7 +151,7 @@ struct HammerParameters {
   RodSpring rod_std;              ///< standard deviations of it, >= 0
   double hull_mass{};             ///< housing and what is fixed to it [kg]; 0: hullMass() assumes it
   double hull_mass_std{};         ///< standard deviation [kg], >= 0; counts with hull_mass > 0
-  HammerDeviations deviations{};  ///< standard deviations of the constants above but the spring; 0: exact
+  HammerDeviations deviations{};  ///< standard deviations of the constants above except the spring; 0: exact
 };
 
 /// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism
@@ -208,8 +208,8 @@ struct DriveReaction {
   }
 };
 
-/// Inertia of the crank about A [kg m2] where the level counts it as part of Jc and not as that of a link: it turns
-/// with r = 1. With r = 0 the whole reaction is left out.
+/// Inertia of the crank about A [kg m2] if the level counts it in Jc and not as a link, else 0; it turns with r = 1.
+/// With r = 0 the whole reaction is neglected.
 inline double crankWithinDrive(const Mechanism& mechanism, Level level) noexcept {
   const HammerParameters& p = mechanism.parameters();
   if (level == Level::kLinkage || p.drive_reaction_ratio == 0.0) return 0.0;
@@ -217,7 +217,7 @@ inline double crankWithinDrive(const Mechanism& mechanism, Level level) noexcept
          p.crank_mass * (p.crank_com_along * p.crank_com_along + p.crank_com_across * p.crank_com_across);
 }
 
-/// Reaction of the drive. drive_inertia: Jc [kg m2]; 0, where it is not known: no reaction but the crank's.
+/// Reaction of the drive. drive_inertia: Jc [kg m2]; 0 if not known: no reaction except the crank's.
 inline DriveReaction driveReaction(const Mechanism& mechanism, Level level, double drive_inertia) noexcept {
   const double r = mechanism.parameters().drive_reaction_ratio, crank = crankWithinDrive(mechanism, level);
   return {r * drive_inertia + (1.0 - r) * crank, r * r * drive_inertia + (1.0 - r * r) * crank};

@@ -6,9 +6,9 @@
 /// At the blow rod and rocker are in line. R23 along the rod has the divisor sin mu = s (sin mu/s), s = sin(phi/2). The
 /// terms with w^2 u', w^2 v' and sin(beta - phi) contain s too and are divided without it: exact at and near the blow.
 /// The rest (crank acceleration, weight, rod centre of mass off its line) grows as 1/s: a rigid in-line rod cannot turn
-/// the rocker. It is returned as it is, flagged near_blow, as long as the divisor is a number: within what the crank
-/// angle is rounded or known by (NearBlow) 1/s is none, and the forces are NaN there, unless nothing of the rest is
-/// left, to the last digit: then they have their finite limit. The drive torque has one always.
+/// the rocker. It is returned unchanged and flagged near_blow while s is significant. Within the rounding or the error
+/// of the crank angle (NearBlow) the forces are NaN, unless the rest vanishes to the last digit: then they have their
+/// finite limit. The drive torque always has one.
 #pragma once
 
 #include <algorithm>
@@ -41,14 +41,14 @@ struct PinReactions {
 
 namespace detail {
 
-/// Least s = sin(phi/2) that divides: an angle of a turn is rounded by half as much, so that below it s is as wrong as
-/// it is large.
+/// Smallest s = sin(phi/2) used as a divisor. An angle within a revolution is rounded by half as much, so that a
+/// smaller s has an error of its own size.
 constexpr double kLeastSine = kTwoPi * std::numeric_limits<double>::epsilon();
-/// Stands for s below that: too small to leave anything but a rest, large enough for the finite part.
+/// Substitute for a smaller s: negligible beside any rest, large enough to preserve the finite part.
 constexpr double kNoSine = 1e-290;
-constexpr double kNoRest = 1e-200;  ///< more than kNoSine leaves of a finite part, less than any rest
+constexpr double kNoRest = 1e-200;  ///< larger than kNoSine times a finite part, smaller than any rest
 
-/// The part that s divides, by s: the part with s in it and a rest. NaN where s is none and a rest is left.
+/// Returns divided/s; `divided` is proportional to s plus a rest. NaN if s is substituted and a rest remains.
 HAMMER_LOADS_INLINE double overSine(double divided, double s) noexcept {
   const bool lost = s == kNoSine && std::abs(divided) > kNoRest;
   return lost ? std::numeric_limits<double>::quiet_NaN() : divided / s;
@@ -69,7 +69,7 @@ class NearBlow {
     return other;
   }
   bool operator()(const LinkMotion& l) const noexcept { return l.sin_mu < sine_ && l.cos_mu > 0.0; }
-  /// s as it divides.
+  /// Returns s as a divisor, or its substitute.
   double sine(double s) const noexcept { return s < least_ ? detail::kNoSine : s; }
 
  private:
@@ -81,7 +81,7 @@ inline double transmissionAngle(const LinkMotion& l) noexcept { return std::atan
 
 namespace detail {
 
-/// From the frame turned by a (LinkMoments) to hull axes.
+/// Converts from the frame turned by a (LinkMoments) to hull axes.
 constexpr PinForce toHull(Planar f) noexcept { return {-f.re, f.im}; }
 
 }  // namespace detail
@@ -117,8 +117,8 @@ HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, con
 
 namespace detail {
 
-/// From the force in C, (along + i across) e^(i beta), to the others; of_crank: moment of that force and its weight
-/// about A that turns the crank [N m].
+/// Returns the pin forces for a given force in C, (along + i across) e^(i beta). of_crank: moment about A by which that
+/// force acts on the crank [N m].
 HAMMER_LOADS_INLINE PinReactions fromRodForce(const Mechanism& mechanism, const LinkMotion& l,
                                               const LinkAccelerations& q, Gravity gravity, Planar rod_force,
                                               double of_crank) noexcept {
@@ -176,9 +176,9 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   return pins;
 }
 
-/// Pin forces of the same dyads for links that move otherwise than with a rigid rod: psi and accelerations are given.
-/// Beside the blow the rod's force is the difference of large moments, as good as these are; NaN within the error of
-/// the angle.
+/// Pin forces of the same dyads for links that do not move as with a rigid rod: psi and accelerations are given. Near
+/// the blow the rod's force is the difference of large moments and as accurate as these; NaN within the error of the
+/// angle.
 inline PinReactions pinForcesOf(const Mechanism& mechanism, const LinkMotion& l, const LinkAccelerations& q,
                                 Gravity gravity, const NearBlow& near_blow) noexcept {
   const LinkLengths& lengths = mechanism.linkage().lengths();
@@ -198,7 +198,7 @@ inline PinReactions pinForcesOf(const Mechanism& mechanism, const LinkMotion& l,
   return pins;
 }
 
-/// Adds what the hull's turning does to level rocker.
+/// Adds the part of a turning hull at level rocker.
 inline void addTurningRocker(const Mechanism& mechanism, const LinkMotion& l, double speed, const HullMotion& hull,
                              const NearBlow& near_blow, PinReactions& pins) noexcept {
   const Planar q = turningAccelerations(l, speed, hull).links.rocker;

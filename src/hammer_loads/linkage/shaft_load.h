@@ -14,7 +14,7 @@ struct ShaftLoad {
   double half_inertia_slope{};   ///< half its derivative by the crank angle [kg m2/rad]
   double weight_torque{};        ///< torque of the links' weight and of the hull's motion on the crank [N m]
   double weight_torque_slope{};  ///< derivative of the weight's torque by the crank angle [N m/rad]
-  double hull_acceleration{};    ///< alpha; of a ShaftModel r alpha: what the drive must follow as well [rad/s2]
+  double hull_acceleration{};    ///< alpha, which the drive must follow too; in a ShaftModel r alpha [rad/s2]
 };
 
 /// Level rocker: I u^2 and the rocker's weight. Neglects mass and inertia of crank and rod (a constant part of them
@@ -49,7 +49,7 @@ HAMMER_LOADS_INLINE ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const
   return load;
 }
 
-/// Adds what the hull's turning does: power of the added inertia forces per crank speed. Coriolis forces have none.
+/// Adds the part of a turning hull: power of the added inertia forces per crank speed. Coriolis forces have none.
 inline void addTurning(const MomentsAboutD& moments, const HullMotion& hull, ShaftLoad& load) noexcept {
   const double square = hull.rate * hull.rate;
   load.weight_torque += square * moments.half_slope - hull.acceleration * moments.momentum;

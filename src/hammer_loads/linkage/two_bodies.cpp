@@ -9,15 +9,15 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kBallistic = 1e-4;  // [rad]: below, the spring does nothing within a step
+constexpr double kBallistic = 1e-4;  // [rad]: below it the spring has no effect within a step
 
-constexpr double kSlides = 0.5;  // [rad/s]; faster, a pin slides
+constexpr double kSlides = 0.5;  // [rad/s]: a faster pin slides
 // Numerical: kSlides
 
 constexpr double kContact = 1.2e-4;  // [s]; part of a step within which pins with joint clearance may separate or meet
 // Numerical: kContact
 
-/// y'' = pull - square y - 2 decay y' over a time.
+/// Advances y'' = pull - square y - 2 decay y' by a time.
 void oscillate(double square, double decay, double pull, double time, double& y, double& speed) noexcept {
   if (!(square * time * time > kBallistic * kBallistic)) {
     y += time * (speed + 0.5 * time * pull);
@@ -45,7 +45,7 @@ double rigidRockerAngle(const LinkMotion& links) noexcept {
 
 }  // namespace
 
-/// Everything in the equations but x, its rate and the crank's acceleration.
+/// Terms of the equations of motion at a state, without x, its rate and the crank's acceleration.
 struct TwoBodies::Local {
   double reflected{}, coupling{};     ///< J, B [kg m2]
   double per_reflected{}, per_own{};  ///< 1/J, 1/(M22 - B^2/J) [1/(kg m2)]
@@ -138,7 +138,7 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   const double rate_of_crank = (a.on_crank - force * a.by_crank) * a.per_reflected;
   s.angle.offset += dt * (s.speed + 0.5 * dt * rate_of_crank) - back * (moved - dt * from.beside_speed);
   s.speed += dt * rate_of_crank - back * gained;
-  // Pins that part or meet within the step: it is made of two.
+  // The step is halved if pins separate or meet within it.
   if (half > 0.0 && dt > kContact && (isFree(from) != free || isFree(s) != free)) {
     s = from;
     move(rod, drive, 0.5 * dt, s, memo);
@@ -153,7 +153,7 @@ void TwoBodies::settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyS
   s.beside = pull / (rod.stiffness * a.lever * a.lever) + std::copysign(0.5 * rod.play, pull) / std::abs(a.lever);
 }
 
-/// Onto the branch after the blow; the rocker's speed turns, the crank's momentum stays.
+/// Moves the state onto the branch after the blow: the rocker's speed is reversed, the crank's momentum kept.
 void TwoBodies::strike(const TwoBodyDrive& drive, double restitution, TwoBodyState& s) const noexcept {
   const LinkMotion before = links(s.angle);
   const double v = before.rocker.u * s.speed + s.beside_speed, gained = -(1.0 + restitution) * v;
@@ -220,7 +220,7 @@ LinkAccelerations TwoBodies::linkSpeeds(const TwoBodyState& s, const LinkMotion&
   return withRod({0.0, s.speed}, {0.0, links.rocker.u * s.speed + s.beside_speed}, links);
 }
 
-/// The rod's between those of its pins.
+/// Completes the links by the rod, whose value follows from those of its pins.
 LinkAccelerations TwoBodies::withRod(Planar crank, Planar rocker, const LinkMotion& links) const noexcept {
   const LinkLengths& l = mechanism_->linkage().lengths();
   LinkAccelerations q;

@@ -10,7 +10,7 @@
 
 namespace hammer_loads {
 
-/// The crank on a branch or its continuation past the blow, and the rocker beside the place that a rigid rod gives it.
+/// Crank on a branch or its continuation past the blow, and the rocker's displacement from that with a rigid rod.
 struct TwoBodyState {
   CrankAngle angle;
   double speed{};         ///< w [rad/s]
@@ -18,17 +18,17 @@ struct TwoBodyState {
   double beside_speed{};  ///< rate of x [rad/s]
 };
 
-/// Rigid links with the rocker where it is: lively rock throws it back by a tenth of a radian.
+/// Returns rigid links with the displaced rocker: rock of high rebound throws it back by a tenth of a radian.
 inline LinkMotion withRocker(LinkMotion rigid, double beside) noexcept {
   const SineCosine turned = sineCosine(beside);
   rigid.psi = rigid.psi * Planar{turned.cosine, turned.sine};
   return rigid;
 }
 
-/// The loads that drive them.
+/// Loads that drive the two bodies.
 struct TwoBodyDrive {
   double inertia{};  ///< Jc [kg m2]
-  double torque{};   ///< net, on the crank [N m]
+  double torque{};   ///< net torque on the crank [N m]
   Gravity gravity;
 };
 
@@ -37,17 +37,17 @@ struct TwoBodyAccelerations {
   double tension{};          ///< force in the rod [N]
 };
 
-/// With independent angles phi and psi, a rod whose masses move in proportion between its pins and theta = psi - phi,
+/// With independent angles phi and psi, theta = psi - phi, and a rod whose masses move in proportion between its pins,
 /// kinetic energy is 1/2 (M11 w^2 + 2 M12(theta) w v + M22 v^2), M11 and M22 constant (as BlowInertia). In phi and x:
 ///
 ///     J w' + B x'' = F1 - T g,  B w' + M22 x'' = F2 + T h,  J = M11 + 2 u M12 + u^2 M22,  B = M12 + u M22
 ///
-/// h = l3 sin(psi - beta) the rod's lever, g = d(stretch)/d(phi), in proportion to x: a third of h where lively rock
-/// has thrown the rocker far; T = -k h x - c (h x)' its tension. A step solves the oscillator (M22 - B^2/J) x'' with
-/// the lever at its middle in closed form: exact however stiff or dead the rod is; the stiffer it is, the nearer to the
-/// rigid mechanism. Coulomb friction of the four pins brakes their rotation by the moment r |T| each, r the radius of
-/// their friction circles; its sign is continuous within 0.5 rad/s. Neglects: bending of the links, motion of the hull
-/// but its effective gravity, forces of the pins other than T.
+/// h = l3 sin(psi - beta) is the rod's lever, g = d(stretch)/d(phi), in proportion to x: a third of h after a rebound
+/// that has thrown the rocker far; T = -k h x - c (h x)' is its tension. A step solves the oscillator (M22 - B^2/J) x''
+/// with the lever at its middle in closed form: exact for any stiffness and damping, and closer to the rigid mechanism
+/// the stiffer the rod. Coulomb friction of the four pins brakes their rotation by the moment r |T| each, r the radius
+/// of their friction circles; its sign is continuous within 0.5 rad/s. Neglects: bending of the links, motion of the
+/// hull except its effective gravity, forces of the pins other than T.
 class TwoBodies {
  public:
   /// Refers to the mechanism, which must outlive it.
@@ -58,35 +58,35 @@ class TwoBodies {
     CrankAngle angle{std::numeric_limits<double>::quiet_NaN()};
     LinkMotion links;
   };
-  /// By dt [s] > 0, over which levers count as constant: half a millisecond beside the blow, one elsewhere. Where pins
-  /// with joint clearance part or meet, it is made of parts. memo: of moves of other states from the same angle.
+  /// Moves a state by dt [s] > 0 with constant levers: half a millisecond near the blow, one elsewhere. The step is
+  /// split where pins with joint clearance separate or meet. memo: shared by moves of other states from the same angle.
   void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state,
             LinksMemo& memo) const noexcept;
   void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state) const noexcept {
     LinksMemo memo;
     move(rod, drive, dt, state, memo);
   }
-  /// At a state.
+  /// Returns the accelerations and the tension of the rod at a state.
   TwoBodyAccelerations accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& state,
                                      const LinkMotion& links) const noexcept;
   /// Acceleration of the crank with a rigid connecting rod [rad/s2].
   double rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyState& state,
                            const LinkMotion& links) const noexcept;
-  /// rod: in LinkAccelerations also its change of length.
+  /// The rod's value in LinkAccelerations includes its change of length.
   LinkAccelerations linkAccelerations(const TwoBodyState& state, const TwoBodyAccelerations& a,
                                       const LinkMotion& links) const noexcept;
   /// Links' speeds times i in the form of accelerations, so that hullWrenchOf() returns minus their momentum.
   LinkAccelerations linkSpeeds(const TwoBodyState& state, const LinkMotion& links) const noexcept;
   const Mechanism& mechanism() const noexcept { return *mechanism_; }
   LinkMotion links(CrankAngle angle) const noexcept { return linkMotion(mechanism_->linkage(), angle); }
-  /// A rod at rest on its spring: x as the motion of the crank asks for, its rate 0.
+  /// Sets x to the rest position of the rod's spring at the motion of the crank, and its rate to 0.
   void settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& state) const noexcept;
   /// Position of the tool and restitution of the rocker on it.
   struct Tool {
     double place{};        ///< psi [rad]
     double restitution{};  ///< [-]
   };
-  /// The time of a blow [s] and the states on both sides of it.
+  /// Time of a blow [s], and the states before and after it.
   struct Blow {
     double time{};
     TwoBodyState before, after;
