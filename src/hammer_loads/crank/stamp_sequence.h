@@ -98,9 +98,9 @@ struct SampleClock {
 
 /// Estimate of a sensor's own clock from the stamps of its samples: a line by sequence number. Its offset and interval
 /// are found by least squares over all samples so far, later over the last 4000 (expanding, then fading memory). Delays
-/// that do not depend on the sequence average out; a constant one is not observable. Of several samples with one stamp
-/// the last is used, as it waited least. Lost samples are counted by whole intervals: a likelihood test between none
-/// and one lost, as fast as the stamps' scatter allows.
+/// that do not depend on the sequence average out; a constant one is not observable. Only the last of several samples
+/// with one stamp is used, as it waited least. Lost samples are counted by whole intervals: a likelihood test between
+/// none and one lost, as fast as the stamps' scatter allows.
 class SteadyClockFit {
  public:
   void begin(std::int64_t stamp) noexcept;
