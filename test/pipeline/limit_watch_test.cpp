@@ -1,4 +1,4 @@
-// Limits against machines whose energy and strokes are known, and against sums by hand.
+// Tests limits on simulated machines of known energy and strokes, and against hand calculations.
 #include "hammer_loads/pipeline/limit_watch.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ double medianEnergy(const simulation::Session& session) {
   return energies[energies.size() / 2];
 }
 
-/// Judges a session; done(state of the first limit) is called after each turn that ends within 4 to 11 s.
+/// Judges a session; done(states of the limits) is called after each revolution that ends within 4 to 11 s.
 template <typename Done>
 LimitWatch judged(const simulation::Session& session, const std::vector<Limit>& limits, const Done& done) {
   test::Player player(test::settingsWith("boom: none\n"), false, session);
@@ -63,7 +63,7 @@ TEST(Limits, DistinguishAWeakMachineFromAStrongOne) {
 
 TEST(Limits, CountTheStrokesThatFindNoTool) {
   const simulation::Session session = workWithFlow(1.0, 0.2);
-  // By the true angle: the crank passes two dead centres for each.
+  // Blank firings follow from the true angle: the crank passes two dead centres for each.
   const double blank =
       0.5 * static_cast<double>(session.truth.back().turn - static_cast<std::int64_t>(session.blows.size()));
   ASSERT_GT(blank, 3.0);
@@ -133,7 +133,7 @@ TEST(Limits, SumTheDamageOfTheLastHour) {
   EXPECT_NEAR(hours[1], 60.0 * 2000.0 * 8e-6, 1e-12);
   EXPECT_NEAR(hours[2], 60.0 * 1000.0 * 8e-6, 1e-12);
   EXPECT_EQ(watch.states()[0].level, AlarmLevel::kWarn);
-  // The log is stopped: the count begins anew, the work goes on.
+  // The log is stopped: the count restarts, the work time continues.
   MisuseCounts work;
   work.work_time = 180.0 * 60.0 + 30.0;
   piece.counts[1].closed = {{100, 400, 500}};

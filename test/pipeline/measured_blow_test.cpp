@@ -1,4 +1,4 @@
-// Energies of blows that take much of the crank's speed, at the dead centre or before it, by the simulated machine.
+// Energies of simulated blows that take much of the crank's speed, at the dead centre or before it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,14 +18,14 @@
 namespace hammer_loads {
 namespace {
 
-/// Of all blows together.
+/// Figures over all blows.
 struct Blows {
-  double worst{};                          ///< energy off, of the true one
-  double deviation{}, largest_std{};       ///< of the energy as estimated: mean and largest, of the true one
-  std::size_t struck{};                    ///< in truth
-  std::size_t count{}, known{}, within{};  ///< known: their energy; within: two deviations
-  double impulse_bias{};                   ///< of the tool's impulse, of the true one
-  std::size_t impulse_within{};            ///< two deviations
+  double worst{};                          ///< largest relative error of the energy [-]
+  double deviation{}, largest_std{};       ///< relative standard deviation of the energy: mean and largest [-]
+  std::size_t struck{};                    ///< true number of blows
+  std::size_t count{}, known{}, within{};  ///< known: energy stated; within: its error within two standard deviations
+  double impulse_bias{};                   ///< mean relative error of the tool's impulse [-]
+  std::size_t impulse_within{};            ///< blows with the impulse within two standard deviations
 };
 
 Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, double rate, std::uint64_t seed) {
@@ -57,7 +57,7 @@ Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, doub
   return blows;
 }
 
-/// Parts within two deviations: [0] energy, [1] restitution.
+/// Returns the parts of the blows within two standard deviations: [0] energy, [1] restitution.
 std::array<double, 2> coveredBeforeCalibrate(double rate, double zero) {
   std::array<double, 2> covered{};
   double count = 0.0;
@@ -88,8 +88,8 @@ std::array<double, 2> coveredBeforeCalibrate(double rate, double zero) {
   return {covered[0] / count, covered[1] / count};
 }
 
-/// Half a degree off, 1024 counts, stamps of a PC, no speeds, blows that differ: what is not known of the zero is in
-/// the deviations, whether it shows or not.
+/// The zero is 0.5 deg off, the encoder has 1024 counts, stamps of a PC and no speeds, and the blows differ. The
+/// deviations contain the uncertainty of the zero, whether or not its error shows.
 TEST(MeasuredBlow, DeviationsHoldBeforeCalibrateToo) {
   for (const double zero : {0.5, -0.5}) {
     const auto often = coveredBeforeCalibrate(1000.0, zero * kPi / 180.0);
@@ -101,15 +101,15 @@ TEST(MeasuredBlow, DeviationsHoldBeforeCalibrateToo) {
   }
 }
 
-/// At work to the end: a crank that comes to rest is another question.
+/// Draws the restitution. The machine works to the end, since a crank that comes to rest is a separate question.
 void drawRestitution(simulation::MachineSettings& machine) {
   machine.blow.restitution_drawn = true;
   machine.blow.restitution_high = 0.3;
   machine.drive.stop_time = machine.duration;
 }
 
-/// A passage that is taken back, as an encoder's edge shows, must not strike a second time. No restitution slows a
-/// crank so: no energy is given.
+/// A passage that is taken back, as an encoder's edge may show, must not count as a second blow. No restitution slows
+/// the crank so much: no energy is stated.
 TEST(MeasuredBlow, HasNoRestitutionIfItTakesHalfTheSpeed) {
   for (const std::uint64_t seed : {503u, 505u}) {
     const Blows blows = follow([](auto& machine) { machine.blow.crank_loss = 0.45; }, 1000.0, seed);
@@ -120,8 +120,8 @@ TEST(MeasuredBlow, HasNoRestitutionIfItTakesHalfTheSpeed) {
   }
 }
 
-/// The crank reaches the dead centre with its speed after the blow; the tool is taken along by all of drive and links.
-/// That is no blow of a restitution from 0 to 1: no energy is given, or one within its deviation.
+/// The crank reaches the dead centre with its speed after the blow, and drive and links together push the tool. No
+/// restitution from 0 to 1 describes this: the energy is not stated, or is within its deviation.
 TEST(MeasuredBlow, GivesNoWrongEnergyForAToolMetEarly) {
   std::size_t wrong = 0;
   struct Sensor {
@@ -152,8 +152,8 @@ TEST(MeasuredBlow, GivesNoWrongEnergyForAToolMetEarly) {
   EXPECT_LE(wrong, 1u);  // of some 600
 }
 
-/// Which sample shows the blow is in doubt where stamps jitter; what is known of a blow once it has been measured is
-/// not. A count that shows the dead centre late or early makes a blow seem to act too soon or too late.
+/// Jittering stamps leave uncertain which sample shows the blow, but not the blow once it is measured. A count that
+/// shows the dead centre late or early makes a blow seem to act too soon or too late.
 TEST(MeasuredBlow, FollowsADrawnRestitution) {
   struct Sensor {
     double jitter, zero;
@@ -184,7 +184,7 @@ TEST(MeasuredBlow, FollowsADrawnRestitution) {
   }
 }
 
-/// Before it works the crank stands still, and without speeds all samples of a burst are alike.
+/// The crank stands still before it works. Without speeds all samples of a burst are alike.
 TEST(MeasuredBlow, IsAccurateForSamplesInBurstsWithoutSpeeds) {
   for (const double rate : {100.0, 200.0, 1000.0}) {
     for (const std::uint64_t seed : {612u, 806u}) {

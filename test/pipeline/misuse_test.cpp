@@ -1,4 +1,4 @@
-// Misuse counted from what is measured, against what the simulated machine did.
+// Compares the misuse counted from measurements with that of the simulated machine.
 #include <gtest/gtest.h>
 
 #include "pipeline/on_boom_session.h"
@@ -24,7 +24,7 @@ simulation::Session atWork(double blank_share) {
   return simulation::recordSession(machine);
 }
 
-/// Rocker strokes that found no tool, by the true angle: the crank passes two dead centres for each.
+/// Returns the number of blank firings by the true angle: the crank passes two dead centres for each.
 double blankFiringsOf(const simulation::Session& session) {
   return 0.5 * static_cast<double>(session.truth.back().turn - static_cast<std::int64_t>(session.blows.size()));
 }
@@ -37,7 +37,7 @@ TEST(Misuse, CountsTheBlankFiringsOfTheMachine) {
   EXPECT_GT(blankFiringsOf(some), 4.0) << "what there is to count";
   EXPECT_NEAR(static_cast<double>(of_some.blank_firings), blankFiringsOf(some), 1.0);
   EXPECT_NEAR(of_good.work_time, 20.0, 1.0);
-  // Without boom and pressures nothing is known of the hold-down force and the place: not zero.
+  // Without boom and pressures hold-down force and place are unknown: the figures are empty, not zero.
   EXPECT_FALSE(of_good.withoutHoldDown() || of_good.still());
 }
 
@@ -60,7 +60,7 @@ TEST(Misuse, CountsBlowsWithoutHoldDownForceByPressures) {
 
 constexpr double kTurnPeriod = 0.2;
 
-/// Seconds at one place, the hull moving by `advance` [m] with each of 300 blows (60 s).
+/// Returns the counts for a hull that moves by `advance` [m] with each of 300 blows (60 s).
 Counts advancing(double advance) {
   MisuseFollower misuse;
   for (int blow = 0; blow < 300; ++blow) {
@@ -76,7 +76,7 @@ TEST(Misuse, HammeringAtOnePlaceCountsBeyondThePatienceOfTheMaker) {
   EXPECT_NEAR(advancing(0.0).placed_time, 300 * kTurnPeriod, 1e-9);
 }
 
-/// A hammer that rests, or that is lifted and set down between two blows, starts anew or does not count.
+/// The time at one place restarts after a pause, or when the hammer is lifted and set down between two blows.
 TEST(Misuse, PausesAndMovesEndTheTimeAtOnePlace) {
   MisuseFollower misuse;
   const auto hammer = [&](double seconds) {

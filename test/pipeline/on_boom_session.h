@@ -1,5 +1,5 @@
-/// Sessions of a machine whose hull hangs on its boom, played into a pipeline and judged by their truth: an unseen
-/// pose, a boom that moves, sensors with rates of their own. Joint sensors see the vibration.
+/// Plays sessions of a machine whose hull hangs on its boom into a pipeline and compares them with their truth. The
+/// pose is unseen, the boom moves, each sensor has its own rate, and joint sensors measure the vibration.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  ///< [s]: the machine wor
 using Pose = std::array<double, 3>;
 constexpr Pose kUsualPose{-0.45, 1.00, -0.50};
 
-/// Within the reach of all three cylinders, the hull near upright. between: a number from one to another.
+/// Draws a pose within the reach of all three cylinders, the hull near upright. between(low, high): random number.
 template <typename Between>
 Pose drawnPose(const Between& between) {
   const double boom = between(-0.8, -0.1), arm = between(0.7, 1.7), lean = between(-0.3, 0.3);
@@ -34,7 +34,7 @@ inline simulation::MachineSettings machineOnBoom(double oil, double joint_rate, 
   return m;
 }
 
-/// A session by the shipped boom file with the keys in `parameters`.
+/// Returns the errors of a session with the shipped boom file and the keys in `parameters`.
 inline accuracy::BoomErrors errorsOf(const std::string& name, const simulation::Session& session,
                                      const std::string& parameters, const accuracy::SensorsOnBoom& sensors) {
   const Settings settings = withExactHammer(settingsWith("boom: compliant\n" + parameters));

@@ -1,4 +1,4 @@
-// The pipeline on a machine whose hull hangs on its boom: oil 30 % off, sensors of every kind, a boom that is driven.
+// Tests the pipeline with a hull that hangs on its boom: oil 30 % off, all kinds of sensors, a driven boom.
 #include "pipeline/on_boom_session.h"
 
 #include <gtest/gtest.h>
@@ -30,9 +30,9 @@ void expectAsTheTruth(const BoomErrors& e, const std::string& name) {
   EXPECT_GT(e.covered(), 0.85) << name;
 }
 
-/// The second mode is twice the blow rate: of all poses one of the worst, where 0.1 % of stiffness is 1 % of torque.
-/// The weight's stiffness, levers that the vibration changes and links beside the mean of their places are each as
-/// much.
+/// The second mode is at twice the blow rate. This pose is one of the worst: 0.1 % of stiffness is 1 % of torque. Three
+/// effects are each as large: the stiffness due to weight, lever arms that the vibration changes, and links beside
+/// their mean places.
 TEST(OnBoomSession, TheRightOilNeedsNoMoreSensors) {
   const Session session = simulation::recordSession(test::machineOnBoom(1.0, 50.0));
   const BoomErrors model = errorsOf("right oil", session, kModel, {});
@@ -44,7 +44,7 @@ TEST(OnBoomSession, TheRightOilNeedsNoMoreSensors) {
   EXPECT_GT(fixed.force_z.worstOfLargest(), 0.1) << "what the hull's motion adds";
 }
 
-/// Without a boom file the IMU alone knows that the hull leaves the rock.
+/// Without a boom file only the IMU shows that the hull leaves the rock.
 TEST(OnBoomSession, TheImuTakesTheHullsOwnSpeedOutOfTheEnergy) {
   for (const double crank_rate : {1000.0, 100.0}) {
     simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
@@ -53,7 +53,7 @@ TEST(OnBoomSession, TheImuTakesTheHullsOwnSpeedOutOfTheEnergy) {
     const Session session = simulation::recordSession(m);
     const auto error = [&](const std::string& hull_motion) {
       test::Player player(test::settingsWith("boom: none\nhull_motion: " + hull_motion, false), false, session);
-      BoomErrors e;  // of energy alone
+      BoomErrors e;  // energy only
       player.playTo(kEnd, [&](double time, const SampleResult& result) {
         if (time > kBegin) e.addBlows(session, result);
       });
@@ -85,8 +85,8 @@ TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {
   expectAsTheTruth(errorsOf("all sensors", session, kByImu, {true, true}), "all sensors");
 }
 
-/// What the IMU knows better is not thrown away: each reading for itself had twice the error of an IMU alone, four
-/// times on the joint of the hammer. A tenth of it is that stamps of noisy pressures may be late.
+/// The more accurate IMU keeps its weight. With each reading used by itself the error was twice that of an IMU alone,
+/// four times at the hammer joint. A tenth of the error is due to possibly late stamps of noisy pressures.
 TEST(OnBoomSession, NoisyPressuresBesideAnImuCostLittle) {
   simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
   m.on_boom.pressures.noise *= 4.0;
@@ -97,8 +97,8 @@ TEST(OnBoomSession, NoisyPressuresBesideAnImuCostLittle) {
   EXPECT_GT(all.covered(), 0.85);
 }
 
-/// A crank that leads or lags makes right sensors look late or early: taken for a delay of theirs, half a degree cost
-/// 3 % of the torques, of which deviations covered half.
+/// An error of the zero makes correct sensors look late or early. Mistaken for their delay, half a degree cost 3 % of
+/// the torques, and only half of the torques were within two standard deviations.
 TEST(OnBoomSession, AZeroThatIsOffIsNoDelayOfTheSensors) {
   for (const double zero : {0.5 * kDegree, -0.5 * kDegree}) {
     simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
@@ -116,7 +116,7 @@ TEST(OnBoomSession, AZeroThatIsOffIsNoDelayOfTheSensors) {
   }
 }
 
-/// Torques of an instant are as wrong as the stamp that says when it was.
+/// The error of a stamp is an error of the torques at that instant.
 TEST(OnBoomSession, DeviationsOfMeasuredTorquesCoverStampsThatJitter) {
   simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
   m.crank.stamp_noise = 2e-4;
@@ -136,7 +136,7 @@ TEST_P(WrongOil, IsMeasuredByJointStatesAbove100Hz) {
   expectAsTheTruth(e, "joint states");
 }
 
-/// Noise on a boom that nothing shakes says nothing of its oil: half a minute of it made 40 % of the frequency.
+/// Noise on a boom at rest would appear as soft oil: 40 % of the frequency after half a minute.
 TEST(OnBoomSession, AMachineThatIdlesTeachesNothing) {
   constexpr double kStart = 15.0, kStop = 18.0;
   simulation::MachineSettings m = accuracy::machineOnBoom(kStop);
@@ -162,9 +162,9 @@ struct OilAtPose {
   test::Pose pose;
 };
 
-/// Where a mode is near the blow rate, or what an identified frequency lacks is much of a torque, the sensors show the
-/// motion itself. By frequencies alone: torques 11 and 6 % off by the IMU, moment 6 % and bending 5 % by pressures. In
-/// the last pose a false oil is found at first, and pressures are explained by a rock that pulls.
+/// Sensors show the motion itself where a mode is near the blow rate, or a frequency error is a large part of a torque.
+/// By frequencies alone, torques were 11 and 6 % off by the IMU; by pressures, moment 6 % and bending 5 %. In the last
+/// pose a wrong oil stiffness is found at first, and the pressures are explained by a rock that pulls.
 class HardPose : public testing::TestWithParam<OilAtPose> {};
 
 TEST_P(HardPose, ReadingsShowTheMotion) {
@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(OnBoomSession, HardPose,
                          testing::Values(OilAtPose{1.0, {-0.44, 1.92, -1.07}}, OilAtPose{1.4, {-0.51, 0.52, 0.05}},
                                          OilAtPose{1.4, {0.12, 1.85, -1.84}}));
 
-/// Its own acceleration hides the vibration from all sensors but pressures: then nothing is learned from them.
+/// The acceleration of a fast boom hides the vibration from all sensors but pressures. The others are not used then.
 TEST(OnBoomSession, ABoomThatIsDrivenFastKeepsTheModesAsGiven) {
   simulation::MachineSettings m = test::machineOnBoom(1.0, 400.0);
   m.boom[1].amplitude = 0.15, m.boom[1].period = 6.0;

@@ -1,5 +1,5 @@
-// The pipeline on a hammer that stands on rock: the rock holds the hull up and lets go of it at each recoil. What
-// sensors there are decides what is known.
+// Tests the pipeline with a hammer on rock. The rock supports the hull and loses contact at each recoil. The sensors
+// present decide which loads are known.
 #include <map>
 #include <random>
 #include <string>
@@ -18,9 +18,9 @@ constexpr char kByImuToo[] = "hull_motion: imu\nboom_stiffness: identified\n";
 struct Rock {
   double hold_down_force;   ///< [N]
   double stiffness;         ///< [N/m]
-  double oil{1.0};          ///< over the boom file's
-  unsigned pose{};          ///< 0: as the other sessions; else drawn
-  double pressures{500.0};  ///< their rate [Hz]
+  double oil{1.0};          ///< stiffness of the oil over the boom file's [-]
+  unsigned pose{};          ///< 0: pose of the other sessions; else seed of a drawn one
+  double pressures{500.0};  ///< rate of the pressures [Hz]
   friend std::ostream& operator<<(std::ostream& out, const Rock& r) {
     return out << r.hold_down_force << " N on " << r.stiffness << " N/m, oil " << r.oil << ", pose " << r.pose;
   }
@@ -78,7 +78,7 @@ TEST_P(OnRock, PressuresAndImuShowTheRocksForceToo) {
   EXPECT_LT(e.moment.rms(), 0.02);
 }
 
-/// The torques would lack the rock's force, up to nine tenths of them.
+/// Without the rock's force up to nine tenths of the torques would be missing.
 TEST_P(OnRock, AnImuAloneShowsThatTheRocksForceIsNotKnown) {
   const simulation::Session& session = sessionOn(GetParam());
   const BoomErrors e = errorsOf("imu", session, kByImuToo, {true, false});
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(PressForces, OnRock,
                          testing::Values(Rock{0.0, 3e7}, Rock{1500.0, 1e8, 1.0, 11}, Rock{4000.0, 1e7, 0.7, 12},
                                          Rock{12000.0, 3e7, 1.4, 13}));
 
-/// Readings every 5 ms, landings of 10 ms: the change between readings is the vibration's.
+/// Pressures come every 5 ms and landings last 10 ms: the torques follow the vibration between readings.
 TEST(OnRockSession, PressuresAt200HzAreEnough) {
   const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7, 1.0, 0, 200.0}));
   const BoomErrors pressures = errorsOf("200 Hz", session, kByPressures, {false, true});
@@ -108,7 +108,7 @@ TEST(OnRockSession, PressuresAt200HzAreEnough) {
   expectLoads(errorsOf("200 Hz and imu", session, kByImuToo, {true, true}));
 }
 
-/// What was measured is not held on to when its sensors fall silent, and comes back with them.
+/// A measured force of the rock is dropped when its sensors fall silent, and is back with them.
 TEST(OnRockSession, ARockThatIsNoLongerMeasuredIsForgotten) {
   const simulation::Session& session = sessionOn({4000.0, 3e7});
   test::Player player(test::settingsWith(std::string("boom: compliant\n") + kByPressures), true, session);
@@ -157,7 +157,7 @@ TEST(OnRockSession, WithheldLoadsComeBackWithPressuresAndAtRest) {
   }
 }
 
-/// Without vibration the change between readings is the line's.
+/// Without a vibration model, torques follow the line through the last two readings.
 TEST(OnRockSession, ARigidBoomTakesMeasuredTorquesToo) {
   const simulation::Session& session = sessionOn({4000.0, 3e7});
   test::Player player(test::settingsWith("boom: rigid\n"), true, session);
@@ -174,7 +174,7 @@ TEST(OnRockSession, ARigidBoomTakesMeasuredTorquesToo) {
   EXPECT_LT(torque.rms(), 0.02);
 }
 
-/// Right oil, as given: the rock's force is found without learning.
+/// With the correct oil stiffness in the file, the rock's force is found without identification.
 TEST(OnRockSession, TheOilMayBeAsGiven) {
   const simulation::Session& session = sessionOn({4000.0, 3e7});
   expectLoads(errorsOf("as given", session, "hull_motion: model\nboom_stiffness: given\n", {false, true}));

@@ -1,5 +1,5 @@
-/// The pipeline with the shipped boom under it, over a working session: cost, what the joints get, and what becomes of
-/// it when joint states or crank samples fail.
+/// Tests the pipeline with the shipped boom over a working session: memory allocation, joint loads, and the behaviour
+/// when joint states or crank samples fail.
 #include <gtest/gtest.h>
 
 #include "support/constants.h"
@@ -16,11 +16,11 @@ using test::session;
 using test::settingsWith;
 
 using test::kGravity;
-constexpr double kJointsHeard = 0.02;  // [s]: the first joint states come within a period of theirs
+constexpr double kJointsHeard = 0.02;  // [s]: the first joint states arrive within one period of theirs
 
 const auto kOnlyPlay = [](double, const SampleResult&) {};
 
-/// Everything that a node publishes per sample but the messages.
+/// Reads everything that a node publishes per sample, except the messages.
 struct Everything {
   Pipeline& pipeline;
   double& sum;
@@ -36,7 +36,7 @@ struct Everything {
 
 TEST(PipelineWithBoom, AllocatesNothingPerSample) {
   const std::size_t before_control = test::allocations;
-  void* volatile block = std::malloc(1);  // volatile: else the compiler may leave both away
+  void* volatile block = std::malloc(1);  // volatile: otherwise the compiler may omit both calls
   std::free(block);
   ASSERT_GT(test::allocations, before_control) << "the counter must see an allocation";
   for (const char* motion : {"fixed", "imu", "model"}) {
@@ -54,7 +54,7 @@ TEST(PipelineWithBoom, AllocatesNothingPerSample) {
   }
 }
 
-/// The description's hull mass includes the moving links: what they weigh must not load the joints twice.
+/// The description's hull mass includes the moving links, whose weight must not load the joints twice.
 TEST(PipelineWithBoom, JointsCarryTheLinksMotionAndTheirWeightOnce) {
   const Settings settings = settingsWith("boom: rigid\n");
   Player player(settings);
@@ -66,7 +66,7 @@ TEST(PipelineWithBoom, JointsCarryTheLinksMotionAndTheirWeightOnce) {
     HullWrench w = hullWrench(HullModel(settings.mechanism, settings.pipeline.level), crank, Gravity{});
     w.torque_y -= player.pipeline.crank().tracker().driveInertia() * crank.acceleration;
     const BoomLoads& told = loads.boom->loads;
-    // By hand about hammer_joint, from which D is (0.10, -0.55) m away in the hull's axes; bracket 50 kg, hull 350 kg.
+    // Hand calculation about hammer_joint. D is (0.10, -0.55) m from it in the hull's axes; bracket 50 kg, hull 350 kg.
     const double hammer = w.torque_y - 0.55 * w.force_x - 0.10 * w.force_z;
     const double pitch = player.pipeline.hull().pitch().pitch();
     const double lever_x = 50.0 * 0.03 + 350.0 * (0.10 - 0.08), lever_z = -50.0 * 0.06 - 350.0 * (0.55 - 0.05);
@@ -89,7 +89,7 @@ TEST(PipelineWithBoom, StaleJointsSilenceTheBoomAloneUntilTheyAreBack) {
     ASSERT_FALSE(loads.refusal) << time;
     ASSERT_NE(loads.boom, nullptr) << time;
     const bool stale = time > kSilent + kMaxAge && time < kBack;
-    if (!stale && time > kSilent + kMaxAge - kPeriod && time < kBack + kPeriod) return;  // one or the other
+    if (!stale && time > kSilent + kMaxAge - kPeriod && time < kBack + kPeriod) return;  // either is correct
     ASSERT_EQ(loads.boom->fault.has_value(), stale) << time;
     ASSERT_EQ(player.pipeline.boom()->known(), !stale) << time;
     ASSERT_TRUE(!stale || loads.boom->fault->kind == JointFault::Kind::kStale) << time;
@@ -115,7 +115,7 @@ TEST(PipelineWithBoom, StaleJointsSilenceTheBoomAloneUntilTheyAreBack) {
   EXPECT_EQ(player.pipeline.counts().accepted, session().crank.size());
 }
 
-/// Longer than stale_after_s: where the crank went meanwhile is not known.
+/// The gap is longer than stale_after_s: the motion of the crank during it is unknown.
 TEST(PipelineWithBoom, VibrationRestartsAfterADropOut) {
   const Settings settings = settingsWith("boom: compliant\n");
   constexpr double kFrom = 3.5, kTo = 3.9, kShortFrom = 3.0, kShortTo = 3.005;

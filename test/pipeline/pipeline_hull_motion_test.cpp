@@ -1,4 +1,4 @@
-/// The hull's own motion in the wrench of a working session: none, its IMU's, the compliant boom's.
+/// Tests the hull's own motion in the wrench of a session: none, from its IMU, from the compliant boom.
 #include <gtest/gtest.h>
 
 #include "support/session_player.h"
@@ -22,7 +22,7 @@ void expectSame(const std::vector<HullWrench>& a, const std::vector<HullWrench>&
   }
 }
 
-/// Wrenches of accepted samples.
+/// Returns the wrenches of accepted samples.
 std::vector<HullWrench> wrenchesOf(Player& player) {
   std::vector<HullWrench> wrenches;
   player.playTo(kSessionEnd, [&](double, const SampleResult& loads) {
@@ -31,14 +31,14 @@ std::vector<HullWrench> wrenchesOf(Player& player) {
   return wrenches;
 }
 
-/// Whoever wants the boom's loads as well gets no other hull wrench.
+/// Computing the boom's loads as well does not change the hull wrench.
 TEST(PipelineHullMotion, AFixedHullsWrenchDoesNotDependOnTheBoom) {
   const Settings settings = settingsWith("boom: compliant\n");
   Player with(settings), without(settings, false);
   const auto right = wrenchesOf(without), given = wrenchesOf(with);
   EXPECT_GT(with.pipeline.boom()->state().tip.displacement.norm(), 0.0) << "it does vibrate";
   ASSERT_EQ(given.size(), right.size());
-  // The description's gravity is the pitch's but for rounding.
+  // Gravity from the description and gravity from the pitch differ by rounding only.
   for (std::size_t i = 0; i < given.size(); ++i) ASSERT_NEAR(given[i].force_z, right[i].force_z, 1e-7) << i;
 }
 
@@ -67,9 +67,9 @@ TEST(PipelineHullMotion, AnImuOnATiltedHullAtRestGivesTheWeightByPitch) {
     const std::string tilt = format("hull_pitch_rad: %.17g\n", pitch);
     const Settings settings = settingsWith(kImuSettings);
     Player with(settings), by_pitch(settingsWith(tilt));
-    by_pitch.joints_speak = with.joints_speak = false;  // else the joints' pitch would count
+    by_pitch.joints_speak = with.joints_speak = false;  // otherwise the pitch from the joints is used
     with.imu = test::atRest(pitch, settings.pipeline.imu);
-    with.pipeline.hullImu(session().crank.front().stamp - 1000000, *with.imu);  // one reading alone is no motion yet
+    with.pipeline.hullImu(session().crank.front().stamp - 1000000, *with.imu);  // one reading alone gives no motion yet
     const auto right = wrenchesOf(by_pitch), given = wrenchesOf(with);
     ASSERT_EQ(given.size(), right.size());
     const double peak = peakOf(right);

@@ -129,7 +129,7 @@ TEST(Pipeline, ABlowIsOnlyWhatStrikes) {
               .turn_ends;
     }
   };
-  swing(0, 0.05, kTwoPi);  // creeps to and fro over the blow
+  swing(0, 0.05, kTwoPi);  // creeps back and forth across the blow
   EXPECT_EQ(blows, 0u);
 }
 

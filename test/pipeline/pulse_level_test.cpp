@@ -1,4 +1,4 @@
-// Level pulse on a machine at work: its error is the one that doc/model.md 3 states, and its deviations contain it.
+// Tests that level pulse has the error stated in doc/model.md 3, within two standard deviations.
 #include <gtest/gtest.h>
 
 #include "hammer_loads/pipeline/pipeline.h"
@@ -15,7 +15,7 @@ struct Sample {
   Eigen::Vector3d wrench, deviation;
 };
 
-/// Published samples of the shipped machine between 3 s and 8 s.
+/// Returns the published samples of the shipped machine between 3 s and 8 s.
 std::vector<Sample> publishedAt(Level level) {
   Settings settings = test::heldHull(*load(configDirectory(), {}).value);
   settings.pipeline.level = level;

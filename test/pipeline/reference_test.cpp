@@ -1,4 +1,4 @@
-// A measured load beside the computed one, against sums by hand.
+// Tests the comparison of a measured load with the computed one against hand calculations.
 #include "hammer_loads/pipeline/reference.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 constexpr StampNs kMillisecond = 1'000'000;
 constexpr std::size_t kZ = 1;
 
-/// Linear between whole milliseconds.
+/// Returns a force that is linear between whole milliseconds [N].
 double forceAt(double milliseconds) {
   const double before = std::floor(milliseconds), part = milliseconds - before;
   const auto at = [](double t) { return 8000.0 * std::sin(0.03 * t) + 300.0; };

@@ -1,5 +1,5 @@
-// The rock's force on a hull that stands on it, by pressures and IMU: what must not be taken for it, nor it for
-// anything else.
+// Tests the rock's force on a hull that stands on it, from pressures and IMU. Other effects must not be taken for it,
+// nor it for other effects.
 #include <random>
 
 #include "hammer_loads/pipeline/warnings.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr char kByBoth[] = "hull_motion: imu\nboom_stiffness: identified\n";
 
-/// Pose, oil and rock at random.
+/// Draws pose, oil and rock.
 simulation::MachineSettings drawnOnRock(unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
@@ -21,9 +21,9 @@ simulation::MachineSettings drawnOnRock(unsigned seed) {
   return m;
 }
 
-/// Links that bend, worn pins, seals, air and a leak move the mean of what pressures show. Rock does not pull: where it
-/// seems to, that is the pressures'. Without that three of these had 91 to 94 % of the force wrong, and the flag of a
-/// hold-down force that is lost was right in 21 to 26 % of the samples.
+/// Bending links, worn pins, seals, air and a leak shift the mean of pressures. Rock does not pull: an apparent pull is
+/// an error of the pressures. Without this rule three machines had 91 to 94 % of the force wrong. Their flag of a lost
+/// hold-down force was right in 21 to 26 % of the samples.
 TEST(RocksForce, IsNoneBetweenLandings) {
   for (unsigned seed = 1; seed <= 2; ++seed) {
     simulation::MachineSettings m = drawnOnRock(seed);
@@ -43,8 +43,8 @@ TEST(RocksForce, IsNoneBetweenLandings) {
   }
 }
 
-/// Before the first blow nothing is learned of the oil. What a gyroscope was off by turned the boom away from its
-/// place, with these oil and pose by three times what it hangs down within a second, and pressures were distrusted.
+/// Nothing is learned of the oil before the first blow. The offset of a gyroscope used to turn the boom away: with this
+/// oil and pose by three times its static deflection within a second. Pressures were then rejected.
 TEST(RocksForce, DoesNotGrowOnABoomAtRest) {
   simulation::MachineSettings m = test::machineOnBoom(0.758, 50.0, {-0.654, 0.772, 0.036});
   m.on_boom.rock = {1.77e7, 3.0, 3550.0};
@@ -61,7 +61,7 @@ TEST(RocksForce, DoesNotGrowOnABoomAtRest) {
       const BoomFollower& boom = *player.pipeline.boom();
       distrusted += boom.pressureTrust().isLost();
       if (time < 1.2 || time > 2.0) return;
-      const Eigen::Vector3d right = m.on_boom.oil_stiffness * truth.displacement;  // of oil that is as in the file
+      const Eigen::Vector3d right = m.on_boom.oil_stiffness * truth.displacement;  // with oil as in the file
       farthest = std::max(farthest, (boom.boom().vibration().displacement().tail<3>() - right).norm());
       hangs = right.norm();
     });

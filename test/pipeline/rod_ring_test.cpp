@@ -1,4 +1,4 @@
-// What follows a blow in a machine whose rod gives: in the deviations of rigid levels, in the figures of level elastic.
+// Vibration of an elastic connecting rod after a blow, in deviations of rigid levels and figures of level elastic.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,21 +14,21 @@
 namespace hammer_loads {
 namespace {
 
-/// Root mean squares 10 to 40 ms after the blows [N], of Fz.
+/// Results of one run. error, said, elsewhere: root mean squares of Fz [N]; error and said 10 to 40 ms after the blows.
 struct RingFound {
-  double error{}, said{}, elsewhere{};  ///< said by the ring alone; elsewhere: more than 70 ms after
-  double impulse_bias{};                ///< of a turn's impulse along z, relative
+  double error{}, said{}, elsewhere{};  ///< said: due to the vibration; elsewhere: this later than 70 ms
+  double impulse_bias{};                ///< relative error of a revolution's impulse along z [-]
   double impulse_covered{};
   double restitution_bias{}, restitution_covered{}, energy_covered{}, restitution_said{};
-  double energy_bias{}, energy_said{};       ///< relative
-  double range_error[2]{}, range_said[2]{};  ///< of the equivalent range at slopes 3 and 5, relative
+  double energy_bias{}, energy_said{};       ///< relative [-]
+  double range_error[2]{}, range_said[2]{};  ///< equivalent range at slopes 3 and 5, relative [-]
 };
 
 double equivalentOf(const life::ExactCycles& cycles, double slope) {
   return life::equivalentLoad(life::rangesAndMeans(cycles), slope, 1.0, {}).value;
 }
 
-/// At work to the end of its duration [s].
+/// Returns a machine that works to the end of its duration [s].
 simulation::MachineSettings ringingMachine(const simulation::RodSettings& rod, double duration, std::uint64_t seed) {
   simulation::MachineSettings machine = test::machineWithRod(rod, seed);
   machine.duration = duration;
@@ -36,14 +36,14 @@ simulation::MachineSettings ringingMachine(const simulation::RodSettings& rod, d
   return machine;
 }
 
-using MachineKey = std::array<double, 6>;  ///< the hammer is the same in all
+using MachineKey = std::array<double, 6>;  ///< without the hammer, which all machines share
 
 MachineKey keyOf(const simulation::MachineSettings& machine) {
   return {machine.rod.stiffness, machine.rod.damping_ratio,        machine.rod.play,
           machine.crank.rate,    machine.strike.contact_stiffness, machine.strike.rock_strength};
 }
 
-/// Simulated once, for an elastic connecting rod takes seconds.
+/// Returns the session, simulated once, since an elastic connecting rod takes seconds.
 const simulation::Session& ringingSession(const simulation::MachineSettings& machine) {
   static std::map<MachineKey, simulation::Session> recorded;
   const auto [at, is_new] = recorded.try_emplace(keyOf(machine));
@@ -51,7 +51,7 @@ const simulation::Session& ringingSession(const simulation::MachineSettings& mac
   return at->second;
 }
 
-/// Cycles of the true Fz, without those that the touch of the tool adds.
+/// Returns the cycles of the true Fz without those that contact with the tool adds.
 const life::ExactCycles& trueCycles(const simulation::MachineSettings& machine) {
   static std::map<MachineKey, life::ExactCycles> counted;
   const auto [at, is_new] = counted.try_emplace(keyOf(machine));
@@ -63,7 +63,7 @@ const life::ExactCycles& trueCycles(const simulation::MachineSettings& machine) 
   return at->second;
 }
 
-enum class Ranges { kLeftOut, kCounted };  ///< their truth is a second simulation
+enum class Ranges { kLeftOut, kCounted };  ///< the true ranges need a second simulation
 
 RingFound ringOf(const simulation::RodSettings& rod, Level level, Ranges ranges = Ranges::kLeftOut,
                  double rate = 1000.0, const simulation::StrikeSettings& struck = {},
@@ -137,23 +137,23 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, Ranges ranges 
   return found;
 }
 
-/// At the levels below, its size is said where it acts, and the ranges of cycles that it may lengthen.
+/// Rigid levels state the size of the vibration while it acts, and the ranges of cycles that it may lengthen.
 TEST(RodRing, RigidLevelsStateItsSize) {
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
     const RingFound found = ringOf(rod, Level::kLinkage, Ranges::kCounted);
     EXPECT_GT(found.said, 0.7 * found.error);
-    EXPECT_LT(found.said, 4.0 * found.error);  // a rod softer than thought rings less
+    EXPECT_LT(found.said, 4.0 * found.error);  // a rod softer than assumed vibrates less
     EXPECT_LT(found.elsewhere, 0.05 * found.said);
     for (const int k : {0, 1}) {
-      EXPECT_LT(found.range_error[k], -0.1);  // without the ring
+      EXPECT_LT(found.range_error[k], -0.1);  // the vibration is missing
       EXPECT_LT(std::abs(found.range_error[k]), 2.0 * found.range_said[k]);
     }
   }
 }
 
-/// Issue: a bias of 0.02, or covered; a rigid machine's is no wider for it.
+/// Issue: bias at most 0.02, or within two standard deviations; a rigid machine's deviation does not grow by this.
 TEST(RodRing, RestitutionIsCovered) {
   for (const simulation::RodSettings& rod : {simulation::RodSettings{1e9, 0.2, 0.0}, {1.4e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
@@ -171,8 +171,8 @@ TEST(RodRing, RestitutionIsCovered) {
   EXPECT_LT(ringOf({}, Level::kLinkage).restitution_said, 0.025);
 }
 
-/// The pins let go of the rocker before it strikes: slower than a rigid linkage has it, by a crank that runs ahead.
-/// What that makes of a rigid level's figures is in their deviations; tight pins leave them as they were.
+/// Worn pins release the rocker before it strikes: it is slower than in a rigid linkage, and the crank leads. The
+/// deviations of a rigid level contain this effect; tight pins leave its figures unchanged.
 TEST(RodRing, WornPinsThatLetGoOfTheRockerAreInTheBlow) {
   const auto check = [](const simulation::RodSettings& rod, double rate) {
     SCOPED_TRACE(rod.play);
@@ -188,7 +188,7 @@ TEST(RodRing, WornPinsThatLetGoOfTheRockerAreInTheBlow) {
   check({1e9, 3.0, 2e-4}, 1000.0);
   check({1e9, 3.0, 5e-4}, 1000.0);
   check({1e9, 1.0, 3e-4}, 500.0);
-  EXPECT_LT(ringOf({}, Level::kLinkage).energy_said, 0.05);  // 0.045 by the drawing
+  EXPECT_LT(ringOf({}, Level::kLinkage).energy_said, 0.05);  // 0.045 with nominal parameters
 }
 
 TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
@@ -201,8 +201,8 @@ TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
   EXPECT_EQ(ringOf({}, Level::kLinkage, Ranges::kLeftOut, 1000.0, {}, exact).said, 0.0);
 }
 
-/// Rock that throws the rocker back with half its speed: a rigid mechanism reads a quarter off the crank. It says that
-/// it does not know; level elastic does.
+/// The rocker rebounds from this rock with half its speed; a rigid mechanism derives a quarter from the crank. Rigid
+/// levels state the restitution as unknown; level elastic identifies it.
 TEST(RodRing, RigidLevelsKnowNoRestitutionOnLivelyRock) {
   simulation::StrikeSettings lively;
   lively.contact_stiffness = 1.2e8, lively.rock_strength = 3e5;
@@ -212,7 +212,7 @@ TEST(RodRing, RigidLevelsKnowNoRestitutionOnLivelyRock) {
     EXPECT_GT(std::abs(rigid.restitution_bias), 0.1);
     EXPECT_GT(rigid.restitution_covered, 0.9);
     EXPECT_GT(rigid.energy_covered, 0.9);
-    EXPECT_NEAR(rigid.restitution_said, std::hypot(0.29, 0.2 - 0.5), 0.05);  // anything from 0 to 1; 0.2 is read
+    EXPECT_NEAR(rigid.restitution_said, std::hypot(0.29, 0.2 - 0.5), 0.05);  // unknown within 0 to 1; 0.2 is read
     EXPECT_GT(rigid.said, rigid.error);
     const RingFound elastic = ringOf(rod, Level::kElastic, Ranges::kLeftOut, 1000.0, lively);
     EXPECT_LT(std::abs(elastic.restitution_bias), 0.02);
@@ -222,7 +222,7 @@ TEST(RodRing, RigidLevelsKnowNoRestitutionOnLivelyRock) {
   }
 }
 
-/// Past the dead centre the linkage stops the rocker within some 10 ms, with more force than at any blow: a rod rings.
+/// Past the dead centre the linkage stops the rocker in some 10 ms, with more force than at a blow: the rod vibrates.
 TEST(RodRing, OccursWithoutAToolAsWell) {
   simulation::MachineSettings machine = ringingMachine({6e8, 0.2, 0.0}, 14.0, 4712);
   machine.blow.blank_share = 0.2;
@@ -231,7 +231,7 @@ TEST(RodRing, OccursWithoutAToolAsWell) {
   struct Found {
     int samples{}, covered{};
     double error{};
-  } blank, after;  // where no tool is met; after the blow of the next turn, when the crank is known anew
+  } blank, after;  // blank: no tool is met; after: after the next revolution's blow, the crank being known again
   std::size_t blow = 0;
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
     const simulation::CrankTruth& truth = session.truth[i];
@@ -255,7 +255,7 @@ TEST(RodRing, OccursWithoutAToolAsWell) {
   }
 }
 
-/// Just before the blow the rod loses its lever: the rocker lags, and the crank that it no longer brakes runs ahead.
+/// The rod has no lever arm just before the blow: the rocker lags, and the crank, no longer braked by it, leads.
 TEST(RodRing, BeginsBeforeTheBlow) {
   const simulation::Session session = simulation::recordSession(ringingMachine({5e8, 0.65, 0.0}, 10.0, 4713));
   Pipeline pipeline(test::shippedDrawing().mechanism, test::shippedDrawing().pipeline);
@@ -277,7 +277,7 @@ TEST(RodRing, BeginsBeforeTheBlow) {
   EXPECT_LT(said, square(4.0) * error);
 }
 
-/// Issue: counted damage 0.7 to 1.4 of the true; the rocker is picked up within the turn, whose impulse that is.
+/// Issue: counted damage 0.7 to 1.4 of the true one; picking up the rocker is part of the revolution's impulse.
 TEST(RodRing, LevelElasticCountsItAndItsImpulse) {
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
@@ -289,7 +289,7 @@ TEST(RodRing, LevelElasticCountsItAndItsImpulse) {
       EXPECT_LT(damage, 1.4);
       EXPECT_LT(std::abs(found.range_error[k]), 2.0 * found.range_said[k]);
     }
-    EXPECT_LT(std::abs(found.impulse_bias), 0.02);  // what the hull feels while the contact lasts is not in it
+    EXPECT_LT(std::abs(found.impulse_bias), 0.02);  // without the load on the hull during the contact
     EXPECT_GT(found.impulse_covered, 0.88);
   }
 }

@@ -1,4 +1,4 @@
-// What is said of machines whose rod gives, and of sensors that are off on them: rods that no constant was set by.
+// Warnings about machines with elastic connecting rods and about their faulty sensors, for rods not used in tuning.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Stiffness 2e8 to 1e10 N/m, damping ratio 0.2 to 3, a third of them without play, the others up to 0.5 mm.
+/// Draws stiffness 2e8 to 1e10 N/m, damping ratio 0.2 to 3, joint clearance up to 0.5 mm, none for every third seed.
 simulation::MachineSettings drawnMachine(std::mt19937_64& random, std::uint64_t seed) {
   std::uniform_real_distribution<double> part(0.0, 1.0);
   simulation::MachineSettings s = test::machineWithRod({}, seed);
@@ -28,7 +28,7 @@ simulation::MachineSettings drawnMachine(std::mt19937_64& random, std::uint64_t 
   return s;
 }
 
-/// The texts of all warnings, one line each, but for that of the pose.
+/// Returns the texts of all warnings, one line each, except that of the pose.
 std::string heardOf(const simulation::MachineSettings& machine, Level level) {
   PipelineSettings pipeline_settings = test::shippedDrawing().pipeline;
   pipeline_settings.level = level;
@@ -60,8 +60,8 @@ TEST(RodWarnings, ACorrectSensorIsNotBlamedForAnElasticRod) {
   }
 }
 
-/// For twelve seconds something that no model has shakes the crank in the half turn after the blow; then readings agree
-/// again.
+/// An unmodelled vibration shakes the crank for twelve seconds, in the half revolution after the blow. Then the
+/// readings agree with the model again.
 TEST(RodWarnings, ReportsNoCauseThatHasPassed) {
   simulation::MachineSettings machine = test::machineWithRod({}, 4401);
   machine.duration = 18.0;
@@ -83,8 +83,8 @@ TEST(RodWarnings, ReportsNoCauseThatHasPassed) {
   EXPECT_FALSE(names(said->text, "readings differ ")) << said->text;
 }
 
-/// Coarse or rare readings show less of the rod, and less of the zero. Where the rigid model follows less than half of
-/// such a recording, what else could be is named behind the rod.
+/// Coarse or rare readings show less of the rod and of the zero. If the rigid model follows less than half of such a
+/// recording, other possible causes are named after the rod.
 TEST(RodWarnings, ACorrectSensorIsNotBlamedForCoarseOrRareReadings) {
   std::mt19937_64 random(4302);
   int lost_most = 0;
@@ -106,7 +106,7 @@ TEST(RodWarnings, ACorrectSensorIsNotBlamedForCoarseOrRareReadings) {
   EXPECT_LE(lost_most, 1);
 }
 
-/// The other way round: a rigid rod is not blamed for a sensor or a shaft.
+/// A rigid rod is not blamed for an error of a sensor or a shaft.
 TEST(RodWarnings, ARigidRodIsNotBlamed) {
   std::mt19937_64 random(4303);
   const simulation::MachineSettings base = drawnMachine(random, 4350);
@@ -121,7 +121,7 @@ TEST(RodWarnings, ARigidRodIsNotBlamed) {
     EXPECT_TRUE(names(text, "zero: ")) << off << text;
     EXPECT_FALSE(names(text, "rod, pins")) << off << text;
   }
-  for (const double off : {6.0, 10.0}) {  // withheld: what is wrong before the blow is no rod
+  for (const double off : {6.0, 10.0}) {  // withheld: an error before the blow is not due to a rod
     const std::string text = rigid([&](auto& m) { m.crank.zero = -off * kDegree; });
     EXPECT_TRUE(names(text, "crank_zero_rad")) << off << text;
     EXPECT_FALSE(names(text, "level: elastic")) << off << text;
@@ -135,7 +135,7 @@ TEST(RodWarnings, ARigidRodIsNotBlamed) {
   EXPECT_TRUE(names(coupling, "coupling")) << coupling;
 }
 
-/// Up to 3 deg of the zero and 1.5 deg of the eccentricity are such a rod's, what is beyond is not.
+/// Such a rod explains up to 3 deg of the zero and 1.5 deg of the eccentricity; a notable error beyond is named.
 TEST(RodWarnings, NamesACauseThatNoRodExplainsBesideIt) {
   const auto heard = [](double zero, double eccentricity) {
     simulation::MachineSettings machine = simulation::workingMo100();

@@ -1,4 +1,4 @@
-// Cylinders whose seals rub: torques by measured pressures, and how far they are said to be off.
+// Cylinders with seal friction: torques from measured pressures and their standard deviations.
 #include <map>
 #include <random>
 
@@ -29,7 +29,7 @@ std::string knownFriction(double friction, double deviation) {
   return keys;
 }
 
-/// Seals of an unknown machine: what is usual covers them, what is said to be exact does not.
+/// Default standard deviations contain the errors by unknown seals; those for an exactly known zero friction do not.
 TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
   const simulation::Session& session = rubbingSession(0.02);
   for (const bool imu : {false, true}) {
@@ -38,7 +38,8 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
     EXPECT_GT(usual.covered(), 0.85) << imu;
     const BoomErrors none = errorsOf("no seals", session, knownFriction(0.0, 0.0), sensors);
     EXPECT_LT(none.covered(), usual.covered()) << imu;
-    // Identified or weighed friction is subtracted by the direction in which operator and vibration move the rods.
+    // Friction that is identified or in the boom file is subtracted by the direction in which operator and vibration
+    // move the rods.
     const BoomErrors weighed = errorsOf("weighed seals", session, knownFriction(0.02, 0.004), sensors);
     EXPECT_LT(usual.worstTorque(), 0.02) << imu;
     EXPECT_GT(none.worstTorque(), 0.04) << imu;
@@ -47,7 +48,7 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
   }
 }
 
-/// As a loader crane's cylinders were measured: a constant of 1 to 1.6 % of the push, whatever the force.
+/// Constant friction of 1 to 1.6 % of the largest push at any force, as measured on the cylinders of a loader crane.
 TEST(RubbingBoom, DefaultDeviationsCoverAConstantFriction) {
   for (const double constant : {0.010, 0.016}) {
     simulation::MachineSettings m = test::machineOnBoom(1.0, 100.0);
@@ -60,7 +61,7 @@ TEST(RubbingBoom, DefaultDeviationsCoverAConstantFriction) {
   }
 }
 
-/// Seals that yield before they slide, with the curve of Stribeck: neither is part of the pipeline's law. A friction of
+/// Seals yield before they slide and have a Stribeck curve; the pipeline's friction law contains neither. Friction of
 /// 1 % of the largest push is 3 to 17 % of the torques of hammer and vibration.
 TEST(RubbingBoom, FrictionOfOnePercentOfThePushIsIdentified) {
   std::mt19937 random(1);
@@ -80,8 +81,8 @@ TEST(RubbingBoom, FrictionOfOnePercentOfThePushIsIdentified) {
   }
 }
 
-/// Friction acts on the boom and not on its pressures, which seem up to 1.1 ms late by it. It is identified, also where
-/// it exceeds the default deviation of 3 %; pressures alone then show a part of it as damping.
+/// Friction acts on the boom but not on its pressures, which seem up to 1.1 ms late. It is identified even beyond the
+/// default deviation of 3 %; pressures alone then show a part of it as damping.
 TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
   for (const double friction : {0.0, 0.05, 0.08}) {
     const simulation::Session& session = rubbingSession(friction);
@@ -94,16 +95,15 @@ TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
   }
 }
 
-/// Without pressures too: nothing says that seals damp as a mode does.
+/// Deviations hold without pressures too, although seals need not damp as a mode does.
 TEST(RubbingBoom, DeviationsHoldForLoadsThatFollowFromTheMotionAlone) {
   const BoomErrors e = errorsOf("seals", rubbingSession(0.05), "boom_stiffness: identified\n", {true, false});
   EXPECT_GT(e.covered(), 0.88);
   EXPECT_GT(e.sectionsCovered(), 0.8);
 }
 
-/// Hoses that pass a change of pressure on with a time constant of 5 ms, later than any clock is: how late that is on
-/// the mean is found beside an IMU, so that deviations need not allow for every lag there could be, 13 times the
-/// errors.
+/// Hoses transmit changes of pressure with a time constant of 5 ms, more than the delay of any clock. Their mean lag is
+/// identified beside an IMU. Deviations for every possible lag would be 13 times the errors.
 TEST(LaggingPressures, ALagThatIsFoundIsNoReasonForDeviationsAsOfOneThatIsNot) {
   simulation::Session session = rubbingSession(0.0);
   constexpr double kHose = 5e-3;  // [s]
@@ -127,7 +127,7 @@ TEST(LaggingPressures, ALagThatIsFoundIsNoReasonForDeviationsAsOfOneThatIsNot) {
   EXPECT_LT(e.widest(), 4.0);
 }
 
-/// What weighing found of the sensors is taken off wherever they are used.
+/// Zeros and offsets from the boom's identification are subtracted wherever the sensors are used.
 TEST(RubbingBoom, ZerosAndOffsetsOfTheBoomFileAreTakenOff) {
   const simulation::Session& right = rubbingSession(0.0);
   simulation::Session wrong = right;
@@ -148,11 +148,11 @@ TEST(RubbingBoom, ZerosAndOffsetsOfTheBoomFileAreTakenOff) {
   EXPECT_GT(not_told.worstTorque(), as_right.worstTorque() + 0.01);
 }
 
-// Machines drawn at random whose one flaw is that their seals rub: nothing else may be named.
+// Random machines whose only flaw is seal friction: no other cause may be named.
 
 using simulation::MachineSettings;
 
-/// Pose, oil, seals of 0.5 to 2 % of the force; every second one presses its hull on rock.
+/// Draws pose, oil and seals of 0.5 to 2 % of the force; every second machine presses its hull on rock.
 MachineSettings rubbingMachine(unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
@@ -164,9 +164,9 @@ MachineSettings rubbingMachine(unsigned seed) {
   return m;
 }
 
-constexpr double kSettled = 6.0;  ///< [s]: the machine works from 2 s on, the oil is sought until then
+constexpr double kSettled = 6.0;  ///< [s]: the machine works from 2 s on, the oil is identified until then
 
-/// What is said of boom, rock, IMU and pressures at any time once the oil is found, without repetition.
+/// Returns the keys of all warnings once the oil is identified, each once, except that of the eccentricity.
 std::string namesOf(const MachineSettings& machine, const simulation::Session& session, bool imu, bool pressures) {
   const Settings settings = test::withExactHammer(test::settingsWith(
       std::string("boom: compliant\nboom_stiffness: identified\nhull_motion: ") + (imu ? "imu\n" : "model\n")));

@@ -1,5 +1,5 @@
-// Speeds that a drive filters, an encoder that slips, clocks that are coarse: what the wrench is worth, and what is
-// said. Seeds are others than those of the tables.
+// Speeds that a drive filters, an encoder that slips, coarse clocks: accuracy of the wrench and warnings. The seeds
+// differ from those of the tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ simulation::MachineSettings machineOfColumns(double rate, std::uint64_t seed) {
 }
 
 struct SensorJudged {
-  double x{}, z{}, torque{};  ///< rms over the peak
-  double covered{};           ///< of Fx, Fz, moment within two deviations: the least
+  double x{}, z{}, torque{};  ///< rms error over the peak [-]
+  double covered{};           ///< least part of Fx, Fz, moment within two standard deviations
   std::vector<Warning> warnings;
 
   std::string textOf(std::string_view key) const {
@@ -39,7 +39,7 @@ struct SensorJudged {
   }
 };
 
-/// From `from` [s] on, by the truth at the published stamps.
+/// Judges the samples from `from` [s] on by the truth at the published stamps.
 SensorJudged judgeSensor(const simulation::MachineSettings& machine, CrankStamps stamps = CrankStamps::kAuto,
                          double from = 4.0) {
   Settings settings = test::withExactHammer(test::heldHull(*load(configDirectory(), {}).value));
@@ -92,10 +92,10 @@ TEST(SensorColumns, SpeedsThatLagCostNothingAndAreNamed) {
   };
   for (const LaggingCase& c : {LaggingCase{1000.0, 3e-4, 2e-3}, {1000.0, 1e-3, 1e-2}, {200.0, 1e-4, 2e-2}})
     expectHarmless(c, 811);
-  // Pulled by such speeds the filter began anew, again and again, and never came to judge them: 2 to 9 times as far
-  // off.
+  // Such speeds made the filter restart again and again, so that it never judged them. Errors were 2 to 9 times as
+  // large.
   for (const LaggingCase& c : {LaggingCase{1000.0, 1e-3, 2e-2}, {200.0, 1e-3, 5e-3}}) expectHarmless(c, 823);
-  // With seed 823 1.4 times as far off: how it begins is drawn.
+  // With seed 823 the errors are 1.4 times as large, since the start is drawn.
   expectHarmless({200.0, 1e-3, 2e-2}, 811);
 }
 
@@ -110,7 +110,7 @@ TEST(SensorColumns, SpeedsOutOfScaleCostNothingAndAreNamed) {
   EXPECT_NEAR(namedAfter(with.textOf("speed scale"), "are "), 1.05, 0.01);
 }
 
-/// Where stamps that jitter are taken as they are, speeds are worth having.
+/// Speeds reduce the errors where jittering stamps are used unchanged.
 TEST(SensorColumns, CorrectSpeedsAreUsed) {
   for (const double rate : {1000.0, 200.0}) {
     simulation::MachineSettings s = machineOfColumns(rate, 813);
@@ -128,7 +128,7 @@ TEST(SensorColumns, ASlipIsAStepAtItsInstant) {
     s.crank.slip = {degrees * kDegree, {7.03, simulation::kNever}};
     const SensorJudged judged = judgeSensor(s, CrankStamps::kAuto, 7.53);
     EXPECT_LT(judged.z, 0.01) << degrees;
-    EXPECT_LT(judged.x, 0.03) << degrees;  // jumps at the blow by its peak: a sample in 1000 on the other side of it
+    EXPECT_LT(judged.x, 0.03) << degrees;  // jumps by its peak at the blow: 1 of 1000 samples is on the other side
     EXPECT_GT(judged.covered, 0.88);
     const std::string text = judged.textOf("slip");
     EXPECT_NEAR(namedAfter(text, "slipped by "), degrees, 0.1) << text;
@@ -166,7 +166,7 @@ TEST(SensorColumns, AnAngleThatLagsIsNamedAndCostsNothing) {
   }
 }
 
-/// An encoder off its centre looks a little like one that lags.
+/// An eccentric encoder slightly resembles a lagging one.
 TEST(SensorColumns, AnEccentricEncoderIsNoLagToTakeOff) {
   for (const double degrees : {0.4, 1.0}) {
     simulation::MachineSettings s = machineOfColumns(1000.0, 828);
@@ -194,7 +194,7 @@ TEST(SensorColumns, SteadyStampsStandLostSamples) {
   EXPECT_LT(std::max({judged.x, judged.z, judged.torque}), 0.003);
 }
 
-/// None of this is said of sensors that are right, also where the machine stops and starts.
+/// Correct sensors cause none of these warnings, even where the machine stops and starts.
 TEST(SensorColumns, SensorsThatAreRightAreNotSuspected) {
   for (const double rate : {1000.0, 200.0}) {
     for (const double jitter : {0.0, 3e-4}) {

@@ -1,5 +1,4 @@
-// Faults of the crank's sensor, live ones in the middle of work: what is accepted stays good, during the fault and
-// after.
+// Faults of the crank's sensor during work: accepted samples stay accurate, during the fault and after it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,9 +17,9 @@ namespace {
 using simulation::Session;
 
 constexpr double kFaultFrom = 2.4,
-                 kCountedTo = 3.0;   // [s] faults begin within the turn after kFaultFrom; errors count until kCountedTo
+                 kCountedTo = 3.0;   // [s] faults begin within a revolution from kFaultFrom; errors count to kCountedTo
 constexpr double kTurn = 0.22;       // [s]
-constexpr double kGoodError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
+constexpr double kGoodError = 0.02;  // error of Fz over its peak: undisturbed sessions stay within 0.012
 
 /// Changes the sample at a time [s].
 using Fault = std::function<void(double, CrankSample&)>;
@@ -35,7 +34,7 @@ Session record(double rate) {
 }
 
 struct Result {
-  double worst{};          ///< error of Fz over its peak, of what was accepted from kFaultFrom to kCountedTo
+  double worst{};          ///< error of Fz over its peak, accepted samples from kFaultFrom to kCountedTo
   std::uint64_t lost{};    ///< samples not accepted in the meantime
   std::uint64_t faulty{};  ///< samples that the fault changed
 };
@@ -61,7 +60,7 @@ Result play(const Session& session, const Fault& fault) {
   return result;
 }
 
-/// Every place of the turn in steps that no period of the machine divides.
+/// Calls `at` with instants all over a revolution, in steps that divide no period of the machine.
 void everywhere(const std::function<void(double)>& at) {
   for (double begin = kFaultFrom; begin < kFaultFrom + kTurn; begin += 0.0203) at(begin);
 }
@@ -84,7 +83,7 @@ TEST(SensorFault, CausesNoLargeErrorForAnAngleThatStandsStillWhileTheSpeedGoesOn
   }
 }
 
-/// Far: by more than a third of the way between two samples of the fastest crank here, 0.052 rad.
+/// An angle is far off beyond a third of the way between two samples of the fastest crank here, 0.052 rad.
 TEST(SensorFault, LosesOneSampleToAnAngleFarOff) {
   const Session session = record(1000.0);
   for (const bool with_speed : {true, false}) {

@@ -1,4 +1,4 @@
-// Readings that no hull gives: single ones are refused, sensors that go on giving them are not used.
+// Readings that no hull can cause: single ones are refused, sensors that keep giving them are not used.
 #include "hammer_loads/pipeline/sensor_trust.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 using test::kMs;
 constexpr double kReadingStep = 1e-3;  // [s] between readings
 
-/// An IMU on a hull at rest, where the weight is 10 m/s2. noise: readings alternate by it [m/s2].
+/// IMU on a hull at rest, where the weight is 10 m/s2. noise: amplitude of alternating readings [m/s2].
 class ImuOfAHull {
  public:
   void run(double time, double mean_error, double rate = 0.0, double noise = 1e-3) {

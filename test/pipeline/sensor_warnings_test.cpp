@@ -1,4 +1,4 @@
-// What the warnings say of simulated machines with one flaw each, and of machines without.
+// Warnings about simulated machines with one flaw each, and about machines without flaws.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ Heard hear(const simulation::MachineSettings& machine) {
   return heard;
 }
 
-/// The hull stands still and upright, so that no joint needs to be heard.
+/// Returns the machine with its hull at rest and upright, so that no joint states are needed.
 simulation::MachineSettings upright(simulation::MachineSettings s) {
   for (simulation::JointMotion& joint : s.boom) joint.mean = joint.amplitude = 0.0;
   return s;
@@ -104,7 +104,7 @@ TEST(SensorWarnings, ACouplingThatTwistsIsWithheldAndNamed) {
   EXPECT_NE(text->text.find("coupling"), std::string::npos) << text->text;
 }
 
-/// The samples end within the time that a blow takes to be measured.
+/// The samples end before the last blow is completely measured.
 TEST(PipelineEnd, TheLastBlowIsGiven) {
   simulation::MachineSettings s = upright(longMachineAt(1000.0, 45));
   const std::vector<simulation::BlowTruth> blows = simulation::recordSession(s).blows;

@@ -1,4 +1,4 @@
-// Pressures through hoses, in coarse counts, 100 times a second, and stamps that wait for a bus, the hull's IMU too.
+// Pressures through hoses, in coarse counts, at 100 Hz; stamps delayed by a bus, also those of the hull's IMU.
 #include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {
@@ -24,8 +24,8 @@ accuracy::BoomErrors over(const OverBus& line, double rate, double count, unsign
       {imu, true});
 }
 
-/// A hose takes the more of a swing the faster it is, which no delay does; and a line through two late readings goes on
-/// for longer than they are apart.
+/// A hose attenuates an oscillation more at higher frequencies, which a delay does not. A line through two late
+/// readings is extrapolated for longer than their interval.
 TEST(SensorsOverBus, LeaveTheTorquesOfABoomThatIsIdentified) {
   for (const OverBus& line : {OverBus{6.2e-3, 1.75e-3, {-0.68, 1.55, -0.60}, 1.1, 0.0},
                               OverBus{6.5e-3, 1.2e-3, {-0.60, 1.40, -0.70}, 0.9, 3500.0}}) {
@@ -51,7 +51,7 @@ TEST(SensorsOverBus, LeaveNoTorquesByPressuresAlone) {
   EXPECT_FALSE(with_imu.warnedOf("boom loads"));
 }
 
-/// Stamps that jitter are no delay.
+/// Jittering stamps are not mistaken for a delay.
 TEST(SensorsOverBus, JitterOfStampsIsLearned) {
   const accuracy::BoomErrors e = over({0.0, 1.5e-3, {-0.45, 1.00, -0.50}, 1.2, 0.0}, 500.0, 0.0);
   EXPECT_LT(e.worstTorque(), 0.03);
@@ -59,8 +59,8 @@ TEST(SensorsOverBus, JitterOfStampsIsLearned) {
   EXPECT_FALSE(e.warnedOfPressures());
 }
 
-/// Two of an IMU's readings that waited for one bus may be stamped as one right after the other: no hull turned between
-/// them, and none is put into the crank's load.
+/// Two IMU readings that waited for one bus may have stamps in quick succession. The hull did not turn between them,
+/// and no such turn may enter the crank's load.
 TEST(SensorsOverBus, ReadingsThatCameTogetherTurnNoHull) {
   const accuracy::BoomErrors e = over({0.0, 1.751e-3, {-0.324, 1.021, -0.904}, 1.08, 0.0}, 500.0, 0.0, 901);
   EXPECT_LT(e.force_z.rms(), 0.01);
@@ -68,8 +68,8 @@ TEST(SensorsOverBus, ReadingsThatCameTogetherTurnNoHull) {
   EXPECT_GT(e.covered(), 0.9);
 }
 
-/// Nor do the first ones of a unit: one of these machines had its crank thrown away by 1e7 rad/s2, and as its speed was
-/// in doubt from then on, it began anew with each sample.
+/// The first readings of a unit turn no hull either. One of these machines had a crank acceleration of 1e7 rad/s2; with
+/// its speed then uncertain, the filter restarted at each sample.
 TEST(SensorsOverBus, TurnNoHullWithTheFirstReadings) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     simulation::MachineSettings machine = test::machineOnBoom(1.0, 100.0);

@@ -1,4 +1,4 @@
-/// The simulated machine with the hammer that the shipped files describe, and with a rod that gives.
+/// Simulated machines with the hammer of the shipped files, also with an elastic connecting rod.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hammer_loads::test {
 
-/// At work until half a second before the end of its duration [s].
+/// Returns a machine that works until half a second before the end of its duration [s].
 inline simulation::MachineSettings shippedMachine(const Settings& shipped, double duration, std::uint64_t seed) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = shipped.mechanism.parameters();
@@ -44,7 +44,7 @@ inline simulation::MachineSettings machineWithRod(const simulation::RodSettings&
   return s;
 }
 
-/// Stamps without jitter: a mean over whole steps ends at samples.
+/// Returns a machine whose stamps do not jitter, so that a mean over whole steps ends at samples.
 inline simulation::MachineSettings machineOfOutputs(const simulation::RodSettings& rod, std::uint64_t seed) {
   simulation::MachineSettings s = machineWithRod(rod, seed);
   s.crank.jitter = 0.0;

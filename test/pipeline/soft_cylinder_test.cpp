@@ -1,4 +1,4 @@
-// One cylinder on oil that is softer than the others': learned from an IMU alone, and said to be that.
+// One cylinder with softer oil than the others: identified from an IMU alone and named in the warning.
 #include <random>
 
 #include "hammer_loads/pipeline/warnings.h"
@@ -12,7 +12,7 @@ using accuracy::SensorsOnBoom;
 
 constexpr char kImu[] = "boom: compliant\nhull_motion: imu\nboom_stiffness: identified\n";
 
-/// A pose, and how the oil of each differs from the file's.
+/// Draws pose and common stiffness of the oil. oil: further factor of each cylinder, relative to the file.
 simulation::MachineSettings drawnMachine(unsigned seed, std::array<double, 3> oil) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
@@ -71,7 +71,7 @@ TEST_P(SoftCylinder, IsLearnedFromAnImuAloneAndNamed) {
 
 INSTANTIATE_TEST_SUITE_P(Each, SoftCylinder, testing::Values(0U, 1U, 2U));
 
-/// What a boom file allows for is no finding; what it rules out is.
+/// A stiffness within the boom file's standard deviation is no finding, one beyond it is.
 TEST(SoftCylinder, IsNamedByWhatTheBoomFileAllowsFor) {
   const simulation::MachineSettings machine = drawnMachine(2, {1.0, 0.85, 1.1});
   EXPECT_EQ(findOil(machine, kImu, {true, false}).named, "");
@@ -84,8 +84,8 @@ TEST(SoftCylinder, IsNamedByWhatTheBoomFileAllowsFor) {
   EXPECT_EQ(findOil(drawnMachine(2, {1.0, 0.5, 1.0}), wide, {true, false}).named, "");
 }
 
-/// Seals damp the boom beside its oil, and shift what the oil seems: the stiffness found has that in its deviation.
-/// Where nothing rubs it is known to some percent.
+/// Seals damp the boom beside its oil and shift the apparent stiffness, whose standard deviation contains this shift.
+/// Without friction the stiffness is known to some percent.
 TEST(SoftCylinder, HasTheUncertaintyOfDampingBesideTheOil) {
   const std::array<double, 3> oil{1.0, 1.0, 2.2};
   int within = 0, all = 0;
@@ -108,7 +108,7 @@ TEST(SoftCylinder, HasTheUncertaintyOfDampingBesideTheOil) {
   EXPECT_GE(within, 0.85 * all);
 }
 
-/// Pressures show the oil's force itself: they find the same cylinder, and no stamps are late.
+/// Pressures show the oil's force directly: they identify the same cylinder, and no stamps are reported as late.
 TEST(SoftCylinder, IsNoLateStampOfPressures) {
   for (const bool imu : {false, true}) {
     const FoundOil found = findOil(drawnMachine(3, {1.0, 1.0, 0.4}), kImu, {imu, true});

@@ -1,4 +1,4 @@
-// Loads of each turn of a session against what the pipeline itself publishes.
+// Compares the loads of each revolution with those that the pipeline itself publishes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,9 +25,9 @@ TEST(TurnLoads, HaveThePulsesPeakAtAnyRateForTheHull) {
         if (!turn->whole) continue;
         ++turns;
         const HalfSinePulse& pulse = *result.ends[i].pulse;
-        // The pulse's amplitude is that of a parabola through points 1.25 ms apart, along the turn's own track.
+        // The pulse's amplitude is that of a parabola through points 1.25 ms apart on the revolution's own path.
         EXPECT_NEAR(turn->channels[1].maximum.value, pulse.amplitude, 5e-4 * kPeak) << rate;
-        // A mean is of what was published: at 100 Hz a sample withheld beside the blow is a twentieth of the turn.
+        // The mean covers published samples. At 100 Hz one withheld beside the blow is a twentieth of the revolution.
         if (std::exchange(withheld, 0) > 0 && rate < 1000.0) continue;
         EXPECT_NEAR(turn->channels[1].mean, pulse.turn_impulse_z / pulse.period, 0.01 * kPeak) << rate;
       }
@@ -36,9 +36,8 @@ TEST(TurnLoads, HaveThePulsesPeakAtAnyRateForTheHull) {
   }
 }
 
-/// As outputs of a high rate have it at the instant closest to the extreme; the last sample may be 10 ms before it.
-/// From the seventh turn on: in the sixth the zero becomes known, so that the deviations change between the extreme and
-/// the end of its turn.
+/// Revolution in which the zero becomes known: deviations change between its extreme and its end. A later extreme has
+/// the deviation of the closest output of a high rate; the last sample may be 10 ms before it.
 constexpr std::uint64_t kZeroKnown = 6;
 
 TEST(TurnLoads, AnExtremeBetweenSamplesHasTheDeviationOfItsOwnPlace) {
@@ -63,22 +62,22 @@ TEST(TurnLoads, AnExtremeBetweenSamplesHasTheDeviationOfItsOwnPlace) {
   EXPECT_GT(turns, 5);
 }
 
-/// Instants within 8 ms of one [s].
+/// Returns the instants within 8 ms of a blow [s].
 std::vector<double> aroundBlow(double time) {
   std::vector<double> times;
   for (int i = -80; i <= 80; ++i) times.push_back(time + 1e-4 * i);
   return times;
 }
 
-/// At 100 Hz the next sample is 9 to 20 deg from the blow, where the force is a fifth less. The model of a machine
-/// whose zero is 2 deg off has a tenth more than there is, the more the closer to the blow.
+/// At 100 Hz the next sample is 9 to 20 deg from the blow, where the force is a fifth less. With a zero 2 deg off, the
+/// model's force is a tenth too large, increasingly so towards the blow.
 TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.crank.rate = 100.0;
   machine.crank.zero = 2.0 * kTwoPi / 360.0;
   machine.duration = 12.0;
   std::size_t judged = 0, withheld = 0;
-  double sum = 0.0, most = 0.0;  // of the true extreme
+  double sum = 0.0, most = 0.0;  // sum and maximum of the ratio to the true extreme
   run(test::settingsWith("{}"), simulation::recordSession(machine),
       [&](const SampleResult& result, const LifeFollower& follower) {
         for (std::size_t i = 0; i < result.turn_ends; ++i) {
@@ -100,7 +99,7 @@ TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
   EXPECT_LT(most, 1.02);
 }
 
-/// Where the rod's spring is followed, loads between samples are not those of a rigid path.
+/// Level elastic follows the rod's spring: loads between samples differ from those of a rigid linkage.
 TEST(TurnLoads, AreAsPublishedForAnElasticRod) {
   const Settings settings = test::settingsWith("level: elastic\n");
   simulation::MachineSettings machine = simulation::workingMo100();
@@ -144,8 +143,8 @@ TEST(TurnLoads, AreThoseOfTheSamplesForJoints) {
         const auto channel = static_cast<std::size_t>(joint - follower.channels().begin());
         for (std::size_t i = 0; i < result.turn_ends; ++i) {
           const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
-          // The samples of some 50 ms after a blow belong to the next turn: no greater load may come there in this
-          // session.
+          // The samples of some 50 ms after a blow belong to the next revolution. No greater load may occur there in
+          // this session.
           if (turn->whole && blow && *blow == turn->start) {
             ++turns;
             const life::LoadExtreme& maximum = turn->channels[channel].maximum;

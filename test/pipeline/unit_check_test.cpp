@@ -17,10 +17,10 @@ struct Sensor {
   bool speed{true};
 };
 
-/// Whether a session ever looks like degrees; and whether it does at its end.
+/// Result of a check for degrees: found at any time, and found at the end of the session.
 struct Verdict {
   bool ever{}, last{};
-  std::size_t first{};  ///< sample that told it
+  std::size_t first{};  ///< index of the first sample with this result
 };
 
 Verdict judge(const simulation::Session& session, const Sensor& sensor, UnitCheck& check) {

@@ -1,5 +1,5 @@
-// Deviations after a blow of machines that no level models: friction and clearance of the pins, weak damping, a rod
-// that bends. The machines are test::WornMachine, which shares no equation with the package.
+// Standard deviations after a blow of machines that no level models: friction and clearance of the pins, weak damping,
+// a rod that bends. The machines are test::WornMachine, which shares no equation with the package.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using test::Covered;
 using test::coveredOf;
 using test::wornMo100;
 
-/// Without friction and clearance, for six seconds.
+/// Returns the results without friction and clearance, for six seconds.
 const Covered& coveredAsNew() {
   static const Covered covered = [] {
     test::WornMachineSettings machine = wornMo100(test::shippedDrawing());
@@ -57,8 +57,8 @@ TEST(WornMachine, IsFollowedAfterABlowThatNearlyStopsTheCrank) {
   EXPECT_LT(std::sqrt(covered.error[0] / covered.count[0]), 1000.0);
 }
 
-/// Contacts in pins with clearance load the hull for a small share of the time; a damage-equivalent range is by their
-/// crests. The readings show a clearance: the range of a machine without one is not stated as uncertain.
+/// Contacts in pins with clearance load the hull for a small share of the time, but their crests determine an
+/// equivalent range. The readings show a clearance: the range of a machine without one is not stated as uncertain.
 TEST(WornMachine, HasAnUncertainRangeOnlyWhereItsPinsShowClearance) {
   const auto rangeOf = [](const Covered& covered) {
     return life::equivalentLoad(life::rangesAndMeans(*covered.counts), 5.0, 1.0, life::rangeDeviation(*covered.counts));

@@ -19,10 +19,10 @@ using test::kMs;
 struct SwingingMachine {
   HammerParameters hammer;
   test::HullBody body;
-  double torque{};  ///< of the drive [N m]
+  double torque{};  ///< drive torque [N m]
 };
 
-/// The tool stands in the percussion centre: a blow leaves the hull its velocity.
+/// Draws a machine whose tool is at the centre of percussion: a blow does not change the hull's velocity.
 SwingingMachine drawnSwing(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
@@ -58,14 +58,14 @@ struct SwingFigure {
 };
 
 struct SwingErrors {
-  SwingFigure energy, restitution, impulse;  ///< of the true ones, relative but for the restitution
+  SwingFigure energy, restitution, impulse;  ///< relative errors; absolute for the restitution
 };
 
 struct TrueBlow {
   double time{}, energy{}, restitution{}, impulse{};
 };
 
-/// From the state at most a step after the blow: crank speed by its acceleration, hull's velocity as it is.
+/// Returns the blow from the state at most a step later: crank speed by its acceleration, hull velocity unchanged.
 TrueBlow trueBlow(const SwingingMachine& m, const test::FreeRun& run, double time) {
   const test::FreeState s = run.state();
   const double since = s.crank.offset / s.crank_speed, reach = m.hammer.striking_distance;
@@ -109,7 +109,7 @@ void followSwing(const SwingingMachine& m, const std::string& hull_motion, std::
   }
 }
 
-/// most: stated deviation over the error.
+/// most: largest ratio of the stated standard deviation to the rms error.
 void expectHonest(const SwingFigure& f, const char* name, double most) {
   std::printf("%s: %d of %d blows within two deviations, rms error %.4f, stated %.4f\n", name, f.within, f.count,
               std::sqrt(f.squares / f.count), std::sqrt(f.said / f.count));
@@ -123,7 +123,7 @@ TEST(UnmeasuredHull, TheDeviationsOfABlowHoldTheHullsVelocity) {
   EXPECT_GT(errors.energy.count, 150);
   expectHonest(errors.energy, "energy", 3.0);
   expectHonest(errors.restitution, "restitution", 3.0);
-  expectHonest(errors.impulse, "tool impulse", 4.0);  // 3.4 times by the crank alone
+  expectHonest(errors.impulse, "tool impulse", 4.0);  // ratio 3.4 with the crank alone
 }
 
 TEST(UnmeasuredHull, AHullThatIsHeldHasNoPartOfIt) {

@@ -1,5 +1,5 @@
-// A boom's vibration that grows beyond what its loads can do is recognised; one that is shaken as hard as it goes is
-// not.
+// Tests that a boom's vibration beyond the largest effect of its loads is detected, and that the strongest excitation
+// within them is not.
 #include "hammer_loads/pipeline/vibration_bound.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct ShakenBoom {
   JointVector torqueOf(double force_z) const { return boom.hammerTorque({{0.0, 0.0, force_z}, {0.0, 0.0, 0.0}}); }
 };
 
-/// In resonance with the lowest mode, the worst that a force of a size can do: 40 kN for 10 s.
+/// Resonance with the lowest mode is the worst effect of a force of given size: 40 kN for 10 s.
 TEST(VibrationBound, HoldsForAnyForceAtResonance) {
   ShakenBoom shaken;
   ASSERT_TRUE(shaken.boom.vibration().known());
@@ -42,7 +42,7 @@ TEST(VibrationBound, HoldsForAnyForceAtResonance) {
   EXPECT_GT(most, 1000.0) << "it does shake";
 }
 
-/// The same motion is too much for a hammer that did nothing.
+/// A motion that no load has caused violates the bound.
 TEST(VibrationBound, DoesNotHoldForEnergyFromNowhere) {
   ShakenBoom shaken;
   EXPECT_TRUE(shaken.bound.holds(shaken.boom.vibration()));

@@ -50,7 +50,7 @@ Total sum(const Session& session, const MachineSettings& machine, PipelineSettin
 
 PipelineSettings settingsOf(Level level, OutputKind kind, double rate) {
   PipelineSettings settings = loadFiles(configDirectory(), {}).value->pipeline;
-  settings.crank_zero_std = 0.003;  // as of `calibrate`: nothing is withheld for it
+  settings.crank_zero_std = 0.003;  // as after `calibrate`: nothing is withheld because of it
   settings.level = level;
   settings.output = kind;
   settings.output_rate = rate;
@@ -66,7 +66,7 @@ TEST_P(MeanOutput, LosesNoImpulseAtAnyRate) {
   const Session session = simulation::recordSession(machine);
   const StampNs until = 5000000000;  // a multiple of every interval below
   const Total at_samples = sum(session, machine, settingsOf(level, OutputKind::kMean, 0.0), until);
-  const double size = 500.0 * 25;  // [N s] of some 25 turns, torque [N m s] as large
+  const double size = 500.0 * 25;  // [N s] of some 25 revolutions; the same number for the moment [N m s]
   ASSERT_NEAR(at_samples.time, 5.0, 1e-9);
   for (const double rate : {5000.0, 1000.0, 100.0, 20.0}) {
     const Total fixed = sum(session, machine, settingsOf(level, OutputKind::kMean, rate), until);
@@ -89,7 +89,7 @@ TEST(MeanOutput, IsTheImpulseOfTheTurns) {
   settings.hull_pitch = 0.0;
   settings.pitch_joints.clear();
   const Total total = sum(session, machine, settings, 5000000000);
-  double true_impulse = 0.0;  // by Simpson of the true force, blow by blow apart
+  double true_impulse = 0.0;  // trapezoidal rule over the true force
   for (std::size_t i = 1; i < session.truth.size(); ++i) {
     const auto &a = session.truth[i - 1], &b = session.truth[i];
     if (b.time > 5.0) break;

@@ -1,4 +1,4 @@
-/// A zero that is wrong by any angle, on simulated machines: what is published, and what is stated of it.
+/// Simulated machines with any error of the encoder's zero: published wrenches and stated error of the zero.
 #include "hammer_loads/pipeline/zero_watch.h"
 
 #include <gtest/gtest.h>
@@ -22,11 +22,11 @@ constexpr double kNearTouch = 1.0e-3;     ///< [s]: the contact force is not par
 
 struct DrawnMachine {
   simulation::MachineSettings machine;
-  bool elastic{};  ///< else with a rigid connecting rod
+  bool elastic{};  ///< false: rigid connecting rod
 };
 
-/// Rates, counts, speeds, supply, drive inertia, blow, angle at the start and connecting rod are drawn. zero: largest
-/// error of the encoder's zero, in either direction [rad].
+/// Draws rates, counts, speeds, supply, drive inertia, blow, start angle and connecting rod. zero: largest error of the
+/// encoder's zero, in either direction [rad].
 DrawnMachine drawMachine(const Settings& nominal, std::uint64_t seed, double zero, double duration) {
   std::mt19937_64 random(seed);
   const auto between = [&](double low, double high) {
@@ -63,7 +63,7 @@ DrawnMachine drawMachine(const Settings& nominal, std::uint64_t seed, double zer
   return drawn;
 }
 
-/// Instants at which the rocker of an elastic machine touches the tool [s], to 0.2 ms.
+/// Returns the instants at which the rocker of an elastic machine touches the tool [s], to 0.2 ms.
 std::vector<double> touchesOf(const simulation::MachineSettings& machine) {
   std::vector<double> times, touches;
   for (double time = 0.0; time < machine.duration; time += 2e-4) times.push_back(time);
@@ -74,17 +74,17 @@ std::vector<double> touchesOf(const simulation::MachineSettings& machine) {
 
 struct ZeroPlayed {
   std::size_t samples{}, published{}, beyond{};
-  std::size_t early{}, early_published{};  ///< of the first second of motion
+  std::size_t early{}, early_published{};  ///< samples of the first second of motion
   double worst{};                          ///< error over standard deviation
   double worst_at{};                       ///< [s]
-  double worst_blow{};                     ///< energy's error over its standard deviation, of all blows
+  double worst_blow{};                     ///< largest error of a blow's energy over its standard deviation
   double worst_of_peak{};                  ///< error of Fx over its peak, after the start
-  double stated{}, deviation{};            ///< error of the zero [rad]
+  double stated{}, deviation{};            ///< stated error of the zero and its standard deviation [rad]
   bool withholds{};
   std::vector<Warning> warnings;
 };
 
-/// Error of the energy of a blow at `time` [s] over its standard deviation; 0: the energy is not stated.
+/// Returns the error of a blow's energy at `time` [s] over its standard deviation; 0: the energy is not stated.
 double blowError(const TurnEnd& end, double time, const std::vector<simulation::BlowTruth>& blows) {
   if (!(end.blow.energy_std > 0.0)) return 0.0;
   const auto truth = std::min_element(blows.begin(), blows.end(), [&](const auto& a, const auto& b) {
@@ -93,7 +93,7 @@ double blowError(const TurnEnd& end, double time, const std::vector<simulation::
   return truth == blows.end() ? 0.0 : std::abs(end.blow.energy - truth->strike.energy) / end.blow.energy_std;
 }
 
-/// from: instant of the first sample that is judged [s].
+/// Plays a session. from: instant of the first sample that is judged [s].
 ZeroPlayed playZero(const Settings& settings, const simulation::Session& session,
                     const std::vector<double>& touches = {}, double from = 0.0) {
   test::Player player(settings, false, session);
@@ -156,7 +156,7 @@ ZeroPlayed playWithZero(const simulation::Session& session, double zero, bool sp
   return playZero(test::settingsWith(kUnknownZero), changed, {}, from);
 }
 
-/// Within ten turns a wrong zero has shown itself.
+/// A wrong zero shows within ten revolutions.
 TEST(ZeroWatch, PublishesNothingThatIsImpossibleByItsDeviationAfterTenTurns) {
   const simulation::Session session = zeroSession(1000.0, 5);
   for (const double degrees : {-10.0, -6.0, -2.0, -0.7, 0.7, 6.0, 10.0}) {
@@ -166,8 +166,8 @@ TEST(ZeroWatch, PublishesNothingThatIsImpossibleByItsDeviationAfterTenTurns) {
   }
 }
 
-/// Machines, sensors and zeros of up to 10 deg are drawn. Before the first blow nothing shows the zero: its prior
-/// stands in the deviations until the turns have shown it.
+/// Machines, sensors and zeros of up to 10 deg are drawn. Nothing shows the zero before the first blow. The deviations
+/// contain its prior until the revolutions have shown it.
 TEST(ZeroWatch, PublishesNothingThatIsImpossibleByItsDeviationFromTheStartOn) {
   const Settings rigid = test::settingsWith("level: linkage\n" + kUnknownZero),
                  elastic = test::settingsWith("level: elastic\n" + kUnknownZero);
@@ -185,8 +185,8 @@ TEST(ZeroWatch, PublishesNothingThatIsImpossibleByItsDeviationFromTheStartOn) {
   EXPECT_EQ(wrong, 0U);
 }
 
-/// The filter explains the readings of this machine with a zero 7.5 deg wrong, and finds 0.6 deg: only the search over
-/// the whole turn contradicts it.
+/// The filter explains the readings of this machine with a zero 7.5 deg wrong, and finds 0.6 deg. Only the search over
+/// the whole revolution contradicts it.
 TEST(ZeroWatch, SearchesEvenWhereTheFilterAgreesWithItsReadings) {
   const Settings settings = test::settingsWith("level: linkage\n" + kUnknownZero);
   const DrawnMachine drawn = drawMachine(settings, 1230213, 10.0 * kDegree, 8.0);
@@ -197,8 +197,8 @@ TEST(ZeroWatch, SearchesEvenWhereTheFilterAgreesWithItsReadings) {
   EXPECT_NEAR(played.stated, drawn.machine.crank.zero, std::max(0.5 * kDegree, 2.0 * played.deviation));
 }
 
-/// What is counted cannot be taken back: with a zero wrong by more than is corrected nothing ever is, with a right one
-/// once it is known.
+/// Counted cycles cannot be corrected. With a zero error beyond the corrected range none are ever counted; with a
+/// correct zero they are counted once it is known.
 TEST(ZeroWatch, NothingCountsBeforeTheZeroIsKnown) {
   const simulation::Session session = zeroSession(1000.0, 5);
   const Settings settings = test::settingsWith(kUnknownZero);
@@ -212,7 +212,7 @@ TEST(ZeroWatch, NothingCountsBeforeTheZeroIsKnown) {
   }
 }
 
-/// Of a right zero the first second has to stay; one that `calibrate` has found costs nothing.
+/// A correct zero that is not known yet withholds little of the first second; one from `calibrate` withholds nothing.
 TEST(ZeroWatch, WithholdsLittleOfARightZeroAndNothingOfACalibratedOne) {
   const Settings given = test::settingsWith("level: linkage\n" + kUnknownZero),
                  calibrated = test::settingsWith(std::string("level: linkage\n") + kKnownZeroYaml);
