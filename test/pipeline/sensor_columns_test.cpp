@@ -172,7 +172,7 @@ TEST(SensorColumns, AnEccentricEncoderIsNoLagToTakeOff) {
     simulation::MachineSettings s = machineOfColumns(1000.0, 828);
     s.crank.eccentricity[0] = {degrees * kDegree, 1.0};
     const std::string text = judgeSensor(s).textOf("angle lag");
-    EXPECT_EQ(text.find("taken off"), std::string::npos) << text;
+    EXPECT_EQ(text.find("corrected"), std::string::npos) << text;
   }
 }
 
