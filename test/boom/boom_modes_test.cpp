@@ -1,4 +1,4 @@
-// Modes of the shipped boom: of which equation, with its weight, on soft oil, at a dead centre.
+// Modes of the shipped boom: equation of motion, effect of the weight, soft oil, and zero moment arm of a cylinder.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using test::ShippedBoom;
 TEST_F(ShippedBoom, ModesSolveTheEquationOfMotion) {
   std::mt19937 random(41);
   for (int i = 0; i < 100; ++i) {
-    // The lead ahead of a moving boom does not matter here: the matrices tell their own pose.
+    // Modes may belong to a pose a little apart from the present one, but their matrices belong to the same pose.
     pose(test::randomPosition(boom_.chain(), random));
     const BoomModes& m = modes();
     ASSERT_EQ(m.count, 3);
@@ -48,10 +48,10 @@ TEST_F(ShippedBoom, IsStiffenedOrSoftenedByItsWeight) {
     }
     const Eigen::Matrix4d K = weightStiffness(boom_.chain(), q, g_B);
     ASSERT_LT((K + slope).norm(), 1e-6 * slope.norm());
-    // What it does to the frequencies, to first order: half of what the strain energy of a mode gains.
-    vibration().reset();  // each time: modes are found where the joints stand
+    // To first order the weight changes the square of a mode's frequency by shape^T K shape.
+    vibration().reset();  // computes new modes at each pose
     pose(q);
-    if (modes().count == 0) continue;  // a dead centre
+    if (modes().count == 0) continue;  // zero moment arm
     const BoomModes without = modes();
     vibration().reset();
     boom_.moveCompliant({q, kZero, kZero}, g_B);

@@ -18,7 +18,7 @@
 namespace hammer_loads::test {
 
 inline const Eigen::Vector3d kLevel(0.0, 0.0, -kGravity);  ///< gravity on level ground [m/s2]
-inline const JointVector kZero = JointVector::Zero(4);     ///< of the shipped boom's joints
+inline const JointVector kZero = JointVector::Zero(4);     ///< zeros for the shipped boom's joints
 
 inline std::string sourceFile(const std::string& path) {
   return std::string(HAMMER_LOADS_TEST_DATA) + "/../../" + path;
@@ -34,14 +34,14 @@ inline std::string textOf(const std::string& path) {
 
 inline std::string shippedUrdf() { return textOf(sourceFile("urdf/eo2621_mo100.urdf")); }
 
-/// The first `from` of a text replaced. Throws where there is none.
+/// Returns the text with its first `from` replaced. Throws if there is none.
 inline std::string withFirstReplaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::runtime_error("no " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// A boom alone, from its description and files. Unknown keys are problems.
+/// Makes a boom from its description and parameter files. Unknown keys are problems.
 inline Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {
   Checked<Boom> result;
   ParameterMap parameters;
@@ -65,7 +65,7 @@ inline BoomParameters shippedBoomParameters() {
   return boom.value->parameters();
 }
 
-/// The shipped boom with a hammer cylinder that acts directly.
+/// Returns the parameters of the shipped boom with a hammer cylinder that acts without a linkage.
 inline BoomParameters directBoomParameters() {
   BoomParameters p = shippedBoomParameters();
   CylinderParameters& hammer = p.cylinders.back();
@@ -91,7 +91,7 @@ inline Eigen::Vector3d randomVector(std::mt19937& random, double size) {
 
 inline Wrench randomWrench(std::mt19937& random) { return {randomVector(random, 5e4), randomVector(random, 1e4)}; }
 
-/// Any angles where the limits allow them, else within them.
+/// Returns random joint angles within the limits and within +-3 rad.
 inline JointVector randomPosition(const Chain& chain, std::mt19937& random) {
   JointVector q(chain.joints());
   for (int j = 0; j < chain.joints(); ++j) {
@@ -106,11 +106,11 @@ inline JointVector joints(std::initializer_list<double> values) {
   return q;
 }
 
-/// Swing, boom, arm, hammer: arm steep, hull vertical.
+/// Returns the angles of swing, boom, arm and hammer joint for a steep arm and a vertical hull [rad].
 inline JointVector workingPosition() { return joints({0.2, -0.35, 1.20, -0.85}); }
 
-/// Links in a vertical plane, joints about +y; x + i z as a complex number, so that a turn by q about +y is e^(-iq).
-/// Newton and Euler written down for each body from the tip to the base.
+/// Links in a vertical plane with joints about +y. Vectors are complex numbers x + i z: a rotation by q is e^(-iq).
+/// The loads follow from the equations of Newton and Euler for each body, from the tip to the base.
 template <std::size_t N>
 struct PlanarChain {
   using Complex = std::complex<double>;
@@ -125,10 +125,10 @@ struct PlanarChain {
 
   using Joints = std::array<double, N>;
 
-  /// Moment about +y of a force at r.
+  /// Returns the moment about +y of a force f at r.
   static double moment(Complex r, Complex f) { return r.imag() * f.real() - r.real() * f.imag(); }
 
-  /// Torques of all loads on the joints, so minus those that the drives must give. Load on the tip in its axes.
+  /// Returns the joint torques of all loads: minus those that the drives must give. The tip's load is in its axes.
   Joints loads(const Joints& q, const Joints& qd, const Joints& qdd, Complex tip_force, double tip_torque) const {
     const Complex i(0.0, 1.0);
     std::array<Complex, N> turn, acceleration;
@@ -143,7 +143,7 @@ struct PlanarChain {
       joint_acceleration += factor * turn[k] * links[k].to_next;
       spin[k] = spin_rate;
     }
-    Complex force = -tip_force * turn[N - 1];  // by link k on link k + 1
+    Complex force = -tip_force * turn[N - 1];  // of link k on link k + 1
     double torque = -tip_torque;
     Joints result{};
     for (std::size_t k = N; k-- > 0;) {
@@ -156,7 +156,7 @@ struct PlanarChain {
     return result;
   }
 
-  /// Column k: minus the loads of a unit acceleration of joint k, at rest and without weight.
+  /// Returns the mass matrix. Column k is minus the loads of a unit acceleration of joint k, at rest without weight.
   Eigen::Matrix<double, N, N> massMatrix(const Joints& q) const {
     PlanarChain weightless = *this;
     weightless.gravity = 0.0;
@@ -170,7 +170,7 @@ struct PlanarChain {
     return M;
   }
 
-  /// Its description, joints j0, j1, ..., tip link `tip`.
+  /// Returns the robot description with joints j0, j1, ... and the tip link `tip`.
   std::string urdf() const {
     std::string text = "<robot name=\"planar\"><link name=\"base_link\"/>";
     std::string parent = "base_link";

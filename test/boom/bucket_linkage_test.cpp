@@ -1,5 +1,5 @@
-// Random bucket linkages against closure by Newton's method and the equilibrium of every link; what a boom file says of
-// one that cannot be.
+// Random bucket linkages compared with closure by Newton's method and with the equilibrium of every link. Boom files
+// with an impossible linkage are refused.
 #include "hammer_loads/boom/bucket_linkage.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct RandomLinkage {
   double angle;
 };
 
-/// As a bucket's, at an angle at which guide and coupler are 15 to 165 deg apart.
+/// Returns a random linkage like that of a bucket, at an angle at which guide and coupler are 15 to 165 deg apart.
 RandomLinkage randomLinkage(std::mt19937& random) {
   for (;;) {
     const auto point = [&](double size) {
@@ -48,7 +48,7 @@ TEST(BucketLinkages, LengthAndLeverAreThoseOfAnIndependentClosure) {
     const LinkageReference reference(r.pins, r.lengths);
     const BucketLinkagePosition at = linkage.at(std::cos(r.angle), std::sin(r.angle));
     ASSERT_TRUE(at.closed);
-    // The branch of the reference: the side of the line between pivot and driven pin.
+    // The branch is the side of the line from pivot to driven pin on which the reference's guide lies.
     const LinkageReference::Point across = reference.drivenPin(r.angle) - reference.pivot,
                                   guide = reference.rodPin(r.angle) - reference.pivot;
     ASSERT_GT(static_cast<double>(LinkageReference::moment(across, guide)) * r.lengths.branch, 0.0) << i;
@@ -79,10 +79,10 @@ TEST(BucketLinkages, PinForcesAreThoseOfEveryLinksEquilibriumAndDoTheJointsWork)
     const BucketLinkageForces f = linkage.forces(at.rod_pin, at.driven_pin);
     const double size = 1.0 + f.coupler.norm();
     const auto off = [&](const Eigen::Vector2d& got, const LinkageReference::Point& want) {
-      worst = std::max(worst, (got + want.cast<double>()).norm() / size);  // on the links, so against those on the pin
+      worst = std::max(worst, (got + want.cast<double>()).norm() / size);  // opposite at both ends of a link
     };
     off(f.rod, expected.base), off(f.guide, expected.pivot), off(f.coupler, expected.driven);
-    // A push of 1 N does arm dq of work on the joint.
+    // A push of 1 N does the work arm dq on the joint.
     const double torque = r.pins.sense * (at.driven_pin.y() * -f.coupler.x() - at.driven_pin.x() * -f.coupler.y());
     worst_work = std::max(worst_work, std::abs(torque - at.arm) / std::max(1.0, std::abs(at.arm)));
   }
@@ -146,7 +146,7 @@ TEST_F(ShippedLinkage, RefusesWhatCannotBeWithKeyValueAndRule) {
 
 TEST_F(ShippedLinkage, AsksForTheBranchWhereTheStrokeFitsBoth) {
   CylinderParameters p = given_;
-  p.closed_length = 1.1, p.stroke = 1.0, p.base_x = -0.25;  // long enough for both
+  p.closed_length = 1.1, p.stroke = 1.0, p.base_x = -0.25;  // fits both branches
   EXPECT_EQ(problem(p),
             "hammer_cylinder_linkage_branch: not given, must be 1 or -1: closed length and stroke fit both");
   p.linkage->branch = 1.0;
@@ -168,7 +168,6 @@ TEST_F(ShippedLinkage, IsADeadCentreWhereItsLinksDoNotReachEachOther) {
   EXPECT_GT(open, 0);
 }
 
-/// The reader of the boom file.
 TEST_F(ShippedLinkage, KeysOfTheBoomFileAreRequiredTogether) {
   const std::string text = test::textOf(test::sourceFile("config/boom_eo2621.yaml"));
   const auto problemsOf = [&](const std::string& yaml) {
@@ -186,7 +185,7 @@ TEST_F(ShippedLinkage, KeysOfTheBoomFileAreRequiredTogether) {
   ASSERT_EQ(problemsOf(without("hammer_cylinder_coupler_length_m")).size(), 1U);
   EXPECT_EQ(problemsOf(without("hammer_cylinder_coupler_length_m")).front().find("hammer_cylinder_coupler_length_m"),
             0U);
-  EXPECT_EQ(problemsOf(without("hammer_cylinder_linkage:")).size(), 4U);  // its keys are then unknown
+  EXPECT_EQ(problemsOf(without("hammer_cylinder_linkage:")).size(), 4U);  // the linkage's keys are then unknown
   EXPECT_FALSE(problemsOf(test::withFirstReplaced(text, "linkage: bucket", "linkage: dogbone")).empty());
 }
 

@@ -29,7 +29,7 @@ std::string joint(const std::string& name, const std::string& type, const std::s
 
 std::string robot(const std::string& inside) { return "<robot name=\"r\">" + inside + "</robot>"; }
 
-/// Three joints of three kinds about odd axes, and bodies beside the chain.
+/// Returns a robot with three joints of different types about oblique axes, and with bodies beside the chain.
 std::string oddRobot() {
   return robot(
       link("base", "") + link("a") + link("b") + link("c") + link("tip", "") + link("beside") + link("loose") +
@@ -90,7 +90,7 @@ struct Bad {
   const char* what;
   std::string urdf;
   ChainRequest request;
-  std::vector<std::string> problems;  ///< how each begins
+  std::vector<std::string> problems;  ///< beginning of each problem
 };
 
 void expectProblems(const Bad& bad) {

@@ -1,5 +1,5 @@
-// The rock's force as pressures and an IMU show it, on a boom that a hand-made chain vibrates. Its damping, 7 % at the
-// first mode and 30 % at the third, is not the file's 5 %.
+// Rock force estimated from pressures and an IMU, compared with the boom of vibrating_machine.h. The damping of that
+// boom, 7 % at the first mode and 30 % at the third, differs from the file's 5 %.
 #include <gtest/gtest.h>
 
 #include "boom/vibrating_machine.h"
@@ -13,7 +13,7 @@ using test::kGravity, test::kMillisecond;
 
 constexpr double kFoot = -0.1975, kLeast = 500.0;  ///< [m], [N]
 
-/// Pulses of 12 ms that meet the hull 60 ms after each blow, and what the operator presses.
+/// Returns the rock's force [N]: the operator's hold-down force of 2 kN, and a pulse of 12 ms every 0.2128 s.
 double rockForce(double time) {
   const double phase = (std::fmod(time, 0.2128) - 0.1) / 0.012;
   return 2000.0 + (phase > 0.0 && phase < 1.0 ? 2.5e4 * std::sin(test::kHalfTurn * phase) : 0.0);
@@ -28,7 +28,7 @@ class OnRock {
     boom.vibration().followContact(by_newton_, kLeast);
   }
 
-  /// The rock's force times `size`; errors are counted from the last second on.
+  /// Runs with `size` times the rock's force. Errors are counted in the last second.
   void run(double seconds, double size) {
     const int steps = static_cast<int>(seconds / kMillisecond);
     for (int i = 0; i < steps; ++i) {

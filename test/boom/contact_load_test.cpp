@@ -1,4 +1,4 @@
-// The rock's force from cylinder pressures, against a rock that pushes.
+// Rock force found from cylinder pressures, compared with the true force.
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
@@ -22,7 +22,7 @@ TEST(ContactLoad, IsFoundFromThePressuresThatHoldIt) {
     BoomLoads with, without;
     boom.loads({hammer.force + rock.force, hammer.torque + rock.torque}, true, with);
     boom.loads(hammer, true, without);
-    // Pressures as gauges read them, with the chamber that is not loaded at 3 bar.
+    // Gauge pressures; the chamber without load has 3 bar.
     JointVector unexplained = JointVector::Zero(4);
     for (std::size_t k = 0; k < 3; ++k) {
       const Cylinder& c = boom.cylinders()[k];
@@ -43,7 +43,7 @@ TEST(ContactLoad, IsFoundFromThePressuresThatHoldIt) {
 }
 
 TEST(ContactLoad, IsNotKnownWhereBoomAndArmAreInLine) {
-  // Three joints about y: boom and arm stretched.
+  // Three joints about y, with boom and arm in line.
   const std::string urdf = test::PlanarChain<3>{{{{{2.0, 0.0}, {1.0, 0.0}, 100.0, 10.0},
                                                   {{1.5, 0.0}, {0.7, 0.0}, 80.0, 8.0},
                                                   {{0.5, 0.0}, {0.2, 0.0}, 50.0, 5.0}}}}

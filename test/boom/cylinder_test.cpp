@@ -17,7 +17,7 @@ class Cylinders : public testing::Test {
     if (!made.value) throw std::runtime_error(made.problems.front());
     return *made.value;
   }
-  /// Between the anchors, by the chain's forward kinematics.
+  /// Returns the distance of the anchors by the chain's forward kinematics [m].
   double length(const CylinderParameters& p, double angle) const {
     JointVector q = JointVector::Zero(chain_.joints());
     const int joint = *chain_.jointIndex(p.joint);
@@ -72,7 +72,7 @@ TEST_F(Cylinders, ForceDoesTheOppositeWorkOfTheLoad) {
 TEST_F(Cylinders, StiffnessIsThatOfTheTrappedOil) {
   const CylinderParameters& p = parameters_.cylinders[0];
   const Cylinder cylinder = make(p);
-  // Pressures after a small move dL: dp = B A dL/V on each side; force by both.
+  // A small move dL changes the pressures by dp = B A dL/V on each side. Both give the force.
   const double length = p.closed_length + 0.3 * p.stroke, dL = 1e-6, pi = 3.14159265358979323846;
   const double bore_area = pi / 4.0 * p.bore * p.bore;
   const double rod_area = bore_area - pi / 4.0 * p.rod_diameter * p.rod_diameter;
@@ -83,14 +83,14 @@ TEST_F(Cylinders, StiffnessIsThatOfTheTrappedOil) {
   EXPECT_NEAR(cylinder.stiffness(length) * dL, force, 1e-12 * force);
   const CylinderPosition at = cylinder.at(-0.35);
   EXPECT_DOUBLE_EQ(cylinder.jointStiffness(at), cylinder.stiffness(at.length) * at.arm * at.arm);
-  // Beyond the stroke as at its end: finite and positive.
+  // Beyond the stroke the stiffness is that at its end, finite and positive.
   EXPECT_EQ(cylinder.stiffness(0.0), cylinder.stiffness(p.closed_length));
   EXPECT_NEAR(cylinder.stiffness(9.0) / cylinder.stiffness(p.closed_length + p.stroke), 1.0, 1e-12);
 }
 
 TEST_F(Cylinders, DeadCentreIsReportedNotDividedBy) {
   CylinderParameters p = parameters_.cylinders[0];
-  p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0;  // stretched through the pivot at zero
+  p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0;  // in line with the pivot at zero
   p.closed_length = 1.5, p.stroke = 0.6;
   const Cylinder cylinder = make(p);
   const CylinderPosition at = cylinder.at(0.0);
@@ -100,7 +100,7 @@ TEST_F(Cylinders, DeadCentreIsReportedNotDividedBy) {
   EXPECT_TRUE(load.zero_moment_arm);
   EXPECT_TRUE(std::isnan(load.force));
   EXPECT_TRUE(std::isnan(load.pressure));
-  // Next to it the force is finite and bounded by the ratio.
+  // Near the zero moment arm the force is finite and bounded by kZeroMomentArmRatio.
   for (double q = -0.5; q < 0.5; q += 1e-3) {
     const CylinderForce near = cylinder.load(cylinder.at(q), 1e4);
     if (near.zero_moment_arm) continue;
@@ -142,7 +142,7 @@ TEST_F(Cylinders, ReportsEachFault) {
 }
 
 TEST_F(Cylinders, GiveOneForceForBothSignsOfTheJointAxis) {
-  // Turning the joint's axis round turns its angle and torque round; the cylinder feels the same.
+  // Reversal of the joint's axis reverses its angle and torque. The cylinder's force remains.
   std::string urdf = test::shippedUrdf();
   const std::size_t joint = urdf.find("name=\"boom_joint\"");
   const std::size_t axis = urdf.find("0 1 0", joint), limit = urdf.find("lower=\"-0.95\" upper=\"0.60\"", joint);

@@ -1,4 +1,4 @@
-// Deviations against machines whose oil is drawn at random, and flags against oil by hand.
+// Standard deviations compared with machines whose oil is drawn at random, and flags with oil calculated by hand.
 #include <gtest/gtest.h>
 
 #include "boom/vibrating_machine.h"
@@ -16,7 +16,7 @@ JointMotion still(const JointVector& position) {
 }
 
 TEST(Deviations, CoverMachinesWithOilDrawnAtRandom) {
-  // The file's bulk modulus is that of none of them: its logarithm is off by 30 %, normally.
+  // The logarithm of a machine's bulk modulus differs from that of the file by a normal error of 0.3.
   std::mt19937 random(61);
   int samples = 0, within = 0;
   double mean_square_error = 0.0, mean_variance = 0.0;
@@ -84,7 +84,7 @@ TEST(Deviations, EqualDifferencesOfTheLoads) {
       const Eigen::Vector3d reaction = (other_steel.joint[k].force - steel.joint[k].force).cwiseAbs();
       EXPECT_LT((deviations.joint[k].force - reaction).norm(), 1e-7);
     }
-    // Independent errors add up by their squares.
+    // Variances of independent errors add up.
     BoomDeviations twice;
     boom.deviations(VibrationSpread(), {2, {error, error, {}}}, true, twice);
     EXPECT_LT((twice.torque - std::sqrt(2.0) * deviations.torque).norm(), 1e-8);
@@ -92,7 +92,7 @@ TEST(Deviations, EqualDifferencesOfTheLoads) {
 }
 
 TEST(Deviations, ALastingErrorOfTheLoadIsThatOfAnotherLoad) {
-  // A load that is 4 % larger all along: the difference of two vibrations.
+  // The load is 4 % too large at all times. The effect is the difference of two vibrations.
   Boom boom = test::shippedBoom(), larger = boom;
   boom.moveCompliant(still(test::workingPosition()), kLevel);
   larger.moveCompliant(still(test::workingPosition()), kLevel);
@@ -124,7 +124,7 @@ TEST(Deviations, ShrinkWithWhatIsIdentified) {
   identified.vibration().identify();
   for (Boom* boom : {&truth, &given, &identified}) boom->moveCompliant(still(test::workingPosition()), kLevel);
   VibrationSpread of_given, of_identified;
-  // A push that is turned round now and then, and joint angles almost without noise.
+  // The push changes its sign every 0.4 s. The joint angles have almost no noise.
   JointVector push = JointVector::Constant(4, 2e3);
   for (int i = 0; i < 4000; ++i) {
     if (i % 400 == 200) push = -push;
@@ -155,7 +155,7 @@ TEST(Deviations, AreThoseOfTheLoadAloneAtADeadCentre) {
   VibrationSpread spread;
   const WrenchSpread error{1, {Wrench{{100.0, 0.0, 300.0}, {0.0, 50.0, 0.0}}, {}, {}}};
   const JointVector push = JointVector::Constant(4, 1e3);
-  for (double angle : {-0.2, 0.0, 0.2}) {  // to the dead centre and away from it
+  for (double angle : {-0.2, 0.0, 0.2}) {  // to the zero moment arm and away from it
     for (int i = 0; i < 20; ++i) {
       boom.moveCompliant(still(test::joints({0.0, angle, 1.0, -1.0})), kLevel);
       spread.follow(boom.vibration());
@@ -181,7 +181,7 @@ TEST(CylinderFlags, PressuresAreThoseOfTrappedOil) {
   const Boom boom = test::shippedBoom();
   const Cylinder& c = boom.cylinders()[0];
   const CylinderPosition at = c.at(-0.35);
-  // 60 kN steady push, then 1e-5 m shorter: both chambers by B A dL/V.
+  // After a steady push of 60 kN, 1e-5 m of shortening changes the pressures of both chambers by B A dL/V.
   const double steady = -60e3 * at.arm, stroke = 1e-5, total = -(60e3 + c.stiffness(at.length) * stroke) * at.arm;
   const ChamberPressures p = chamberPressures(c, at, steady, total);
   const double out = at.length - 0.79, bore = c.boreArea(), rod = c.rodArea();
@@ -202,8 +202,8 @@ TEST(CylinderFlags, NameEachFault) {
   };
   EXPECT_EQ(flags(60e3, 60e3), 0);
   EXPECT_EQ(flags(60e3, 60.1e3), 0);
-  EXPECT_EQ(flags(60e3, 80e3), kChamberEmpty);  // the rod's chamber widens
-  EXPECT_EQ(flags(60e3, 30e3), 0);              // both share what comes off
+  EXPECT_EQ(flags(60e3, 80e3), kChamberEmpty);  // the rod's chamber expands
+  EXPECT_EQ(flags(60e3, 30e3), 0);              // both chambers share the decrease
   EXPECT_EQ(flags(20e3, -30e3) & kForceReversed, kForceReversed);
   EXPECT_EQ(flags(20e3, -60e3) & kChamberEmpty, kChamberEmpty);
   EXPECT_EQ(flags(c.greatestPush(), c.greatestPush()) & kReliefReached, kReliefReached);
@@ -220,7 +220,7 @@ TEST(CylinderFlags, TakeTheBoomsWeightAsSteady) {
   BoomLoads loads;
   boom.loads({}, true, loads);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(boom.flags(i, loads), 0);
-  // A hammer that lifts the boom against its weight.
+  // The hammer lifts the boom against its weight.
   boom.loads({Eigen::Vector3d(0.0, 0.0, 40e3), Eigen::Vector3d::Zero()}, true, loads);
   EXPECT_NE(boom.flags(0, loads) & kForceReversed, 0);
 }

@@ -1,4 +1,4 @@
-// Weight with tilts of the description and of the ground, against rotations multiplied by hand.
+// Weight with tilts of the description and of the ground, compared with rotations multiplied by hand.
 #include "hammer_loads/boom/gravity.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 using test::kGravity;
 
-/// Rotation about a coordinate axis, written down.
+/// Returns the rotation matrix about a coordinate axis.
 Eigen::Matrix3d about(int axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -19,7 +19,7 @@ Eigen::Matrix3d about(int axis, double angle) {
   return R;
 }
 
-/// The shipped description with the hull turned on its bracket and the boom's foot askew.
+/// Returns the shipped description with the hull rotated on its bracket and an inclined foot of the boom.
 std::string tiltedUrdf() {
   return test::withFirstReplaced(
       test::withFirstReplaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
@@ -45,7 +45,7 @@ TEST(Gravity, FollowsTheTiltsOfTheDescriptionInTheTip) {
 }
 
 TEST(Gravity, JointTorquesOfABaseThatLeansAreThoseOfALeaningDescription) {
-  // The same tilt in the description: base_link upright, all beyond on a tilted swing axis.
+  // The description has the tilt of the ground: base_link is upright, and the swing axis is tilted.
   const BaseTilt base{0.12, -0.2};
   // R_WB = Ry(pitch) Rx(roll) is rpy = (roll, pitch, 0) of the first joint.
   const Checked<Boom> tilted =
@@ -61,7 +61,7 @@ TEST(Gravity, JointTorquesOfABaseThatLeansAreThoseOfALeaningDescription) {
   ASSERT_TRUE(in_description.loads({}, true, a));
   ASSERT_TRUE(on_ground.loads({}, true, b));
   EXPECT_LT((a.weight - b.weight).cwiseAbs().maxCoeff(), 1e-10);
-  EXPECT_GT(std::abs(a.weight[0]), 100.0);  // the swing feels the roll
+  EXPECT_GT(std::abs(a.weight[0]), 100.0);  // the roll loads the swing joint
   EXPECT_LT((in_description.gravityAtTip() - on_ground.gravityAtTip()).norm(), 1e-14);
 }
 

@@ -1,4 +1,4 @@
-// Forces that wait for the sensors' time: what goes out is what went in, whatever the lengths.
+// Queue of forces for delayed sensors: the impulses taken equal those pushed, whatever the lengths of the pieces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class SomeForce {
     const double step = std::min(std::floor(time / kStep + 1e-9), 19.0), u = time / kStep - step;
     return std::sin(7.0 * step) * 300.0 + 400.0 * u - 900.0 * std::cos(3.0 * step) * u * u;
   }
-  /// Of a part of one step, by Simpson's rule, which is exact for it.
+  /// Returns the impulse over a part of one step, by Simpson's rule, which is exact for a parabola.
   static double impulse(double from, double to) {
     const double inside = std::min(to, from + kStep) - 1e-11;
     return (to - from) / 6.0 * (at(from) + 4.0 * at(0.5 * (from + to)) + at(inside));

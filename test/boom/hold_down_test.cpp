@@ -15,7 +15,7 @@ class Press : public testing::Test {
  protected:
   Press() : boom_(test::shippedBoom()) { pose(test::workingPosition()); }
   void pose(const JointVector& q) { boom_.move({q, kZero, kZero}, kLevel); }
-  /// Mean hold-down force along +z of the hull at the striking line.
+  /// Returns the wrench of a mean hold-down force along +z of the hull at the striking line.
   static Wrench press(double force) {
     constexpr double kStrikingLine = -0.1975;
     return {Eigen::Vector3d(0.0, 0.0, force), Eigen::Vector3d(0.0, -kStrikingLine * force, 0.0)};
@@ -33,7 +33,7 @@ TEST_F(Press, MachineTipsByHand) {
   const double lever = boom_.pose().tip().translation().x() - 0.1975 - rear;
   EXPECT_NEAR(hold.machine, all.mass * kGravity * (all.p.x() - rear) / (1000.0 * lever), 1e-9);
   EXPECT_EQ(hold.edge, 2);
-  // So many times the load, and it balances: a hair more no longer holds.
+  // `least` times the load is the limit of balance. A slightly larger load does not hold.
   EXPECT_TRUE(boom_.holdDown(press(1000.0 * hold.least * 0.999)).least >= 1.0);
   EXPECT_FALSE(boom_.holdDown(press(1000.0 * hold.least * 1.001)).least >= 1.0);
 }
@@ -52,7 +52,7 @@ TEST_F(Press, TipsOverTheSideSoonerWhenSwungAside) {
     pose(test::joints({swing, -0.35, 1.20, -0.85}));
     const HoldDown hold = boom_.holdDown(press(1000.0));
     EXPECT_LT(hold.machine, ahead);
-    // Boom to the left lifts the left side: it tips over the right edge, and the other way round.
+    // A boom to the left lifts the left side, so that the machine tips over the right edge, and vice versa.
     EXPECT_EQ(hold.edge, swing > 0.0 ? 3 : 1);
   }
 }

@@ -1,4 +1,4 @@
-// Finite inputs beyond every machine: what is returned is finite or marked, and the next sample is right again.
+// Finite inputs beyond every machine: results are finite or marked, and the next sample is correct again.
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
@@ -9,7 +9,7 @@ namespace {
 
 using test::kLevel;
 
-/// One step of a kilohertz session on the compliant boom.
+/// Runs one step of a session at 1 kHz on the compliant boom.
 bool sample(Boom& boom, const JointMotion& motion, const Wrench& w, BoomLoads& loads) {
   boom.moveCompliant(motion, kLevel);
   const JointVector torque = boom.hammerTorque(w);
@@ -58,7 +58,7 @@ TEST(HostileInput, LoadsAreFiniteOrMarkedAndRecover) {
       EXPECT_FALSE(finite(boom, loads));
     }
     if (i % 100 != 0) continue;
-    // A usual session afterwards is that of a boom that never saw such a sample.
+    // A usual session afterwards equals that of a boom without such a sample.
     boom.vibration().reset();
     Boom fresh = test::shippedBoom();
     for (int k = 0; k < 5; ++k) {

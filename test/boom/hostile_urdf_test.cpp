@@ -1,4 +1,4 @@
-// Descriptions made to break their reader: size, depth, rings, numbers.
+// Descriptions designed to break the reader: size, depth, loops, numbers.
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
@@ -24,7 +24,7 @@ std::string plainLink(const std::string& name) {
          "</inertial></link>";
 }
 
-/// Links from base_link to hammer_hull, in one row.
+/// Returns a description whose links from base_link to hammer_hull form one chain.
 std::string row(int links) {
   std::string text = "<robot name=\"r\">" + plainLink("base_link");
   std::string parent = "base_link";
@@ -46,7 +46,7 @@ void expectOne(const std::string& urdf, const std::string& line) {
 
 TEST(HostileUrdf, RefusesTooManyLinks) {
   expectOne(row(10000), "more than 1000 links, must be at most 1000");
-  // At the limit the parsers have room; what the chain cannot carry is then its own line.
+  // The parsers accept a description at the limit. The chain then reports its own problem.
   const Checked<Boom> made = Boom::make(row(1000));
   ASSERT_EQ(made.problems.size(), 1U);
   EXPECT_EQ(made.problems[0].rfind("robot_description: 999 moving joints and 1000 links", 0), 0U) << made.problems[0];
@@ -65,7 +65,7 @@ TEST(HostileUrdf, RefusesTooManyNestedTags) {
     expectOne("<!-- > --><?xml version=\"1.0\"?>" + repeated(tag, 65), line);
   }
   expectOne(repeated("<a>", 65) + repeated("</a>", 65), line);
-  // What closes nothing makes no room, neither do comments, quotes and character data.
+  // Closing tags without an open one do not reduce the depth. Neither do comments, quotes and character data.
   expectOne(repeated("</a>", 2000) + repeated("<a>", 2000), line);
   expectOne(repeated("<a><!-- </a> -->", 2000), line);
   expectOne(repeated("<a><![CDATA[</a>]]>", 2000), line);
@@ -79,7 +79,7 @@ TEST(HostileUrdf, RefusesAHugeText) {
             format("%zu bytes, must be at most 16777216", text.size() + UrdfLimits::kBytes));
 }
 
-/// A random well-formed text whose depth and number of links are known, with what may confuse a counter.
+/// Random well-formed text of known depth and number of links, with content that may confuse a counter.
 class RandomXml {
  public:
   explicit RandomXml(unsigned seed) : random_(seed) {}
@@ -110,7 +110,7 @@ class RandomXml {
 TEST(HostileUrdf, CountsExactlyWhatIsThere) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     RandomXml xml(seed);
-    // The innermost tags in each level lie one deeper than the level: depth 63 has tags in 64.
+    // The innermost tags are one level deeper than the argument: a depth of 63 has tags in level 64.
     EXPECT_EQ(urdfLimitPassed(xml.text(62, 1000)), "");
     EXPECT_NE(urdfLimitPassed(xml.text(65, 10)).find("64 tags"), std::string::npos);
     EXPECT_NE(urdfLimitPassed(xml.text(10, 1001)).find("1000 links"), std::string::npos);
@@ -122,13 +122,13 @@ TEST(HostileUrdf, CountsExactlyWhatIsThere) {
 
 TEST(HostileUrdf, RefusesLoopsAndSharedChildren) {
   const std::string three = "<robot name=\"r\">" + plainLink("base_link") + plainLink("hammer_hull") + plainLink("c");
-  // A ring beside the root, and one that hangs on it.
+  // One loop is beside the root, the other is connected to it.
   expectOne(three + joint("j", "hammer_hull", "c") + joint("k", "c", "hammer_hull") + "</robot>",
             "link c: hangs on itself, must hang on the root");
   expectOne(three + joint("i", "base_link", "hammer_hull") + joint("j", "hammer_hull", "c") +
                 joint("k", "c", "hammer_hull") + "</robot>",
             "link hammer_hull: child of more than one joint, must be of one");
-  // A ladder with two joints at each step has 2^400 ways down.
+  // A ladder with two joints at each step has 2^400 paths.
   std::string ladder = "<robot name=\"r\">" + plainLink("base_link");
   std::string parent = "base_link";
   for (int i = 0; i < 400; ++i) {
@@ -169,7 +169,7 @@ TEST(HostileUrdf, RefusesNumbersOfNoMachine) {
 }
 
 TEST(HostileUrdf, InertiaBeyondACylinderIsRequired) {
-  // All that lies beyond the last joint is a point mass on its axis.
+  // Everything beyond the last joint is a point mass on its axis.
   std::string urdf = test::shippedUrdf();
   const std::string none = "<inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"/>";
   urdf = test::withFirstReplaced(
@@ -182,7 +182,7 @@ TEST(HostileUrdf, InertiaBeyondACylinderIsRequired) {
   ASSERT_EQ(made.problems.size(), 1U);
   EXPECT_EQ(made.problems[0],
             "robot_description: inertia beyond joint hammer_joint about its axis: 0 kg m2, must be > 0");
-  EXPECT_TRUE(Boom::make(urdf).value);  // rigid it needs none
+  EXPECT_TRUE(Boom::make(urdf).value);  // a rigid boom needs none
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// By what an IMU's stamps are late, and how much of that the crank leads, from the same machine as in
+// Delay of an IMU's stamps, and the part of it by which the measured crank angle leads the crank, for the machine of
 // mode_identifier_test.cpp.
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using test::IdentifierSession;
 using test::kMillisecond;
 using test::Sensor;
 
-/// Of oil and delay neither is taken for the other.
+/// A wrong bulk modulus is not mistaken for a delay, nor a delay for a wrong bulk modulus.
 TEST(ModeIdentifier, FindsByWhatStampsAreLate) {
   for (double given_over_true : {0.7, 1.4}) {
     for (std::size_t late : {0U, 1U, 3U}) {
@@ -29,7 +29,7 @@ TEST(ModeIdentifier, FindsByWhatStampsAreLate) {
   }
 }
 
-/// Only as much of a delay as is expected of the crank, and none where the sensor is right.
+/// The crank's lead is only the part of a delay that is expected of the crank. It is zero without a delay.
 TEST(ModeIdentifier, TakesFromADelayWhatTheCrankLeads) {
   struct Case {
     std::size_t late;

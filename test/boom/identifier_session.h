@@ -1,4 +1,4 @@
-/// A mode identifier whose boom file gives the wrong oil, beside a machine that noisy sensors see.
+/// Mode identifier with a wrong bulk modulus in its boom file, on a machine with noisy sensors.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class IdentifierSession {
       const Eigen::Vector3d load = machine_.load(w);
       machine_.step(load_, load);
       load_ = load;
-      Wrench known = w;  // what the identifier is given of it
+      Wrench known = w;  // as the identifier receives it
       known.force *= 1.0 + hammer_error, known.torque *= 1.0 + hammer_error;
       const JointVector to = boom_->hammerTorque(known);
       const std::size_t before = allocations;
@@ -55,7 +55,7 @@ class IdentifierSession {
   double dampingError(int mode) const { return boom_->vibration().mode(mode).zeta / machine_.zeta[mode] - 1.0; }
 
   const ModeIdentifier& identifier() const { return *boom_->vibration().identifier(); }
-  /// Of hammer + vibration on the joints against what the machine's cylinders carry, over some seconds, of its rms.
+  /// Returns the rms error of the torques hammer + vibration over the rms of the machine's cylinder torques [-].
   double torqueError(double seconds) {
     error_ = size_ = 0.0;
     run(seconds);
@@ -67,8 +67,8 @@ class IdentifierSession {
   Sensor sensor_;
   std::optional<Boom> boom_;
   std::size_t allocations_{};
-  std::size_t late_{};  ///< readings by which the IMU is late
-  std::size_t lead_{};  ///< by so many the hammer leads the time in which torques are judged
+  std::size_t late_{};  ///< delay of the IMU in readings
+  std::size_t lead_{};  ///< lead of the hammer over the compared torques in steps
 
  private:
   void observe(int i) {
@@ -111,8 +111,8 @@ class IdentifierSession {
   PulsingHammer hammer_;
   Jacobian J_;
   Eigen::Vector3d load_ = Eigen::Vector3d::Zero();
-  std::array<Eigen::Vector3d, 4> readings_{load_, load_, load_, load_};  ///< of the IMU, the newest first
-  std::array<Eigen::Vector3d, 4> holds_{readings_};                      ///< likewise of the cylinders
+  std::array<Eigen::Vector3d, 4> readings_{load_, load_, load_, load_};  ///< readings of the IMU, newest first
+  std::array<Eigen::Vector3d, 4> holds_{readings_};                      ///< torques of the cylinders, newest first
   JointVector torque_ = JointVector::Zero(4);
   double time_{}, error_{}, size_{};
 };

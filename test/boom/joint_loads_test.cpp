@@ -15,7 +15,7 @@ using test::kLevel;
 double worstOf(const JointVector& a, const JointVector& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
 TEST(JointTorqueOfTipLoad, HasTheDocumentedSign) {
-  // Boom and arm stretched, hull at the end: a force up along +z lifts the boom, against its joint's positive sense.
+  // Boom and arm are stretched. A force along +z at the hull lifts the boom, against its joint's positive direction.
   Boom boom = test::shippedBoom();
   const JointVector zero = JointVector::Zero(4);
   boom.move({zero, zero, zero}, kLevel);
@@ -24,11 +24,11 @@ TEST(JointTorqueOfTipLoad, HasTheDocumentedSign) {
   EXPECT_NEAR(torque[1], -1000.0 * (2.60 + 1.70 + 0.10), 1e-9);
   EXPECT_NEAR(torque[3], -1000.0 * 0.10, 1e-9);
   EXPECT_EQ(torque[0], 0.0);
-  // Weight drives it the other way.
+  // The weight's torque has the opposite sign.
   BoomLoads loads;
   boom.loads(up, true, loads);
   EXPECT_GT(loads.weight[1], 0.0);
-  // The boom's cylinder raises it by pushing: weight makes it push.
+  // The boom's cylinder raises it by pushing, so the weight requires a push.
   EXPECT_GT(loads.cylinder[0].force, 0.0);
 }
 
@@ -61,7 +61,7 @@ TEST(JointLoads, TotalEqualsOneCallOfKdlWithEverything) {
 }
 
 TEST(JointLoads, AreEqualAtEveryLink) {
-  // The wrench shifted to a link turns the joints before that link as the wrench at the hull does.
+  // A wrench shifted to a link has equal torques on the joints before that link.
   Boom boom = test::shippedBoom();
   const Chain& chain = boom.chain();
   std::mt19937 random(16);

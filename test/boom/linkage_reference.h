@@ -1,5 +1,5 @@
-/// Bucket linkage again, by nothing but the lengths of its links: closure by Newton's method, forces by the equilibrium
-/// of every body. Shares no code with the boom room.
+/// Reference of the bucket linkage from the lengths of its links only: closure by Newton's method, forces by the
+/// equilibrium of every body. Shares no code with src/hammer_loads/boom.
 #pragma once
 
 #include <Eigen/LU>
@@ -8,12 +8,12 @@
 
 namespace hammer_loads::test {
 
-/// In a plane (x, z), turns positive about +y, from z to x.
+/// Linkage in a plane (x, z). Rotations are positive about +y, from z to x.
 struct LinkageReference {
   using Real = long double;
   using Point = Eigen::Matrix<Real, 2, 1>;
 
-  Point base, pivot, driven;  ///< cylinder's base and guide's pivot; coupler's pin at zero; from the joint
+  Point base, pivot, driven;  ///< cylinder base, guide pivot, coupler's pin at zero, from the joint
   Real guide{}, coupler{};
   Real branch{}, sense{1};
 
@@ -33,7 +33,7 @@ struct LinkageReference {
 
   Point drivenPin(Real q) const { return turned(driven, sense * q); }
 
-  /// From far out on the branch's side.
+  /// Returns the common pin by Newton's method, from a start on the branch's side.
   Point rodPin(Real q) const {
     const Point d = drivenPin(q);
     Point c = pivot + guide * turned((d - pivot).normalized(), branch * 0.7L);
@@ -47,7 +47,7 @@ struct LinkageReference {
   }
   Real length(Real q) const { return (rodPin(q) - base).norm(); }
 
-  /// By differences of order 8.
+  /// Returns the derivative by differences of order 8.
   template <typename Function>
   static Real slope(const Function& f, Real at) {
     constexpr Real h = 1.0L / 8192, kWeight[] = {4.0L / 5, -1.0L / 5, 4.0L / 105, -1.0L / 280};
@@ -59,12 +59,12 @@ struct LinkageReference {
     return slope([this](Real x) { return length(x); }, q);
   }
 
-  /// Per N of the cylinder's push, on the pins of the two links of the joint.
+  /// Forces on the pins of the joint's two links, per N of the cylinder's push.
   struct Forces {
     Point base, pivot, driven;
   };
-  /// Unknown: forces on the guide at its pivot and at the common pin, on the coupler at both its pins. Two forces and a
-  /// moment of each link, and the balance of the common pin.
+  /// Returns the pin forces. Unknown are those at both ends of guide and coupler. The equations are two forces and a
+  /// moment for each link, and the balance of the common pin.
   Forces forces(Real q) const {
     const Point c = rodPin(q), d = drivenPin(q), push = (c - base).normalized();
     Eigen::Matrix<Real, 8, 8> A = Eigen::Matrix<Real, 8, 8>::Zero();
@@ -72,7 +72,7 @@ struct LinkageReference {
     for (int axis = 0; axis < 2; ++axis) {
       A(axis, axis) = A(axis, 2 + axis) = 1;              // guide
       A(2 + axis, 4 + axis) = A(2 + axis, 6 + axis) = 1;  // coupler
-      A(4 + axis, 2 + axis) = A(4 + axis, 4 + axis) = 1;  // common pin: the rod's push goes into both
+      A(4 + axis, 2 + axis) = A(4 + axis, 4 + axis) = 1;  // common pin: the rod's push acts on both
       b[4 + axis] = push[axis];
     }
     const auto about = [&](int row, int column, const Point& r) {

@@ -1,4 +1,4 @@
-// Variances by a covariance of errors.
+// Variances of results from the covariance of errors.
 #include "hammer_loads/boom/load_errors.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(LoadErrorsOfTheBoom, AreNeverBelowZeroWhateverRoundingMakes) {
     for (int k = 0; k < 3; ++k) by[k] = a[cylinders[static_cast<std::size_t>(k)].joint()];
     by.tail<3>() << w.force.x(), w.force.z(), w.torque.y();
     Eigen::MatrixXd R = Eigen::MatrixXd::NullaryExpr(11, 6, draw);
-    R -= (R * by) * by.transpose() / by.squaredNorm();  // what this error does not do
+    R -= (R * by) * by.transpose() / by.squaredNorm();  // results without an effect of this error
     Eigen::VectorXd variance(R.rows());
     errors.findVariances(R, variance);
     EXPECT_GE(variance.minCoeff(), 0.0);

@@ -1,5 +1,5 @@
-/// The shipped boom as points of mass, read from its description again, by hand; what their weight and inertia demand
-/// by differences in time. Shares no code with the boom room.
+/// The shipped boom as point masses, read from its description by separate code. The loads by their weight and inertia
+/// follow from differences in time. Shares no code with src/hammer_loads/boom.
 #pragma once
 
 #include <urdf_parser/urdf_parser.h>
@@ -25,14 +25,14 @@ struct Place {
   Vector at(const Vector& point) const { return p + R * point; }
 };
 
-/// A point of mass on a link of the description.
+/// Point mass on a link of the description.
 struct Point {
   int link;  ///< index in the row
   Vector p;
   Real mass;
 };
 
-/// The row of links from base_link to hammer_hull, read from the description again, by hand.
+/// Row of links from base_link to hammer_hull, read from the description by separate code.
 class Row {
  public:
   explicit Row(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
@@ -54,7 +54,7 @@ class Row {
   int link(const std::string& name) const { return names_.at(name); }
   const std::vector<Point>& points() const { return points_; }
 
-  /// Six points with the mass, centre and inertia of a body; sign -1 takes it away.
+  /// Adds six points with the mass, centre of mass and inertia of a body; sign -1 subtracts it.
   static void addBody(int link, const RigidBody& body, Real sign, std::vector<Point>& points) {
     if (body.mass == 0.0) return;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(body.inertia);
@@ -69,7 +69,7 @@ class Row {
     }
   }
 
-  /// Places of the links at a time, joints moving with constant accelerations.
+  /// Returns the places of the links at a time, with constant accelerations of the joints.
   std::vector<Place> places(const JointMotion& m, Real t) const {
     std::vector<Place> places(1);
     int moving = 0;
@@ -88,7 +88,7 @@ class Row {
     return places;
   }
 
-  /// What the points' weight and inertia need, of those wanted: sum of m (a - g), about the base's origin.
+  /// Returns the load that weight and inertia of the wanted points require: sum of m (a - g), about the base's origin.
   template <typename Wanted>
   Load demanded(const std::vector<Point>& points, const JointMotion& m, const Eigen::Vector3d& g, Wanted wanted) const {
     constexpr Real h = 4e-3L;

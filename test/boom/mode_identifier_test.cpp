@@ -1,5 +1,5 @@
-// Frequencies and damping from noisy sensors on a boom that a hand-made chain vibrates: its own mass matrix, stiffness
-// from the cylinders' triangles by differences, damping by Rayleigh, integrated in small steps.
+// Frequencies and damping identified from noisy sensors on a reference machine with its own mass matrix, stiffness from
+// the cylinders' triangles by differences, and Rayleigh damping. Its motion is integrated in small steps.
 #include "hammer_loads/boom/mode_identifier.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST_P(Oil, IsIdentifiedFromANoisySensor) {
     EXPECT_GT(std::abs(run.frequencyError(0)), 0.14);
     run.run(12.0);
     EXPECT_TRUE(run.identifier().identified());
-    // The two modes that carry the vibration; the third, at 20 Hz and more, moves a joint by less than its sensor's
+    // The first two modes carry the vibration. The third, at 20 Hz and more, moves a joint by less than its sensor's
     // noise.
     for (int k = 0; k < 2; ++k) {
       EXPECT_LT(std::abs(run.frequencyError(k)), 0.01) << k;
@@ -75,9 +75,9 @@ TEST(ModeIdentifier, FindsNothingWithoutReadings) {
 TEST(ModeIdentifier, SurvivesNonsenseAndAForceThatIsAFewPercentWrong) {
   IdentifierSession run(0.7, Sensor::kImu);
   run.run(12.0, 0.05);
-  // The third mode hangs on the same three stiffnesses, and is hardly moved.
+  // The third mode depends on the same three stiffnesses and is hardly excited.
   for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(run.frequencyError(k)), k < 2 ? 0.025 : 0.04) << k;
-  // A reading of a thousand times its size moves little; one that is no number nothing.
+  // A reading a thousand times too large has little effect. A NaN has none.
   const double ratio = run.identifier().frequencyRatio(0);
   VibrationReading reading = jointAngleReading(1, 100.0);
   reading.noise = 1e-4, reading.offset_std = 0.01;
@@ -96,7 +96,7 @@ TEST(ModeIdentifier, SurvivesNonsenseAndAForceThatIsAFewPercentWrong) {
 TEST(ModeIdentifier, ModesAreThoseOfTheOilFound) {
   IdentifierSession run(0.7, Sensor::kPressures);
   run.run(12.0);
-  Boom right = test::shippedBoom();  // of the machine's oil
+  Boom right = test::shippedBoom();  // with the machine's bulk modulus
   right.moveCompliant({test::workingPosition(), test::kZero, test::kZero}, test::kLevel);
   const BoomModes& modes = run.boom_->vibration().modes();
   const auto overRight = [&] { return modes.given_omega[0] / right.vibration().modes().given_omega[0]; };

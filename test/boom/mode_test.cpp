@@ -16,7 +16,7 @@ namespace {
 
 using Exact = boost::multiprecision::cpp_bin_float_50;
 
-/// Impulse, step, ramp and parabola by the closed forms in 50 digits.
+/// Returns the responses to impulse, step, ramp and parabola by closed forms in 50 digits.
 std::array<double, 4> exactResponse(const Mode& mode, double time) {
   const Exact w = mode.omega, zeta = mode.zeta, t = time;
   const Exact root = sqrt(1 - zeta * zeta), decay = exp(-zeta * w * t);
@@ -44,7 +44,7 @@ TEST(ModeResponse, EqualsFiftyDigitsForEveryStep) {
                                        std::min(t * t * t / 6.0, t / (w * w)),
                                        std::min(std::pow(t, 4) / 24.0, t * t / (2.0 * w * w))};
       for (std::size_t i = 0; i < 4; ++i) {
-        // Argument of sine and cosine: half an ulp of wt.
+        // The argument of sine and cosine has an error of half an ulp of wt.
         const double tolerance = (wt > 1.0 ? 8.0 + wt : 8.0) * 2.3e-16;
         const double error = std::abs(value[i] - expected[i]) / size[i];
         EXPECT_LT(error, 4.0 * tolerance) << "zeta " << zeta << " wt " << wt << " term " << i;
@@ -63,7 +63,7 @@ TEST(ModeResponse, FreeJointHasNoFrequency) {
   EXPECT_DOUBLE_EQ(r.parabola, 3.375);
 }
 
-/// Duhamel's integral, Gauss-Legendre: int f(s) e^(-zeta w (t - s)) sin(root w (t - s))/(root w) ds.
+/// Returns Duhamel's integral by Gauss-Legendre: int f(s) e^(-zeta w (t - s)) sin(root w (t - s))/(root w) ds.
 double duhamel(const Mode& mode, double mu, double t) {
   static const std::array<double, 8> node{0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863,
                                           0.6178762444026437484, 0.7554044083550030338, 0.8656312023878317438,

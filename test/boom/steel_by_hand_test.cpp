@@ -1,4 +1,4 @@
-// Section loads and joint reactions of a bar, by hand, and of a boom whose cylinder is at a dead centre.
+// Section loads and joint reactions of a bar, calculated by hand, and of a boom with a cylinder at zero moment arm.
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
@@ -10,7 +10,7 @@ namespace {
 using test::kGravity;
 
 TEST(SteelByHand, EqualsACantileverWithALoadAtItsEnd) {
-  // 4 m bar of 80 kg, level, held at its joint; at its end 1 kN down and 500 N to the side.
+  // A level bar of 4 m and 80 kg is held at its joint. At its end act 1 kN downwards and 500 N to the side.
   const std::string urdf =
       "<robot name=\"bar\"><link name=\"base_link\"/><link name=\"bar\"><inertial><origin xyz=\"2 0 0\"/>"
       "<mass value=\"80\"/><inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"106.6666666\" iyz=\"0\" izz=\"106.6666666\"/>"
@@ -30,16 +30,16 @@ TEST(SteelByHand, EqualsACantileverWithALoadAtItsEnd) {
   // Beyond 1 m: 60 kg with its centre 1.5 m away.
   const Wrench& w = loads.section[0];
   EXPECT_LT((w.force - Eigen::Vector3d(0.0, 500.0, -1000.0 - 60.0 * kGravity)).norm(), 1e-10);
-  // Down at x > 0 turns x towards -z: about +y.
+  // A downward force at x > 0 has a positive moment about +y.
   EXPECT_LT((w.torque - Eigen::Vector3d(0.0, 3.0 * 1000.0 + 1.5 * 60.0 * kGravity, 3.0 * 500.0)).norm(), 1e-9);
-  // Turned by 0.5 rad about y: x of the cut points down by it. 20 kg beyond.
+  // The cut is rotated by 0.5 rad about y, so that its x axis points downwards. Beyond it are 20 kg.
   const double down = 1000.0 + 20.0 * kGravity;
   EXPECT_NEAR(loads.section[1].force.x(), down * std::sin(0.5), 1e-9);
   EXPECT_NEAR(loads.section[1].force.z(), -down * std::cos(0.5), 1e-9);
   EXPECT_NEAR(loads.section[1].torque.y(), 1000.0 + 0.5 * 20.0 * kGravity, 1e-9);
   EXPECT_NEAR(loads.joint[0].force.z(), -1000.0 - 80.0 * kGravity, 1e-9);
   EXPECT_NEAR(loads.joint[0].torque.y(), 4000.0 + 160.0 * kGravity, 1e-9);
-  // Turning it faster and faster about its joint: the part beyond lags behind, 60 kg at 2.5 m, 45 kg m2.
+  // The bar accelerates about its joint. The inertia of the part beyond acts backwards: 60 kg at 2.5 m, 45 kg m2.
   JointVector fast = JointVector::Constant(1, 2.0), faster = JointVector::Constant(1, 3.0);
   made.value->move({zero, fast, faster}, Eigen::Vector3d::Zero());
   ASSERT_TRUE(made.value->steelLoads({}, true, loads));
@@ -64,7 +64,7 @@ TEST(SteelAtDeadCentre, LeavesOnlyTheSectionsUnknownThatTheCylinderCrosses) {
   EXPECT_TRUE(loads.joint[0].torque.allFinite());
   EXPECT_TRUE(std::isnan(loads.joint[1].force.x()));
   EXPECT_TRUE(loads.joint[2].force.allFinite());
-  // Infinite is not the same as unknown.
+  // An infinite load is reported as a failure, unlike an unknown one.
   EXPECT_FALSE(made.value->steelLoads({Eigen::Vector3d(1e300, 1e308, 0.0), {}}, true, loads));
 }
 

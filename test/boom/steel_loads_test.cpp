@@ -1,5 +1,5 @@
-// Section loads, joint reactions and pin forces against points of mass whose accelerations are differences in time,
-// with Newton's law for the part before the cut and the reaction of the base.
+// Section loads, joint reactions and pin forces compared with point masses whose accelerations are differences in time.
+// Newton's law is applied to the part before the cut with the reaction of the base.
 #include "hammer_loads/boom/steel_loads.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 using namespace test::mass_points;
 using test::kGravity;
 
-/// A pose of the shipped boom with its joints moving, a base that leans, any hammer.
+/// Pose of the shipped boom with moving joints, a leaning base and any load of the hammer.
 struct Case {
   JointMotion motion;
   Eigen::Vector3d g;
@@ -45,8 +45,8 @@ class Steel : public testing::Test {
     return load;
   }
 
-  /// A cylinder's pins in the base's frame and the forces on the chain there, by the force that holds its joint against
-  /// everything beyond by the work that they do: length by differences.
+  /// Pin of a cylinder in the base's frame and the force on the chain there. The cylinder holds its joint against all
+  /// loads beyond it. Its moment arm follows from virtual work, with differences of its length.
   struct Pin {
     int link;
     Vector on_link, place, force;
@@ -54,7 +54,7 @@ class Steel : public testing::Test {
   struct Held {
     int beyond;
     Real force;
-    std::vector<Pin> pins;  ///< the one on the link beyond comes last
+    std::vector<Pin> pins;  ///< the pin on the link beyond is last
   };
   static Vector inSpace(const test::LinkageReference::Point& p) { return {p.x(), 0, p.y()}; }
 
@@ -105,8 +105,8 @@ class Steel : public testing::Test {
     return {beyond, -torque / slope, {{beyond - 1, base, from, -push}, {beyond, rod, to, push}}};
   }
 
-  /// By the part beyond on the part before, from the part before: what the base and the cylinders do to it and what its
-  /// motion demands. `before` of points, `isBefore` of the cylinders' pins.
+  /// Returns the load of the part beyond on the part before, from the forces of base and cylinders on the part before
+  /// and its motion. `before` selects the points, `isBefore` the pins of the cylinders.
   template <typename Before, typename IsBefore>
   Load fromBefore(const Case& c, const std::vector<Point>& points, Before before, IsBefore isBefore) const {
     const Load all = row_.demanded(row_.points(), c.motion, c.g, [](const Point&) { return true; });
@@ -135,7 +135,7 @@ class Steel : public testing::Test {
 };
 
 TEST_F(Steel, SectionsAreTheSameFromEitherSide) {
-  // Also turned cuts, uniform bars and cuts on the bracket.
+  // Rotated cuts, uniform bars and cuts on the bracket are included.
   BoomParameters parameters = test::shippedBoomParameters();
   ASSERT_EQ(parameters.sections.size(), 3U);
   parameters.sections.push_back({"turned", "boom_link", {1.0, 0.1, 0.2}, 0.7, {}});
@@ -245,14 +245,14 @@ TEST_F(Steel, VibrationCountsAsWhatItAccelerates) {
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_NEAR(loads.pins[k].base.norm(), std::abs(torques.cylinder[k].force), 1e-9 * loads.pins[k].base.norm());
   EXPECT_NEAR(loads.joint[0].torque.z(), torques.total[0], 1e-8);
-  // The same motion, as if the joints made it.
+  // A rigid boom whose joints make this motion has equal section loads.
   Boom driven = test::shippedBoom();
   driven.move({test::workingPosition(), boom_.vibration().velocity(), boom_.vibration().acceleration()},
               {0.0, 0.0, -kGravity});
   SteelLoads expected;
   driven.steelLoads(w, true, expected);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(difference(loads.section[k], expected.section[k]), 1e-14);
-  // And it matters.
+  // The vibration's effect is not negligible.
   driven.move({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
   driven.steelLoads(w, true, expected);
   EXPECT_GT(std::abs(loads.section[0].torque.y() - expected.section[0].torque.y()), 500.0);

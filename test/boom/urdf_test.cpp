@@ -13,14 +13,14 @@
 namespace hammer_loads {
 namespace {
 
-/// The shipped description as TF would draw it.
+/// Shipped description with the frames that TF would publish.
 class Model : public testing::Test {
  protected:
   Model() : model_(urdf::parseURDF(test::shippedUrdf())) {
     if (!model_ || !kdl_parser::treeFromUrdfModel(*model_, tree_)) throw std::runtime_error("cannot read the URDF");
   }
 
-  /// Position of a joint, of the one that it mimics if it does; those not named are at zero.
+  /// Returns the position of a joint, from the joint that it mimics if there is one. Joints not named are at zero.
   double position(const std::string& joint, const std::map<std::string, double>& angles) const {
     const urdf::JointConstSharedPtr found = model_->getJoint(joint);
     if (found && found->mimic)
@@ -62,7 +62,7 @@ TEST_F(Model, PinsMeetAllAroundTheTurn) {
   const Mechanism mechanism = shippedMechanism();
   const LinkLengths& l = mechanism.parameters().lengths;
   const double a = mechanism.parameters().rocker_com_angle;
-  /// Point at radius e^(i angle) of the mechanism frame from a pin, in hull axes (model.md 1).
+  /// Returns the unit vector e^(i angle) of the mechanism frame in hull axes (model.md 1).
   const auto direction = [&](double angle) {
     const double xi = std::cos(angle), eta = std::sin(angle);
     return KDL::Vector(-(std::cos(a) * xi + std::sin(a) * eta), 0.0, -std::sin(a) * xi + std::cos(a) * eta);
@@ -74,13 +74,13 @@ TEST_F(Model, PinsMeetAllAroundTheTurn) {
     const double psi = rockerAngle(motion.rocker), beta = rodAngle(motion);
     const std::map<std::string, double> angles{
         {"hammer_crank_joint", phi}, {"hammer_rod_joint", beta}, {"hammer_rocker_joint", psi}};
-    // Pins by the description: link frame, then along the link at zero.
+    // Pins by the description: the link's frame, then the link's length along its direction at zero.
     const KDL::Frame crank = X_hull * frame("hammer_crank", angles), rod = X_hull * frame("hammer_rod", angles);
     const KDL::Frame rocker = X_hull * frame("hammer_rocker", angles);
     const KDL::Vector at_zero = direction(0.0);
     const KDL::Vector C_rod = rod * (l.rod * at_zero), C_rocker = rocker * (l.rocker * at_zero);
     EXPECT_TRUE(KDL::Equal(C_rod, C_rocker, 1e-14)) << degree;
-    // And by the equations of model.md 1.
+    // Pins by the equations of model.md 1.
     const KDL::Vector A = -l.pivot_distance * direction(0.0);
     EXPECT_TRUE(KDL::Equal(crank.p, A, 1e-14));
     EXPECT_TRUE(KDL::Equal(rod.p, A + l.crank * direction(phi), 1e-14)) << degree;
@@ -114,11 +114,11 @@ TEST_F(Model, HasThePublishedFigures) {
   EXPECT_NEAR(hammer, 400.0, 1.0);
   constexpr double kBucket = 300.0;
   EXPECT_NEAR(mass("body") + mass("swing_link") + mass("boom_link") + mass("arm_link") + kBucket, 6100.0, 1.0);
-  // Moving links count once: in the hull.
+  // The masses of the moving links are included once, in the hull.
   for (const char* link : {"hammer_crank", "hammer_carrier", "hammer_rod", "hammer_rocker"}) EXPECT_EQ(mass(link), 0.0);
   const urdf::JointLimitsSharedPtr swing = model_->getJoint("swing_joint")->limits;
   EXPECT_NEAR(swing->upper - swing->lower, 160.0 * kPi / 180.0, 1e-3);
-  // Deepest: boom down, arm and hammer straight below.
+  // Lowest position: boom down, arm and hammer straight below.
   const double boom = model_->getJoint("boom_joint")->limits->upper, arm = 0.5 * kPi - boom;
   const KDL::Frame tool =
       frame("hammer_tool", {{"boom_joint", boom}, {"arm_joint", arm}, {"hammer_joint", -0.5 * kPi}});

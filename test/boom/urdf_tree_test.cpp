@@ -1,4 +1,4 @@
-/// Bodies of a robot description against those that kdl_parser of ROS makes of it.
+/// Bodies of a robot description compared with those of kdl_parser of ROS.
 #include "hammer_loads/boom/urdf_tree.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Joints of every kind, leaning and shifted, with inertias in axes of their own.
+/// Robot with joints of every type at inclined and shifted origins, and with inertias in their own axes.
 constexpr char kEveryKind[] = R"(<robot name="r"><link name="root"/>
 <link name="a"><inertial><origin xyz="0.1 -0.2 0.3" rpy="0.4 -0.5 0.6"/><mass value="3"/>
   <inertia ixx="2" iyy="3" izz="4" ixy="0.1" ixz="-0.2" iyz="0.3"/></inertial></link>

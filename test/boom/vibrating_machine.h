@@ -1,5 +1,5 @@
-/// A boom that a hand-made chain vibrates: its own mass matrix, stiffness from the cylinders' triangles by differences,
-/// damping by Rayleigh, integrated in small steps. Shares no code with the boom room.
+/// Reference machine with a vibrating boom: own mass matrix, stiffness from the cylinders' triangles by differences,
+/// Rayleigh damping, integration in small steps. Shares no code with src/hammer_loads/boom.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -12,7 +12,7 @@ namespace hammer_loads::test {
 constexpr double kMillisecond = 1e-3;
 constexpr double kStandardGravity = 9.80665, kHalfTurn = 3.14159265358979323846;
 
-/// Figures of urdf/eo2621_mo100.urdf by hand: boom, arm, bracket with hull.
+/// Returns boom, arm, and bracket with hull, with the figures of urdf/eo2621_mo100.urdf entered by hand.
 inline PlanarChain<3> planarEo2621() {
   PlanarChain<3> planar;
   planar.links[0] = {{2.60, 0.0}, {1.20, 0.08}, 400.0, 229.4};
@@ -29,7 +29,7 @@ struct PlanarModes {
   Eigen::Matrix3d shape;  ///< shape^T M shape = 1
 };
 
-/// Of springs K on the joints and mass matrix M: the eigenvectors y of K^-1/2 M K^-1/2 are K^1/2 x.
+/// Returns the modes x of springs K on the joints and mass matrix M. K^-1/2 M K^-1/2 has the eigenvectors K^1/2 x.
 inline PlanarModes planarModes(const Eigen::Vector3d& K, const Eigen::Matrix3d& M) {
   const Eigen::Vector3d soft = K.cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(soft.asDiagonal() * M * soft.asDiagonal());
@@ -41,7 +41,7 @@ inline PlanarModes planarModes(const Eigen::Vector3d& K, const Eigen::Matrix3d& 
   return modes;
 }
 
-/// The machine as it is, with its own bulk modulus and damping.
+/// True machine with its own bulk modulus and damping.
 class VibratingMachine {
  public:
   VibratingMachine(const BoomParameters& parameters, double bulk_modulus, unsigned seed)
@@ -51,13 +51,13 @@ class VibratingMachine {
     for (std::size_t i = 0; i < 3; ++i) K_[static_cast<int>(i)] = stiffness(parameters.cylinders[i], i, bulk_modulus);
     inverse_ = M_.inverse();
     omega = planarModes(K_, M_).omega;
-    // Rayleigh: 7 % at the first mode, growing with frequency at the others.
+    // Rayleigh damping: 7 % at the first mode, growing with frequency at the others.
     const double beta = 2.0 * 0.045 / omega[0], alpha = 2.0 * 0.025 * omega[0];
     C_ = alpha * M_ + beta * K_.asDiagonal().toDenseMatrix();
     zeta = 0.5 * (alpha * omega.cwiseInverse() + beta * omega);
   }
 
-  /// One millisecond under a load that is linear over it.
+  /// Advances by one millisecond under a linear load.
   void step(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     constexpr int kSub = 20;
     const double h = kMillisecond / kSub;
@@ -83,7 +83,7 @@ class VibratingMachine {
   const Eigen::Vector3d& displacement() const { return x_; }
   Eigen::Vector3d hold() const { return K_.cwiseProduct(x_) + C_ * v_; }  ///< what the cylinders carry
 
-  /// The IMU at the hull's frame: along x and z, then the rate about y.
+  /// Returns the readings of an IMU at the hull's frame: specific force along x and z [m/s2], rate about y [rad/s].
   Eigen::Vector3d imu(double accelerometer_noise, double gyro_noise) {
     const Eigen::Vector3d a = acceleration();
     const std::complex<double> i(0.0, 1.0);
@@ -110,7 +110,7 @@ class VibratingMachine {
                                  const Eigen::Vector3d& load) const {
     return inverse_ * (load - C_ * v - K_.cwiseProduct(x));
   }
-  /// Oil of both chambers on the arm of the triangle or the linkage.
+  /// Returns a joint's stiffness by the oil of both chambers at the arm of the triangle or the linkage [N m/rad].
   static double stiffness(const CylinderParameters& p, std::size_t joint, double bulk_modulus) {
     constexpr std::array<std::complex<double>, 3> kPivot{
         std::complex<double>(0.25, 0.40), std::complex<double>(2.60, 0.0), std::complex<double>(1.70, 0.0)};
@@ -140,7 +140,7 @@ class VibratingMachine {
   Eigen::Vector3d K_, x_ = Eigen::Vector3d::Zero(), v_ = Eigen::Vector3d::Zero(), load_ = Eigen::Vector3d::Zero();
 };
 
-/// Blows 4.7 times a second, a little uneven: half-sine pulses of 18 ms on the hull.
+/// Half-sine pulses of 18 ms on the hull, 4.7 per second at slightly uneven intervals.
 class PulsingHammer {
  public:
   Wrench at(double time) {

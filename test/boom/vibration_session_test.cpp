@@ -14,8 +14,8 @@ namespace {
 
 using test::PlanarChain;
 
-/// Crank with a steady torque, and the boom vibrating under it while its pose moves: everything smooth between blows.
-/// M from the hand-made chain, C = 2 zeta M sqrt(M^-1 K), K and poses as given.
+/// Crank with a steady torque on a boom that vibrates while its pose moves. Everything is smooth between blows.
+/// M is that of the hand-made chain, C = 2 zeta M sqrt(M^-1 K). K and poses are given.
 class Reference {
  public:
   using State = std::vector<double>;  // crank offset, crank speed, 3 displacements, 3 velocities, time
@@ -30,7 +30,7 @@ class Reference {
     state_[kSpeed] = 13.5;
   }
 
-  /// Slow motion of the pitch joints, as joint_states would tell; swing is held.
+  /// Returns the slow motion of the pitch joints as joint_states would report it. The swing joint is held.
   JointVector position(double time) const {
     return test::workingPosition() + amplitude_ * test::joints({0.0, std::sin(1.3 * time), std::sin(1.9 * time + 0.4),
                                                                 std::sin(1.1 * time - 0.3)});
@@ -40,19 +40,19 @@ class Reference {
     const ShaftLoad load = shaftLoadRocker(mechanism_, m, {});
     return (kTorque - load.half_inertia_slope * y[kSpeed] * y[kSpeed]) / (kDriveInertia + load.inertia);
   }
-  /// On the hull, without weight.
+  /// Returns the wrench on the hull without weight.
   Wrench wrench(const State& y) const {
     const CrankMotion crank{angle(y), y[kSpeed], crankAcceleration(y)};
     const HullWrench w = hullWrench(mechanism_, Level::kRocker, crank, {});
     return {Eigen::Vector3d(w.force_x, 0.0, w.force_z), Eigen::Vector3d(0.0, w.torque_y, 0.0)};
   }
-  /// Minus the wrench's impulse [N s, N m s].
+  /// Returns the links' momentum, which changes by minus the wrench's impulse [N s, N m s].
   Wrench momentum(const State& y) const {
     const LinkMomentum p = linkMomentum(mechanism_, Level::kRocker, angle(y), y[kSpeed]);
     return {Eigen::Vector3d(p.x, 0.0, p.z), Eigen::Vector3d(0.0, p.about_d, 0.0)};
   }
 
-  /// To `time`; `blow` is called with the state on either side of a blow.
+  /// Advances to `time`. Calls `blow` with the state on either side of each blow.
   template <typename Blow>
   void advanceTo(double time, const Blow& blow) {
     for (;;) {
@@ -62,7 +62,7 @@ class Reference {
         state_ = ahead;
         return;
       }
-      // The blow lies within: there with the crank's angle as the independent variable.
+      // A blow lies within. It is reached with the crank's angle as the independent variable.
       integrate(state_, 2.0 * kPi - state_[kOffset], true);
       before_blow_ = true;
       state_[kOffset] = 0.0;
@@ -75,7 +75,7 @@ class Reference {
   const State& state() const { return state_; }
   Eigen::Vector3d displacement() const { return Eigen::Vector3d(&state_[kDisplacement]); }
   Eigen::Vector3d velocity() const { return Eigen::Vector3d(&state_[kVelocity]); }
-  /// Torque that vibration adds: -M x''.
+  /// Returns the torque that vibration adds: -M x''.
   Eigen::Vector3d torque() const {
     State rate(kSize);
     this->rate(state_, rate);
@@ -87,7 +87,7 @@ class Reference {
 
   CrankAngle angle(const State& y) const {
     if (before_blow_) return {0.0, Side::kBeforeBlow};
-    // Past half a turn the nearest blow is the one ahead; beyond it, its smooth continuation.
+    // Beyond half a revolution the nearest blow is the next one. States past it are its smooth continuation.
     return y[kOffset] > kPi ? CrankAngle{y[kOffset] - 2.0 * kPi, Side::kBeforeBlow}
                             : CrankAngle{y[kOffset], Side::kAfterBlow};
   }
@@ -107,7 +107,7 @@ class Reference {
     const double zeta = boom_.parameters().vibration.damping_ratio;
     const Eigen::Matrix3d C = M * modes.shape * (2.0 * zeta * modes.omega).asDiagonal() * modes.shape.transpose() * M;
     const Wrench w = wrench(y);
-    // Load torques by the hand-made chain: at rest, weightless, so J^T w alone.
+    // The hand-made chain gives the load torques. At rest and without weight they are J^T w alone.
     const auto Q = planar_.loads({q[1], q[2], q[3]}, {}, {}, {w.force.x(), w.force.z()}, w.torque.y());
     const Eigen::Vector3d x(&y[kDisplacement]), v(&y[kVelocity]);
     const Eigen::Vector3d acceleration = M.inverse() * (Eigen::Vector3d(Q.data()) - C * v - K.cwiseProduct(x));
@@ -119,7 +119,7 @@ class Reference {
     }
     dy[kTime] = 1.0;
   }
-  /// Over a span of time, or of crank angle.
+  /// Integrates over a span of time or of crank angle.
   void integrate(State& y, double span, bool by_angle) const {
     using namespace boost::numeric::odeint;
     const auto system = [&](const State& now, State& dy, double) {
@@ -140,12 +140,12 @@ class Reference {
 };
 
 struct Errors {
-  double displacement{}, torque{};            ///< largest over the session, of their peaks
+  double displacement{}, torque{};            ///< largest error over the peak [-]
   double peak_displacement{}, peak_torque{};  ///< [rad], [N m]
   int blows{};
 };
 
-/// A session sampled at `rate`, each step ended and begun at a blow.
+/// Runs a session sampled at `rate` [Hz]. A blow ends one step and begins the next.
 Errors session(double rate, double amplitude, bool with_mean) {
   Boom boom = test::shippedBoom();
   Reference reference(boom, amplitude);
@@ -192,7 +192,7 @@ Errors session(double rate, double amplitude, bool with_mean) {
   return errors;
 }
 
-/// Every bound of the session, with the largest error found.
+/// Checks every bound of the session and records the largest errors.
 void expectWithin(const Errors& errors, double bound) {
   EXPECT_LE(errors.displacement, bound);
   EXPECT_LE(errors.torque, bound);
@@ -204,13 +204,13 @@ void expectWithin(const Errors& errors, double bound) {
 
 constexpr double kMoving = 0.1;  // [rad], up to 0.19 rad/s
 
-// Forces linear between samples: as good as the samples' polygon follows the pulse.
+// Forces are linear between samples. The error is that of the polygon through the samples of the pulse.
 TEST(VibrationSession, FollowsASteadyPoseAt1000Hz) { expectWithin(session(1000.0, 0.0, false), 1e-3); }
 TEST(VibrationSession, FollowsASteadyPoseAt200Hz) { expectWithin(session(200.0, 0.0, false), 1e-2); }
 TEST(VibrationSession, FollowsAMovingPoseAt1000Hz) { expectWithin(session(1000.0, kMoving, false), 1e-3); }
 TEST(VibrationSession, FollowsAMovingPoseAt200Hz) { expectWithin(session(200.0, kMoving, false), 1e-2); }
 
-// With the exact mean of the wrench from the links' momentum no impulse is lost: far better, whatever the rate.
+// The exact mean of the wrench, from the links' momentum, loses no impulse. Errors at a steady pose are far smaller.
 TEST(VibrationSession, FollowsASteadyPoseAt1000HzWithMeans) { expectWithin(session(1000.0, 0.0, true), 1e-6); }
 TEST(VibrationSession, FollowsASteadyPoseAt200HzWithMeans) { expectWithin(session(200.0, 0.0, true), 2e-4); }
 TEST(VibrationSession, FollowsAMovingPoseAt1000HzWithMeans) { expectWithin(session(1000.0, kMoving, true), 1e-3); }

@@ -1,4 +1,4 @@
-// How the shipped boom vibrates: what its cylinders carry, its energy, what the hull feels.
+// Vibration of the shipped boom: forces of its cylinders, energy, response of the hull.
 #include "hammer_loads/boom/vibration.h"
 
 #include <gtest/gtest.h>
@@ -23,13 +23,13 @@ TEST_F(ShippedBoom, StandsWhereTheVibrationTakesIt) {
   ChainPose there;
   forwardKinematics(boom_.chain(), q + x, there);
   EXPECT_LT((boom_.pose().tip().matrix() - there.tip().matrix()).norm(), 1e-12);
-  // Its cylinders and its steel know the same lever arms and the same velocities.
+  // Cylinder and steel loads use the same moment arms and the same velocities.
   BoomLoads loads;
   SteelLoads steel;
   ASSERT_TRUE(boom_.loads(push_, false, loads) && boom_.steelLoads(push_, false, steel));
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(steel.pins[i].base.norm(), std::abs(loads.cylinder[i].force), 1e-9 * steel.pins[i].base.norm());
-  // A swing that is no small vibration any more moves no link.
+  // A displacement that is no longer a small vibration moves no link.
   for (int i = 0; i < 100; ++i) steadyLoad(1e-3, 100.0 * torque);
   ASSERT_GT(vibration().displacement().norm(), 0.2);
   boom_.moveVibrating({q, kZero, kZero}, boom_.vibration().displacementAfter(1e-3), test::kLevel);
@@ -49,7 +49,7 @@ TEST_F(ShippedBoom, CylindersCarryWhatTheyHold) {
   const JointVector carried = to + vibration().torque();
   EXPECT_LT((carried.tail<3>() - held).norm(), 1e-11 * held.norm());
   EXPECT_EQ(vibration().displacement()[0], 0.0);
-  // Acceleration is what is left over M; the held swing joint feels the coupling only.
+  // The acceleration is the remaining torque over M. The held swing joint carries the coupling only.
   EXPECT_LT((vibration().torque() + m.mass * vibration().acceleration()).norm(), 1e-11 * held.norm());
 }
 
@@ -62,7 +62,7 @@ TEST_F(ShippedBoom, StrikeGivesTheImpulseAsMomentum) {
 }
 
 TEST_F(ShippedBoom, EnergyComesBackWithThePose) {
-  // A slowly moving pose takes and gives energy (with omega); back where it was, none was made. Damping next to none.
+  // A slowly moving pose changes the energy with omega. At the first pose the energy is as before (damping near 0).
   VibrationSettings settings = boom_.parameters().vibration;
   settings.damping_ratio = 1e-9;
   Vibration free(boom_.chain(), boom_.cylinders(), settings);
@@ -89,7 +89,7 @@ TEST_F(ShippedBoom, GivesReducedMassAndStiffnessAtTheHull) {
   for (const Eigen::Vector3d& direction : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()}) {
     const ReducedHull reduced = boom_.reducedHull(direction);
     vibration().reset();
-    // An impulse of 1 N s along it moves the hull along it at 1/mass; a steady 1 N by 1/stiffness.
+    // An impulse of 1 N s moves the hull at the velocity 1/mass along it. A steady 1 N displaces it by 1/stiffness.
     const JointVector unit = boom_.hammerTorque({direction, Eigen::Vector3d::Zero()});
     vibration().strike(unit);
     EXPECT_NEAR(direction.dot(boom_.tipVibration().velocity.head<3>()) * reduced.mass, 1.0, 1e-11);
@@ -99,7 +99,7 @@ TEST_F(ShippedBoom, GivesReducedMassAndStiffnessAtTheHull) {
     EXPECT_GT(reduced.mass, 50.0);
     EXPECT_LT(reduced.mass, 6100.0);
   }
-  // Nothing that vibrates moves it sideways.
+  // No vibrating joint moves the hull sideways.
   EXPECT_TRUE(std::isinf(boom_.reducedHull(Eigen::Vector3d::UnitY()).stiffness) ||
               boom_.reducedHull(Eigen::Vector3d::UnitY()).stiffness > 1e30);
 }
@@ -110,14 +110,14 @@ TEST_F(ShippedBoom, RigidErrorFollowsPulseLength) {
   const auto error = [&](double length) { return rigidError(modes(), zeta, torque, length); };
   const double period = 2.0 * kPi / modes().omega[0];
   EXPECT_LT(error(200.0 * period), 0.01);          // slow: static
-  EXPECT_NEAR(error(0.0005 * period), 1.0, 0.02);  // short: the boom hardly moves, nothing is carried
-  EXPECT_GT(error(0.018), 0.5);                    // the MO-100's pulse: rigid is wrong
+  EXPECT_NEAR(error(0.0005 * period), 1.0, 0.02);  // short: the boom hardly moves, the cylinders carry nothing
+  EXPECT_GT(error(0.018), 0.5);                    // the MO-100's pulse: a rigid boom is wrong
   EXPECT_EQ(error(0.0), 0.0);
   const Wrench peak{Eigen::Vector3d(0.0, 0.0, 8e3), Eigen::Vector3d::Zero()};
   EXPECT_EQ(boom_.rigidError(peak, 0.018), error(0.018));
   EXPECT_EQ(rigidError(modes(), zeta, kZero, 0.018), 0.0);
 
-  // Against stepping through the pulse.
+  // The result is compared with small steps through the pulse.
   const double length = 0.05, h = length / 2000.0;
   double worst = 0.0;
   for (int i = 0; i < 20000; ++i) {

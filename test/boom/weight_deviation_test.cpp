@@ -1,4 +1,4 @@
-// How far the weight's torques may be off, against booms whose masses, centres and zeros are drawn.
+// Standard deviations of the weight's torques, compared with booms with random masses, centres and joint zeros.
 #include <gtest/gtest.h>
 
 #include "boom/booms.h"
@@ -8,7 +8,7 @@ namespace {
 
 Boom boomOf(const BoomParameters& parameters) { return Boom::make(test::shippedUrdf(), parameters).value.value(); }
 
-/// deviations() finds it for the pose.
+/// Returns the standard deviation of the weight's torques, which deviations() finds for the pose.
 JointVector weightDeviation(const BoomParameters& parameters, const JointVector& q) {
   Boom boom = boomOf(parameters);
   boom.move({q, test::kZero, test::kZero}, test::kLevel);
@@ -26,7 +26,7 @@ JointVector torqueOf(Boom& boom, const JointVector& q) {
 
 class WeightDeviation : public testing::Test {
  protected:
-  /// Root of the mean square of what draws change.
+  /// Returns the root mean square of the torques' changes by random draws.
   template <typename Draw>
   JointVector spread(const JointVector& q, const Draw& draw) {
     Boom given = boomOf(parameters_);
@@ -37,7 +37,7 @@ class WeightDeviation : public testing::Test {
     return (square / kDraws).cwiseSqrt();
   }
   static void expectAlike(const JointVector& said, const JointVector& drawn) {
-    for (int j = 1; j < 4; ++j) EXPECT_NEAR(said[j] / drawn[j], 1.0, 0.08) << j;  // 1.6 % of 2000 draws, five times
+    for (int j = 1; j < 4; ++j) EXPECT_NEAR(said[j] / drawn[j], 1.0, 0.08) << j;  // 5 standard errors of 1.6 %
     EXPECT_NEAR(said[0], 0.0, 1e-9) << "about the vertical there is no weight";
   }
 
@@ -55,7 +55,7 @@ TEST_F(WeightDeviation, IncludesMassesAndCentres) {
     for (int i = 1; i < given.chain().links(); ++i) {
       WeighedLink link = given.chain().body(i);
       link.mass *= 1.0 + 0.05 * normal_(random_);
-      // A moment's error, whatever the mass.
+      // The error of the centre is independent of that of the mass.
       link.com_x += 0.03 * normal_(random_), link.com_z += 0.03 * normal_(random_);
       drawn.chain.weighed.push_back(link);
     }

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-/// The rotation is the doubles nearest to one, so that its own error does not blur the shift's.
+/// Returns a random pose. Its rotation is rounded from long double, so that the errors are those of the shift.
 Pose randomPose(std::mt19937& random) {
   Pose X = Pose::Identity();
   X.linear() = Eigen::Quaternion<long double>(test::between(random, -1, 1), test::between(random, -1, 1),
@@ -21,7 +21,7 @@ Pose randomPose(std::mt19937& random) {
   return X;
 }
 
-/// The shift as a matrix on (force, torque): [R 0; [p]x R  R].
+/// Returns the shift as a matrix on (force, torque): [R 0; [p]x R  R].
 Eigen::Matrix<double, 6, 6> shiftMatrix(const Pose& X_QP) {
   const Eigen::Matrix3d R = X_QP.linear();
   const Eigen::Vector3d p = X_QP.translation();
@@ -47,7 +47,7 @@ TEST(WrenchShift, EqualsTheMatrixAndConservesPower) {
     const double size = w.torque.norm() + X.translation().norm() * w.force.norm();
     EXPECT_LT((by_matrix.tail<3>() - by_function.torque).norm(), 2e-15 * size);
 
-    // A rigid body has one power, whichever point and axes: f v + t omega.
+    // The power f v + t omega on a rigid body does not depend on point and axes.
     const Eigen::Vector3d v_P = test::randomVector(random, 2.0), omega_P = test::randomVector(random, 2.0);
     const Eigen::Vector3d omega_Q = X.linear() * omega_P;
     const Eigen::Vector3d v_Q = X.linear() * v_P - omega_Q.cross(X.translation());

@@ -1,5 +1,5 @@
-// A belief with considered constants against filters that estimate the constants, batch least squares and machines
-// drawn from the prior.
+// A belief with considered constants, compared with filters that estimate the constants, with batch least squares, and
+// with machines drawn from the prior.
 #include "hammer_loads/estimation/gaussian_belief.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ constexpr int kN = 4, kC = 3;
 using Machine = LinearMachine<kN, kC>;
 using Belief = Machine::Belief;
 
-/// Kalman's filter as in a textbook, the constants as states without noise.
+/// Textbook Kalman filter with the constants as states without noise.
 struct Textbook {
   static constexpr int kAll = kN + kC;
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(kAll);
@@ -44,7 +44,7 @@ struct Textbook {
   }
 };
 
-/// Friedland: the belief and what the innovations say of the constants are together the filter that estimates both.
+/// Friedland: the belief, with the constants fitted to its innovations, equals the filter that estimates both.
 TEST(GaussianBelief, EqualsTheTextbookFilterWithGatheredConstants) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Machine machine(seed);
@@ -83,7 +83,7 @@ TEST(GaussianBelief, EqualsTheLastStateOfBatchLeastSquares) {
     machine.predict(belief, mean);
     const Belief::ConstantRow by_constant = machine.D - machine.H * belief.by_constant;
     const double variance = machine.innovationVariance(belief), innovation = machine.correct(belief, mean, z);
-    ASSERT_FALSE(exceeds(innovation, variance, gate::kRare));  // within it a fit is least squares
+    ASSERT_FALSE(exceeds(innovation, variance, gate::kRare));  // within the gate a fit is least squares
     fit.learn(innovation, variance, by_constant);
   }
   const Machine::Batch batch = machine.batch(run.z, machine.prior);
@@ -95,8 +95,8 @@ TEST(GaussianBelief, EqualsTheLastStateOfBatchLeastSquares) {
   EXPECT_TRUE(belief.grown(1.0, of_constants).isApprox(batch.of(25), 1e-8));
 }
 
-/// Errors over their covariance (NEES): kN in the mean of machines whose constants are drawn from the prior, and not so
-/// where the constants are left out.
+/// Squared errors over their covariance (NEES) have the mean kN for machines whose constants are drawn from the prior.
+/// The mean is larger where the constants are left out.
 TEST(GaussianBelief, ErrorsOfDrawnMachinesHaveTheStatedSize) {
   const Machine machine(3);
   const Eigen::Matrix3d of_constants = machine.prior.cwiseAbs2().asDiagonal();
@@ -111,7 +111,7 @@ TEST(GaussianBelief, ErrorsOfDrawnMachinesHaveTheStatedSize) {
     considered += error.dot(belief.grown(1.0, of_constants).llt().solve(error)) / kRuns;
     left_out += error.dot(belief.covariance.llt().solve(error)) / kRuns;
   }
-  EXPECT_NEAR(considered, kN, 4.0 * std::sqrt(2.0 * kN / kRuns));  // four deviations of a mean of chi squares
+  EXPECT_NEAR(considered, kN, 4.0 * std::sqrt(2.0 * kN / kRuns));  // 4 standard deviations of a mean of chi squares
   EXPECT_GT(left_out, 2.0 * kN);
 }
 
@@ -129,7 +129,7 @@ TEST(GaussianBelief, TransitionOfFewRowsIsTheDenseOne) {
   EXPECT_EQ(few.covariance, few.covariance.transpose());
 }
 
-/// Schmidt's filter on all variables at once, dense: the gain of what is corrected, none of the constants.
+/// A dense Schmidt filter on all variables has equal gains. Its gain for the constants is zero.
 TEST(GaussianBelief, WeighsAMeasurementByConstantsThatAreConsidered) {
   constexpr int kAll = kN + kC;
   using Dense = Eigen::Matrix<double, kAll, kAll>;
@@ -137,7 +137,7 @@ TEST(GaussianBelief, WeighsAMeasurementByConstantsThatAreConsidered) {
   machine.H = Belief::Row::Unit(1);
   const Belief::ConstantRow of_constants = machine.prior.cwiseAbs2().transpose();
   Belief belief = machine.begin();
-  Dense both = Dense::Identity();  // of (x, p) less what is known of them
+  Dense both = Dense::Identity();  // covariance of the errors of (x, p)
   both.topLeftCorner<kN, kN>() = machine.first;
   both.bottomRightCorner<kC, kC>() = machine.prior.cwiseAbs2().asDiagonal();
   Machine::Vector mean = Machine::Vector::Zero();
@@ -157,15 +157,15 @@ TEST(GaussianBelief, WeighsAMeasurementByConstantsThatAreConsidered) {
     EXPECT_TRUE(gain.isApprox(of_all.head<kN>(), 1e-10)) << k;
     EXPECT_TRUE(belief.grown(1.0, of_constants.asDiagonal()).isApprox(both.topLeftCorner<kN, kN>(), 1e-10)) << k;
   }
-  Belief plain = machine.begin(), weighed = plain;  // of constants that are right: the same as without them
+  Belief plain = machine.begin(), weighed = plain;  // zero variances: as without constants
   EXPECT_TRUE(
       plain.correct(2, 0.3, machine.D)
           .isApprox(weighed.correct(2, 0.3, machine.D, Belief::ConstantRow(Belief::ConstantRow::Zero())), 1e-14));
   EXPECT_TRUE(weighed.covariance.isApprox(plain.covariance, 1e-13));
 }
 
-/// A count of 1e-12 rad2 beside a torque of 1e6 N m, known a million times better by each of many samples, and two
-/// variables that are one but for a part in 1e12: nothing turns negative, and what is known is that of all samples.
+/// A reading with a variance of 1e-12 rad2 meets a torque of 1e6 N m and two variables that are equal up to a part in
+/// 1e12. No variance becomes negative, and the final variance is that of all samples.
 TEST(GaussianBelief, SurvivesExactReadingsOfBadlyScaledVariables) {
   GaussianBelief<3, 1> belief;
   belief.covariance << 1e6, 1e6, 1e9, 1e6, 1e6 * (1.0 + 1e-12), 1e9, 1e9, 1e9, 1e12 + 1.0;
@@ -175,7 +175,7 @@ TEST(GaussianBelief, SurvivesExactReadingsOfBadlyScaledVariables) {
     ASSERT_TRUE(belief.isSound()) << i;
     ASSERT_LE(belief.covariance(i % 2, i % 2), kNoise);
   }
-  // 500 readings of the first; its twin, off by a deviation of 1e-3, adds next to nothing of 1e-12
+  // The first variable has 500 readings. Its twin, with a standard deviation of 1e-3 from it, adds almost nothing.
   EXPECT_NEAR(belief.covariance(0, 0), kNoise / 500.0, 1e-3 * kNoise / 500.0);
 }
 
@@ -217,7 +217,7 @@ TEST(ConstantFit, FadesUpdatesAndBoundsTheEffectOfOneInnovation) {
   fit.fade(0.5);
   EXPECT_DOUBLE_EQ(fit.score()[0], 1.015);
   const double before = fit.score()[0] / fit.information()(0, 0);
-  fit.shift(0, -before);  // the constant is now given as it was found
+  fit.shift(0, -before);  // the constant now has its estimated value
   EXPECT_NEAR(fit.score()[0], 0.0, 1e-15);
 }
 

@@ -1,4 +1,4 @@
-// A random linear machine, what it does, and everything known about it from one batch of least squares.
+// Random linear machine, its simulated runs, and batch least squares for all its states and constants.
 #pragma once
 
 #include <Eigen/Dense>
@@ -21,7 +21,7 @@ struct LinearMachine {
   typename Belief::Row H;
   typename Belief::ConstantRow D;
   double noise{};   ///< variance of v
-  Constants prior;  ///< deviations of p, whose mean is 0
+  Constants prior;  ///< standard deviations of p, whose mean is 0
 
   explicit LinearMachine(unsigned seed) {
     std::mt19937 random(seed);
@@ -45,12 +45,12 @@ struct LinearMachine {
   }
   void predict(Belief& belief, Vector& mean) const {
     belief.covariance = (F * belief.covariance * F.transpose()).eval();
-    belief.by_constant = (F * belief.by_constant - B).eval();  // the mean misses what p does
+    belief.by_constant = (F * belief.by_constant - B).eval();  // the mean lacks the effect of p
     for (Eigen::Index i = 0; i < N; ++i)
       for (Eigen::Index k = i; k < N; ++k) belief.addNoise(i, k, step_noise(i, k));
     mean = (F * mean).eval();
   }
-  /// The innovation.
+  /// Corrects by a reading. Returns the innovation.
   double correct(Belief& belief, Vector& mean, double z) const {
     const double innovation = z - H.dot(mean);
     mean += belief.correct(H, noise, D) * innovation;
@@ -60,8 +60,8 @@ struct LinearMachine {
 
   struct Run {
     Constants p;
-    std::vector<Vector> x;  ///< [0] before the first step
-    std::vector<double> z;  ///< [k] of x[k + 1]
+    std::vector<Vector> x;  ///< [0] is the state before the first step
+    std::vector<double> z;  ///< [k] is the reading of x[k + 1]
   };
   Run run(unsigned seed, int steps) const {
     std::mt19937 random(seed);
@@ -88,7 +88,7 @@ struct LinearMachine {
     Constants p() const { return mean.tail<C>(); }
     typename Belief::ConstantMatrix ofConstants() const { return covariance.bottomRightCorner<C, C>(); }
   };
-  /// All x and p by all z at once, normal equations. deviations of p: their prior.
+  /// Estimates all x and p from all z by the normal equations. deviations: prior standard deviations of p.
   Batch batch(const std::vector<double>& z, const Constants& deviations) const {
     const Eigen::Index n = N * static_cast<Eigen::Index>(z.size() + 1) + C;
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);

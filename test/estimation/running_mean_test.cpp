@@ -12,14 +12,14 @@
 namespace hammer_loads::test {
 namespace {
 
-/// Full, it forgets: a step is followed by 1 - (1 - 1/length)^n.
+/// A full mean forgets: n samples after a unit step it is 1 - (1 - 1/length)^n.
 TEST(RunningMean, FollowsAStepByItsLength) {
   RunningMean<> mean(50.0, 0.0, 50.0);
   for (int i = 0; i < 50; ++i) mean.add(1.0);
   EXPECT_NEAR(mean.mean(), 1.0 - std::pow(1.0 - 1.0 / 50.0, 50), 1e-14);
 }
 
-/// Weights are times: the same by steps of any length, but for how finely they are taken.
+/// Weights are durations. The mean does not depend on the length of the steps, apart from their resolution.
 TEST(RunningMean, TakesTimesForWeights) {
   RunningMean<Eigen::Vector2d> fine(2.0, Eigen::Vector2d::Zero()), coarse = fine;
   const Eigen::Vector2d value(3.0, -1.0);
@@ -28,7 +28,7 @@ TEST(RunningMean, TakesTimesForWeights) {
   EXPECT_TRUE(fine.mean().isApprox(value, 1e-12));
   EXPECT_TRUE(coarse.mean().isApprox(value, 1e-12));
   EXPECT_NEAR(fine.count(), 1.0, 1e-12);
-  coarse.add(-value, 100.0);  // longer than it remembers: nothing else is left
+  coarse.add(-value, 100.0);  // longer than the memory: only this value remains
   EXPECT_TRUE(coarse.mean().isApprox(-value, 1e-12));
 }
 
@@ -43,7 +43,7 @@ TEST(Latch, EngagesHighAndReleasesLow) {
   EXPECT_FALSE(latch.follow(std::numeric_limits<double>::quiet_NaN()));
 }
 
-/// As often as their names say: a million drawn.
+/// Each gate is exceeded at its nominal rate in a million draws.
 TEST(Gate, NoiseExceedsItAtTheStatedRate) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0.0, 3.0);

@@ -17,7 +17,7 @@ using test::Real;
 constexpr Gravity kGravity{2.5, -9.4};
 constexpr std::size_t kColumns = 12;
 
-/// States and results in plain arrays.
+/// Crank states and results in plain arrays.
 struct Table {
   std::vector<double> angle, speed, acceleration;
   std::vector<std::vector<double>> out;
@@ -71,7 +71,7 @@ TEST(Batch, EqualsTheScalarCallAtEveryLevel) {
         const CrankMotion crank{CrankAngle::fromAngle(table.angle[i]), table.speed[i], table.acceleration[i]};
         const std::array<double, kColumns> right = scalarRow(model, crank);
         for (std::size_t c = 0; c < (with_pins ? kColumns : 3); ++c) {
-          // Of the state's own size, as forces may grow next to the blow.
+          // The tolerance follows the state's own forces, which may grow next to the blow.
           const double size = 1e4 + std::abs(right[c]) + (c < 3 ? 0.0 : std::abs(right[7]));
           EXPECT_NEAR(table.out[c][i], right[c], 1e-13 * size) << i << " column " << c;
         }
@@ -178,7 +178,7 @@ TEST(Batch, CountsTheBlowItselfAsAfterIt) {
 
 TEST(Batch, HasTheFinitePinForcesOfAnUnacceleratedCrankAtTheBlowItself) {
   HammerParameters p = test::mo100LinkageParameters();
-  p.rod_com_across = 0.0;  // off its line the rod's mass needs an unbounded force
+  p.rod_com_across = 0.0;  // a centre of mass off the rod's line requires an unbounded force
   const Mechanism mechanism = test::mechanismOf(p);
   for (Level level : {Level::kRocker, Level::kLinkage}) {
     Table table;

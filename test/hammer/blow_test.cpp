@@ -19,11 +19,11 @@ TEST(Blow, GivesAThousandJouleForThePapersHammerAtNameplateSpeed) {
   EXPECT_NEAR(0.5 * 0.737 * nominal.rocker_speed_before * nominal.rocker_speed_before, 5476.0, 1.0);
   EXPECT_NEAR(nominal.energy, 5476.2 * (1.0 - 0.1753 * 0.1753), 1.0);
   EXPECT_NEAR(blowAtCrankSpeed(mechanism, Level::kRocker, 13.64).energy, 1000.0, 2.0);
-  // The turn lifts the hull by what the blow returns (model.md 4).
+  // The upward impulse on the hull in a revolution equals the tool's impulse (model.md 4).
   EXPECT_NEAR(nominal.tool_impulse_z, 534.602622037, 1e-8);
 }
 
-/// The hull gets what the tool gives less what the links take up, by their momenta before and after.
+/// The impulse on the hull is that of the tool less the change of the links' momenta.
 TEST(Blow, ChangesTheMomentaOfAllLinksByTheMeasuredImpulses) {
   HammerParameters parameters = test::mo100LinkageParameters();
   parameters.drive_reaction_ratio = 0.5;
@@ -45,7 +45,7 @@ TEST(Blow, ChangesTheMomentaOfAllLinksByTheMeasuredImpulses) {
   }
 }
 
-/// The rod holds the rocker: the tool gets what drive and links lose together, and its impulse what slows both.
+/// The rod holds the rocker. The tool receives the energy that drive and links lose; the tool's impulse slows both.
 TEST(Blow, AToolMetEarlySlowsDriveAndLinksTogether) {
   HammerParameters parameters = test::mo100LinkageParameters();
   parameters.striking_offset = 0.03, parameters.striking_friction = 0.3;
@@ -67,8 +67,8 @@ TEST(Blow, AToolMetEarlySlowsDriveAndLinksTogether) {
 }
 
 TEST(Blow, RodLosesTheEnergyThatTheLinkageLoses) {
-  // Kinetic energy of the links with the crank's speed kept; crank and drive do not change theirs. What remains beside
-  // the rod's turning about B is the rod's centre carried along by B: its momentum times B's speed.
+  // The crank's speed is constant, so crank and drive keep their kinetic energy. Apart from the rotation about B, the
+  // rod's energy changes by the change of its momentum times B's speed.
   HammerParameters p = test::mo100LinkageParameters();
   const Mechanism mechanism = test::mechanismOf(p);
   const double w = 20.0;
@@ -87,7 +87,7 @@ TEST(Blow, RodLosesTheEnergyThatTheLinkageLoses) {
   EXPECT_NEAR(lost + work_b, blow.energy, 1e-10 * blow.energy);
 }
 
-/// Random rocker that strikes with its speed before: x_K opposite in sign to w- = -speed.
+/// Returns a random rocker that strikes at this speed: x_K is opposite in sign to w- = -speed_before.
 StrikingRocker randomRocker(std::mt19937& random, double speed_before) {
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
   StrikingRocker r;
@@ -122,7 +122,7 @@ TEST(Blow, HasThePapersSpecialCaseTen) {
     EXPECT_NEAR(support_on_rocker_x, -side * w * (1.0 - restitution) * inertia / 0.2 * f, 1e-8);
     EXPECT_NEAR(support_on_rocker_z, -factor * (35.2 * -0.1 + 2.0 * -0.12 - inertia / -0.2), 1e-8);
   }
-  r.striking_point.z = 0.0;  // no sliding, no friction
+  r.striking_point.z = 0.0;  // without sliding there is no friction
   EXPECT_EQ(blowInSupport(r, -w, restitution * w).tool_impulse_x, 0.0);
 }
 

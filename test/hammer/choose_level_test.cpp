@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kG = 9.80665;
 
-/// As a drawing leaves it, at level linkage.
+/// Returns the hammer at level linkage with the usual standard deviations of nominal parameters.
 HammerParameters drawing() {
   HammerParameters p = test::mo100LinkageParameters();
   p.deviations = usualDeviations(p);
@@ -66,14 +66,14 @@ TEST(ChooseLevel, AnElasticRodNeedsElastic) {
   EXPECT_GT(choice.difference[2], 1.0);
   EXPECT_GT(choice.difference[1], choice.difference[2]);
   EXPECT_EQ(chooseLevel(mechanism, 1.001 * choice.difference[2], 5.0, kG).level, Level::kLinkage);
-  // A rod that no source gives rings as a first guess does, unless it is said to be rigid.
+  // An unknown rod vibrates as the first guess does. It is rigid if its standard deviations are zero.
   HammerParameters unknown = drawingWithRod({});
   EXPECT_EQ(chooseLevel(test::mechanismOf(unknown), 0.5, 5.0, kG).level, Level::kLinkage);
   unknown.rod_std = usualDeviation(unknown.rod);
   EXPECT_EQ(chooseLevel(test::mechanismOf(unknown), 0.5, 5.0, kG).level, Level::kElastic);
 }
 
-/// A boom below 30 Hz feels means; a rod as stiff as none has no part of its own.
+/// A boom below 30 Hz responds to means of the load. A nearly rigid rod's vibration has almost no load.
 TEST(ChooseLevel, LongMeansAndStiffRodsNeedLess) {
   const Mechanism mechanism = test::mechanismOf(drawingWithRod({8e8, 0.3, 0.0}));
   double before = chooseLevel(mechanism, 0.5, 5.0, kG).difference[2];

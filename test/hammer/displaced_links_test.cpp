@@ -11,9 +11,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kPlaces = 5000;  // places of a turn
+constexpr int kPlaces = 5000;  // crank angles of a revolution
 
-/// The links as bodies in a hull that moves, by Newton's law; places from the simulated machine's linkage.
+/// Links as bodies in a moving hull, by Newton's law. Their places are from the simulated machine's linkage.
 class Bodies {
  public:
   Bodies(const Mechanism& mechanism, Level level) : p_(mechanism.parameters()), links_(mechanism, level) {}
@@ -26,7 +26,7 @@ class Bodies {
       const auto& b = bodies.body[i];
       const std::array<double, 2> r = inHull(b.xi.value - p_.lengths.pivot_distance, b.eta.value);
       const std::array<double, 2> rate = inHull(speed * b.xi.first, speed * b.eta.first);
-      const double a = hull.acceleration, w = hull.rate;  // a turn about +y takes z to x
+      const double a = hull.acceleration, w = hull.rate;  // a rotation about +y turns z to x
       const double x = hull.gravity.x - a * r[1] + w * w * r[0] - 2.0 * w * rate[1];
       const double z = hull.gravity.z + a * r[0] + w * w * r[1] + 2.0 * w * rate[0];
       sum.force_x += b.mass * x, sum.force_z += b.mass * z;

@@ -1,4 +1,4 @@
-// Loads in a hull that moves, against hull and mechanism simulated as one free system.
+// Loads in a moving hull, compared with hull and mechanism simulated as one free system.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -19,7 +19,7 @@ using test::FreeState;
 
 const NearBlow kNearBlow(0.01);
 
-/// Largest difference seen and largest size of the right value.
+/// Largest difference and largest size of the reference value.
 struct Error {
   double difference{}, size{};
   void add(double value, double right) {
@@ -39,7 +39,7 @@ class HullMotionTest : public testing::TestWithParam<Level> {
     s.crank_speed = 22.0;
     return s;
   }
-  /// A turn up to just before the blow; check(run, result) every millisecond.
+  /// Runs a revolution up to just before the blow. Calls check(run, result) every millisecond.
   template <typename Check>
   static void turn(const FreeHull& system, Check check) {
     for (FreeRun run(system, thrown(), 160.0); run.blows() == 0; run.advance(1e-3)) check(run, run.result());
@@ -84,7 +84,7 @@ double cross(HullPoint arm, PinForce force) { return arm.z * force.x - arm.x * f
 HullPoint operator-(HullPoint a, HullPoint b) { return {a.x - b.x, a.z - b.z}; }
 PinForce operator-(PinForce a) { return {-a.x, -a.z}; }
 
-/// Newton and Euler for each link by itself.
+/// The equations of Newton and Euler hold for each link by itself.
 TEST_P(HullMotionTest, PinForcesMoveEveryLink) {
   const FreeHull system(mechanism_, GetParam(), {});
   const LinkLengths& lengths = mechanism_.parameters().lengths;
@@ -118,7 +118,7 @@ TEST_P(HullMotionTest, PinForcesMoveEveryLink) {
   EXPECT_LT(moment.relative(), 1e-10);
 }
 
-/// Largest error of the force along the tool over its peak, if only the tilt of the hull is known.
+/// Returns the largest error of the force along the tool over its peak, if only the tilt of the hull is known.
 double errorOfFixedHull(const Mechanism& mechanism, const test::HullBody& body) {
   const FreeHull system(mechanism, Level::kRocker, body);
   Error z;
@@ -133,7 +133,7 @@ double errorOfFixedHull(const Mechanism& mechanism, const test::HullBody& body) 
   return z.relative();
 }
 
-/// Rocker's mass over the hull's, 35.2/400, and more if the hull's centre of mass is not on the tool's axis through D.
+/// The ratio is 35.2/400, rocker to hull. It is larger if the hull's centre of mass is off the tool's axis through D.
 TEST(MovingHull, IsWrongByTheRatioOfMassesIfTakenAsAtRest) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   test::HullBody body = test::onBoom();
@@ -167,7 +167,7 @@ TEST(MovingHull, LeavesEveryLoadEqualToTheBitAtRest) {
   }
 }
 
-/// Wrench less frameWrench is the change of momentum in the hull's axes: impulses stay exact in a hull that moves.
+/// Wrench less frameWrench is minus the momentum's rate in the hull's axes. Impulses are exact in a moving hull.
 TEST_P(HullMotionTest, FrameWrenchIsAllButTheChangeOfMomentum) {
   const HullModel model(mechanism_, GetParam());
   const HullMotion hull{{4.0, -22.0}, 1.7, -60.0};

@@ -1,4 +1,4 @@
-// Digits that each way to the loads keeps, against Newton and Euler in 100 digits.
+// Accuracy of each way to compute the loads, compared with the equations of Newton and Euler in 100 digits.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -41,7 +41,7 @@ TEST(LoadErrors, StayBelowTheBoundAtEveryLevelOnEveryHardCase) {
   for (const HardCase& hard_case : hardCases(kHammer)) expectDigitsOf(hard_case, 1e-13, 1e-14);
 }
 
-/// In mid turn a force of any machine may pass near zero: there its error is compared with the peak.
+/// In mid-revolution a force of any machine may pass near zero. Its error is compared with the peak there.
 TEST(LoadErrors, StayBelowTheBoundForAnyMachine) {
   std::mt19937 random(41);
   for (int i = 0; i < 3; ++i) {
@@ -66,7 +66,7 @@ HardCase atOffset(double offset) {
 
 TEST(PrintedFormulas, HoldInMidTurn) {
   HardCase middle = caseNamed("regular turn");
-  middle.acceleration = -300.0;  // P0 without, here with acceleration and weight
+  middle.acceleration = -300.0;  // unlike P0 with acceleration and weight
   middle.angles.erase(std::remove_if(middle.angles.begin(), middle.angles.end(),
                                      [](double phi) { return phi < 0.5 || phi > kTwoPi - 0.5; }),
                       middle.angles.end());

@@ -1,4 +1,4 @@
-/// Every way from crank states to loads, the states on which it is judged, and its errors against the reference.
+/// Ways to compute loads from crank states, the states of the comparison, and the errors against the reference.
 #pragma once
 
 #include <algorithm>
@@ -20,16 +20,16 @@ namespace hammer_loads::test {
 /// Angles of one machine under one speed, acceleration and gravity.
 struct HardCase {
   std::string name;
-  HammerParameters hammer;     ///< as given, the rod not corrected
+  HammerParameters hammer;     ///< as given, without correction of the rod
   double speed{};              ///< [rad/s]
   double acceleration{};       ///< [rad/s2]
   Gravity gravity;             ///< [m/s2]
-  std::vector<double> angles;  ///< in (0, 2 pi) [rad]; meant is exactly the number stored
+  std::vector<double> angles;  ///< in (0, 2 pi) [rad]; the stored numbers are exact
 };
 
 inline const Gravity kCaseGravity{kStandardGravity * std::sin(0.3), kStandardGravity * -std::cos(0.3)};
 
-/// Offsets 1e-first to 1e-last; side: +1 after, -1 before the blow.
+/// Returns angles at offsets of each digit times 1e-first to 1e-last; side: +1 after, -1 before the blow.
 inline std::vector<double> besideTheBlow(double side, int first, int last, std::initializer_list<double> digits) {
   std::vector<double> angles;
   for (int decade = first; decade <= last; ++decade) {
@@ -54,14 +54,14 @@ inline HammerParameters scaled(HammerParameters p, double k) {
   return p;
 }
 
-/// Lengths as a file in single precision keeps them: the change-point condition is missed by some 1e-8 of the crank.
+/// Rounds the lengths to single precision. They then miss the change-point condition by some 1e-8 of the crank.
 inline HammerParameters rounded(HammerParameters p) {
   for (double* length : {&p.lengths.crank, &p.lengths.rod, &p.lengths.rocker, &p.lengths.pivot_distance})
     *length = static_cast<double>(static_cast<float>(*length));
   return p;
 }
 
-/// Angles of a whole turn, evenly spaced, none at the blow.
+/// Returns evenly spaced angles of a whole revolution, none at the blow.
 inline std::vector<double> turnAngles(std::size_t count) {
   std::vector<double> angles;
   for (std::size_t i = 0; i < count; ++i)
@@ -69,8 +69,8 @@ inline std::vector<double> turnAngles(std::size_t count) {
   return angles;
 }
 
-/// The first is the regular turn, four are offsets of 1, 2.7 and 6.1 times 1e-1 to 1e-12 rad before and after the blow,
-/// the others have both, coarser. P0's 31.416 rad/s and a hull pitched by 0.3 rad where nothing else is said.
+/// Returns a regular revolution, four cases at 1, 2.7 and 6.1 times 1e-1 to 1e-12 rad before and after the blow, and
+/// others with coarser angles of both kinds. The usual values are P0's 31.416 rad/s and a hull pitch of 0.3 rad.
 inline std::vector<HardCase> hardCases(const HammerParameters& hammer) {
   const auto beside = [&](const char* name, double side, int first, int last) {
     return HardCase{name, hammer, kPaperSpeed, 0.0, kCaseGravity, besideTheBlow(side, first, last, {1.0, 2.7, 6.1})};
@@ -94,20 +94,20 @@ inline std::vector<HardCase> hardCases(const HammerParameters& hammer) {
           {"acceleration 1e5 rad/s2", hammer, kPaperSpeed, 1e5, kCaseGravity, everywhere}};
 }
 
-/// Worst over states and loads; infinite where a load is no number.
+/// Largest error over states and loads; infinite where a load is no number.
 struct Error {
-  double of_peak{};   ///< of the largest size that the load has in the whole turn and in the case's own states
-  double relative{};  ///< of the load's own size, forces as vectors; moments, which pass through zero: of the peak
+  double of_peak{};   ///< over the load's largest size in the whole revolution and in the case's own states
+  double relative{};  ///< over the load's own size (forces as vectors); over the peak for moments, which cross zero
 };
 
-/// Which loads a way gives.
+/// Loads that a way computes.
 enum class Parts {
   kWrench,   ///< hull wrench
   kPins,     ///< hull wrench, four pin forces, drive torque
-  kPrinted,  ///< the same without drive torque
+  kPrinted,  ///< hull wrench, four pin forces
 };
 
-/// A case at a level, worked out by the reference.
+/// Loads of a case at a level by the reference.
 struct ExactCase {
   ExactCase(const HardCase& hard_case, Level level) {
     const NewtonEuler exact(hard_case.hammer, level);
@@ -129,7 +129,7 @@ inline double sizeOf(const Real& v) { return static_cast<double>(abs(v)); }
 inline double missOf(const PinForce& f, const Vector& exact) { return sizeOf(Vector{Real(f.x), Real(f.z)} - exact); }
 inline double missOf(double value, const Real& exact) { return sizeOf(Real(value) - exact); }
 
-/// One load: how to read it from the computed and from the exact loads.
+/// Returns the error of one load, which `value` reads from the computed loads and `exact` from the exact ones.
 template <typename Computed, typename Exact>
 inline Error errorOfOne(const std::vector<LinkLoads>& computed, const ExactCase& exact_case, const Computed& value,
                         const Exact& exact, bool own_size) {
@@ -182,7 +182,7 @@ struct LoadWay {
   std::string name;
   Level level{};
   Parts parts{};
-  std::function<std::vector<LinkLoads>(const HardCase&)> loads;  ///< of all states of a case
+  std::function<std::vector<LinkLoads>(const HardCase&)> loads;  ///< returns the loads of all states of a case
 };
 
 inline LoadWay printed(const char* name, Positions positions) {

@@ -1,4 +1,4 @@
-// The reference of loads against tables of another origin.
+// Reference of the loads compared with tables from another source.
 #include "support/newton_euler.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST_P(NewtonEulerTest, EqualsTheTables) {
   for (std::size_t i = 0; i < csv.size(); ++i) {
     const double g = csv.number(i, "gravity_m_s2"), pitch = csv.number(i, "hull_pitch_rad");
     const Real angle(csv.text(i, "crank_angle_rad"));
-    // Numbers of the tables have 20 digits, their forces may grow as 1/offset; lengths there are decimal, here doubles.
+    // The tables have 20 digits and decimal lengths, which are doubles here. Their forces may grow as 1/offset.
     const Real left = 2 * test::realPi() - angle;
     const double offset = static_cast<double>(angle < left ? angle : left);
     const double tolerance = 1e-14 + 1e-19 / offset;

@@ -38,7 +38,7 @@ TEST(ConstantSpeedPulse, IsNearThePapersFigures) {
   EXPECT_NEAR(pulse.start, 0.1815, 0.0005);
 }
 
-/// Fz of MO-100 at constant speed; phi in [0, 2 pi].
+/// Returns Fz [N] at constant speed; phi in [0, 2 pi].
 double forceZ(const Mechanism& mechanism, Level level, double phi, double w, Gravity gravity) {
   const CrankAngle angle =
       phi < kPi ? CrankAngle{phi, Side::kAfterBlow} : CrankAngle{phi - 2.0 * kPi, Side::kBeforeBlow};
@@ -54,7 +54,7 @@ TEST(ConstantSpeedPulse, ImpulsesAndResidualEqualQuadrature) {
       const double w = 20.0;
       const Gravity gravity{2.0, -9.6};
       const HalfSinePulse pulse = pulseAtConstantSpeed(mechanism, level, w, gravity).pulse;
-      const auto integral = [&](auto value) {  // over the turn, by time
+      const auto integral = [&](auto value) {  // over the revolution, by time
         constexpr int kSteps = 40000;          // midpoints
         double sum = 0.0;
         for (int k = 0; k < kSteps; ++k) sum += value(2.0 * kPi * (k + 0.5) / kSteps);
@@ -98,7 +98,7 @@ TEST(ConstantSpeedPulse, FindsTheHighestPointAndTheLastRiseOfAnyMachine) {
 }
 
 TEST(ConstantSpeedPulse, LobeWithoutAZeroBeginsWithTheTurn) {
-  // A hull hung upside down: the slow rocker's weight pulls it "up" throughout.
+  // The hull hangs upside down. The weight of the slow rocker acts along +z in the whole revolution.
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const double w = 0.01;
   const HalfSinePulse pulse = pulseAtConstantSpeed(mechanism, Level::kRocker, w, {0.0, 9.8}).pulse;
@@ -116,7 +116,7 @@ TEST(ConstantSpeedPulse, HasNoPulseWithoutAPositiveForce) {
   EXPECT_EQ(pulse.start, pulse.period);
 }
 
-/// Points of MO-100's turn at constant speed; every distance differs by up to the given part of the mean one.
+/// Returns points of MO-100's revolution at constant speed. Steps differ from the mean by up to this part of it.
 std::vector<TurnPoint> turnPoints(double mean_step, double unevenness, Gravity gravity) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const double w = kPaperSpeed, period = 2.0 * kPi / w;
@@ -187,7 +187,7 @@ TEST(PulseOfTurn, HandlesFlatNegativeAndTooShortTracks) {
   EXPECT_EQ(pulseOfTurn(flat, 2).period, 0.0);
 }
 
-/// Two samples of a sensor may lie together; the force at them differs by what the second one corrects.
+/// Two samples of a sensor may be almost simultaneous. Their forces differ by the second one's correction.
 TEST(PulseOfTurn, TwoPointsTogetherGiveNoFalsePeak) {
   constexpr double kPeak = 8000.0, kTurn = 0.2, kStep = 1e-3;
   std::vector<TurnPoint> points;

@@ -1,4 +1,4 @@
-// A striking point off the line D-S and its friction, beside a rigid-body impact with Coulomb's friction.
+// Blow at a striking point off the line D-S with friction, compared with a rigid-body impact with Coulomb friction.
 #include <gtest/gtest.h>
 
 #include "hammer_loads/hammer/blow.h"
@@ -41,7 +41,7 @@ TEST(StrikingPoint, GivesTheImpulsesOfARigidBodyImpactForAnyRocker) {
   EXPECT_GT(slid, 500);
 }
 
-/// The tool that holds the rocker is the one that the hammer file may not have.
+/// The rocker sticks to the tool exactly for the parameters that Mechanism::make() refuses.
 TEST(StrikingPoint, SticksWhereTheMechanismIsRefused) {
   for (const double side : {-1.0, 1.0}) {
     for (const double part : {0.5, 0.999, 1.001, 1.5}) {

@@ -1,4 +1,4 @@
-// What a constant of the hammer does to the loads, against the loads of hammers built a little beside it.
+// Effect of the hammer's constants on the loads, compared with the loads of hammers with slightly changed constants.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Every constant a little uncertain, those too that are 0 or taken for exact.
+/// Returns a hammer whose constants are all uncertain, including those that are 0 or usually exact.
 HammerParameters uncertain(double drive_reaction_ratio) {
   HammerParameters p = test::mo100LinkageParameters();
   p.drive_reaction_ratio = drive_reaction_ratio;
@@ -19,7 +19,7 @@ HammerParameters uncertain(double drive_reaction_ratio) {
   return p;
 }
 
-/// The hammer with one constant off, the rod closing the linkage.
+/// Returns the hammer with one changed constant and a rod that closes the linkage.
 Mechanism beside(HammerParameters p, const std::string& key, double by) {
   for (const HammerConstant& constant : kHammerConstants)
     if (constant.key == key) constant.field(p) += by;
@@ -27,14 +27,14 @@ Mechanism beside(HammerParameters p, const std::string& key, double by) {
   return test::mechanismOf(p);
 }
 
-/// Towards the side that the columns look to.
+/// Returns the standard deviation of a constant with the sign of the step that the columns take.
 double deviationOf(const HammerParameters& p, const std::string& key) {
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i)
     if (kHammerConstants[i].key == key) return kHammerConstants[i].away * p.deviations[i];
   return 0.0;
 }
 
-/// One standard deviation of a column, by the load of the hammer a part of it away; load: of a hammer at a level.
+/// Returns the effect of one standard deviation from a hammer at kStep of it. load: load of a hammer at a level.
 template <typename Load>
 Eigen::Vector3d columnOf(const Mechanism& mechanism, Level level, const std::string& name, const Load& load) {
   if (name.rfind("level", 0) == 0) return load(mechanism, Level::kLinkage) - load(mechanism, level);
@@ -135,11 +135,11 @@ TEST(WrenchColumns, AreWithinAHundredthOfTheLargestFromATable) {
       const WrenchColumns::Matrix truth = exact.wrench(0.7, at, crank, hull);
       worst = worst.cwiseMax((table.wrench(0.7, at, crank, hull) - truth).cwiseAbs());
       largest = largest.cwiseMax(truth.cwiseAbs());
-      const HullMotion turns{hull.gravity, 0.5, 3.0};  // beyond the table
+      const HullMotion turns{hull.gravity, 0.5, 3.0};  // not covered by the table
       EXPECT_EQ(table.wrench(0.7, at, crank, turns), exact.wrench(0.7, at, crank, turns));
     }
     EXPECT_TRUE((worst.array() <= 0.01 * largest.array()).all()) << worst << "\n\n" << largest;
-    EXPECT_GT(worst.sum(), 0.0);  // between its points
+    EXPECT_GT(worst.sum(), 0.0);  // not exact between its points
   }
 }
 

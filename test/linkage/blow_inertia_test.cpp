@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kDrive = 0.6;
 
-/// Mass matrix of the rates of crank, rod and rocker at the dead centre, where all pins are in line and all velocities
-/// across that line: from the links' masses and centres alone.
+/// Returns the mass matrix of the rates of crank, rod and rocker at the dead centre, from the links' masses and centres
+/// alone. There all pins are in line, and their velocities are perpendicular to that line.
 Eigen::Matrix3d massMatrix(const HammerParameters& p, Level level) {
   Eigen::Matrix3d m = Eigen::Matrix3d::Zero();
   m(0, 0) = kDrive;
@@ -20,7 +20,7 @@ Eigen::Matrix3d massMatrix(const HammerParameters& p, Level level) {
   if (level != Level::kLinkage) return m;
   const double along = p.crank_com_along, across = p.crank_com_across;
   m(0, 0) += p.crank_inertia_about_com + p.crank_mass * (along * along + across * across);
-  // The rod's centre of mass: l1 phi' + along beta' across the line, -across beta' along it.
+  // The rod's centre of mass moves with l1 phi' + along beta' across the line and with -across beta' along it.
   const double l1 = p.lengths.crank, a = p.rod_com_along, b = p.rod_com_across;
   m(0, 0) += p.rod_mass * l1 * l1;
   m(0, 1) = m(1, 0) = p.rod_mass * l1 * a;
@@ -28,7 +28,7 @@ Eigen::Matrix3d massMatrix(const HammerParameters& p, Level level) {
   return m;
 }
 
-/// Solves M change + C' impulses = tool, C rates = 0 for the rates after impulses that keep the constraints C.
+/// Returns the rates after the tool's impulse: solves M change + C' impulses = tool with the constraints C rates = 0.
 Eigen::Vector3d afterImpulse(const Eigen::Matrix3d& m, const Eigen::MatrixXd& c, const Eigen::Vector3d& before,
                              const Eigen::Vector3d& tool) {
   const Eigen::Index n = c.rows();
@@ -41,7 +41,7 @@ Eigen::Vector3d afterImpulse(const Eigen::Matrix3d& m, const Eigen::MatrixXd& c,
   return all.fullPivLu().solve(right).head(3);
 }
 
-/// Crank speed after over before, by Lagrange multipliers in all three rates.
+/// Returns the crank speed after the blow over that before, by Lagrange multipliers in all three rates.
 double factorByConstraints(const Mechanism& mechanism, Level level, double restitution) {
   const LinkLengths& l = mechanism.linkage().lengths();
   const Eigen::Matrix3d m = massMatrix(mechanism.parameters(), level);
@@ -51,7 +51,7 @@ double factorByConstraints(const Mechanism& mechanism, Level level, double resti
   loop << l.crank, l.rod, -l.rocker;
   branch << l.crank, l.rod, -l.rocker, -u_after, 0.0, 1.0;
   const Eigen::Vector3d before(1.0, (l.rocker * u_before - l.crank) / l.rod, u_before), tool(0.0, 0.0, 1.0);
-  // The tool's impulse that turns the rocker back: the rocker's rate is linear in it.
+  // The tool's impulse reverses the rocker. The rocker's rate is linear in it.
   const double none = afterImpulse(m, loop, before, 0.0 * tool)[2], one = afterImpulse(m, loop, before, tool)[2];
   const double impulse = (-restitution * u_before - none) / (one - none);
   const Eigen::Vector3d left_tool = afterImpulse(m, loop, before, impulse * tool);

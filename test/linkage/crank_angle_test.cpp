@@ -47,7 +47,7 @@ TEST(CrankAngle, ManyTurnsCostNoMoreThanTheAnglesOwnRounding) {
     std::uniform_real_distribution<double> angle(-turns * 6.28, turns * 6.28);
     for (int i = 0; i < 5000; ++i) {
       const double phi = angle(random);
-      // fma rounds once at the size of the offset, plus the third part of 2 pi: 6e-33 per turn.
+      // The fma rounds once at the size of the offset. The third part of 2 pi adds 6e-33 per revolution.
       const double bound = 4.5e-16 + turns * 6.1e-33 * 10;
       EXPECT_LE(abs(Exact(CrankAngle::wrapToPi(phi)) - nearestBlow(phi)), bound) << phi;
     }

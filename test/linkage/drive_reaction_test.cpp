@@ -1,4 +1,4 @@
-/// The drive's reaction against the angular momentum of a rotor that somebody gears.
+/// Reaction of the drive compared with the angular momentum of a geared rotor.
 #include <gtest/gtest.h>
 
 #include "hammer_loads/linkage/mechanism.h"
@@ -16,7 +16,7 @@ Mechanism hammerWith(double ratio) {
 TEST(DriveReaction, IsTheRotorsChangeOfAngularMomentum) {
   constexpr double kRotor = 0.02, kAcceleration = -1500.0, kHull = 40.0;
   for (const double gear : {1.0, 5.0, -3.0}) {
-    // The rotor turns at gear x crank in the hull, whose own turning it takes part in.
+    // The rotor turns at gear x crank relative to the hull and shares the hull's rotation.
     const double rate = kRotor * (gear * kAcceleration + kHull);
     const DriveReaction reaction = driveReaction(hammerWith(1.0 / gear), Level::kLinkage, gear * gear * kRotor);
     EXPECT_NEAR(reaction.torque(kAcceleration, kHull), -rate, 1e-12 * std::abs(rate)) << gear;

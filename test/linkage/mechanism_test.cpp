@@ -73,7 +73,7 @@ TEST(Mechanism, KeepsParametersWithTheRodCorrected) {
 }
 
 TEST(Mechanism, MassesAtRestHaveTheNominalFirstMoment) {
-  // At the blow crank, rod and rocker lie on the xi axis: sum of mass times position from D, placed by hand.
+  // At the blow, crank, rod and rocker lie on the xi axis. Mass times position from D is summed by hand.
   const HammerParameters p = test::mo100LinkageParameters();
   const Mechanism mechanism = test::mechanismOf(p);
   const LinkMoments& k = mechanism.moments();

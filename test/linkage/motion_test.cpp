@@ -17,7 +17,7 @@ Real exactAngle(CrankAngle angle) {
   return angle.side == Side::kAfterBlow ? Real(angle.offset) : 2 * test::realPi() + Real(angle.offset);
 }
 
-/// Offsets 1e-1 ... 1e-12 on both sides of the blow.
+/// Calls check at 1, 2.7 and 6.1 times 1e-1 ... 1e-12 rad on both sides of the blow.
 template <typename Check>
 void forOffsetsNearBlow(const Check& check) {
   for (int decade = 1; decade <= 12; ++decade) {

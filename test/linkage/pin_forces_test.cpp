@@ -18,7 +18,7 @@ constexpr PinForce PinReactions::*kPins[] = {&PinReactions::hull_on_crank, &PinR
 
 TEST(PinForces, AreFiniteAndContinuousAtTheBlowOfAnUnacceleratedCrank) {
   HammerParameters p = test::mo100LinkageParameters();
-  p.rod_com_across = 0.0;  // off its line the rod's mass needs an unbounded force, too
+  p.rod_com_across = 0.0;  // a centre of mass off the rod's line requires an unbounded force, too
   const Mechanism mechanism = test::mechanismOf(p);
   for (Level level : {Level::kRocker, Level::kLinkage}) {
     for (Side side : {Side::kBeforeBlow, Side::kAfterBlow}) {
@@ -60,7 +60,7 @@ TEST(PinForces, GrowUnboundedTowardsTheBlowOfAnAcceleratedCrankAndAreNoNumberAtI
     };
     EXPECT_NEAR(size(1e-6) / size(1e-5), 10.0, 0.01);
     EXPECT_NEAR(size(1e-12) / size(1e-11), 10.0, 1e-6);
-    // Two angles of a turn that no double tells apart: 2 pi less 4e-16 is 2 pi.
+    // Doubles do not distinguish these offsets from the blow: 2 pi less 4e-16 is 2 pi.
     ASSERT_EQ(kTwoPi - 4e-16, kTwoPi);
     for (const double offset : {0.0, 1e-300, 1e-18, 4e-16}) {
       EXPECT_TRUE(anyIsNaN(at(offset))) << offset;
@@ -69,7 +69,7 @@ TEST(PinForces, GrowUnboundedTowardsTheBlowOfAnAcceleratedCrankAndAreNoNumberAtI
   }
 }
 
-/// The hull's own turning and its weight drive the rocker as the crank's acceleration does.
+/// The hull's angular acceleration and the weight drive the rocker as the crank's acceleration does.
 TEST(PinForces, HaveNoLimitAtTheBlowWhateverTurnsTheRocker) {
   HammerParameters p = test::mo100LinkageParameters();
   p.rod_com_across = 0.0;
@@ -83,7 +83,7 @@ TEST(PinForces, HaveNoLimitAtTheBlowWhateverTurnsTheRocker) {
   }
 }
 
-/// A crank whose angle is known to 1e-3 rad may as well stand at the blow 5e-4 rad beside it, where 1/s has no value.
+/// A crank 5e-4 rad from the blow may be at the blow, if its angle is known to 1e-3 rad. 1/s has no value there.
 TEST(PinForces, AreNoNumberWithinTheAnglesErrorOfTheBlow) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   for (const double offset : {-2e-3, -5e-4, 5e-4, 2e-3}) {
