@@ -1,4 +1,4 @@
-// The file that `accuracy` writes.
+// Tests of the file that `accuracy` writes.
 #include <gtest/gtest.h>
 
 #include "support/command.h"

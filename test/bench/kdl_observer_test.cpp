@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDuration = 4.0, kForce = 5e3, kMoment = 400.0;
 
-/// Pressures that hold a boom at rest against a load that swings slowly, by virtual work.
+/// Returns a boom at rest whose pressures, by virtual work, balance a sinusoidal load of this frequency [Hz].
 simulation::Session heldBoom(const Settings& settings, double frequency) {
   const Boom& boom = *settings.boom;
   const KDL::Chain& chain = boom.chain().kdl();
@@ -54,8 +54,8 @@ simulation::Session heldBoom(const Settings& settings, double frequency) {
   return session;
 }
 
-/// What it is compared with is given what it needs: a slow load on a boom at rest comes back as it was, one as fast as
-/// its gain lags.
+/// A slow load on a boom at rest is reproduced, so the reference observer works under the conditions it needs. A load
+/// whose angular frequency equals the observer's gain is followed with a lag.
 TEST(KdlObserver, FindsASlowLoad) {
   const Settings settings = shippedBoom("{boom: compliant}");
   const auto slow = kdlErrors(heldBoom(settings, 0.5), settings, 300.0, 1.0, kDuration);
@@ -64,7 +64,7 @@ TEST(KdlObserver, FindsASlowLoad) {
   EXPECT_LT(slow->force_z.rmsOfLargest(), 0.01);
   EXPECT_LT(slow->moment.rmsOfLargest(), 0.01);
   const auto fast = kdlErrors(heldBoom(settings, 30.0 / kTwoPi), settings, 30.0, 1.0, kDuration);
-  EXPECT_NEAR(fast->force_z.rmsOfLargest(), 0.5, 0.05);  // of the first order: half of the wave's size is its error
+  EXPECT_NEAR(fast->force_z.rmsOfLargest(), 0.5, 0.05);  // first-order lag: the rms error is half the amplitude
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace hammer_loads::accuracy {
 namespace {
 
-/// Blows of different strength over a weight that drifts.
+/// Returns the load of blows of varying strength on a slowly drifting weight.
 double load(int i) { return 1e4 * std::sin(0.21 * i) * (2.0 + std::sin(0.013 * i)) + 3e3 * std::sin(0.0017 * i); }
 
 LifeError errorOf(double factor, double offset) {
@@ -16,13 +16,13 @@ LifeError errorOf(double factor, double offset) {
   return error;
 }
 
-/// A range of every cycle that is 3 % too large makes the equivalent one 3 % too large, at any slope.
+/// If every range is 3 % too large, the equivalent range is 3 % too large at any slope.
 TEST(LifeError, IsTheFactorOfTheLoad) {
   EXPECT_NEAR(errorOf(1.03, 0.0).figure().error, 0.03, 1e-12);
   EXPECT_NEAR(errorOf(0.9, 0.0).figure().error, -0.1, 1e-12);
 }
 
-/// Two turns of ranges 20 and 60: weighed by the range, 20 is known to hypot(1, 2) and 60 to hypot(6, 8) of its own.
+/// Weights two revolutions of ranges 20 and 60 by their range; their own deviations are hypot(1, 2) and hypot(6, 8).
 TEST(LifeError, HasTheDeviationsOfTheRangesOfTurns) {
   LifeError error;
   const auto turn = [&](double top, double least_own, double top_own) {

@@ -1,4 +1,4 @@
-// A boom weighed by its own cylinders, against machines whose equations the estimate does not share.
+// Identification of a boom from its own cylinders, tested on machines with independently written equations.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -18,18 +18,18 @@ Pose3 anyPose(std::mt19937& random) {
   return {test::between(random, -0.7, 0.4), test::between(random, 0.6, 2.1), test::between(random, -1.7, -0.1)};
 }
 
-/// Joints' angles as read, of swing, boom, arm and hammer.
+/// Returns the angles of swing, boom, arm and hammer as their sensors read them [rad].
 JointVector readAt(const FreeBoom& machine, const Pose3& q) {
   return test::joints({0.0, q[0] + machine.zero[0], q[1] + machine.zero[1], q[2] + machine.zero[2]});
 }
 
-/// Without flaws of the sensors beside their noise.
+/// Returns the machine with sensors that have no error except noise.
 FreeBoom withGoodSensors(FreeBoom machine) {
   machine.zero = machine.offset = machine.gain = {};
   return machine;
 }
 
-/// Per joint: rms of a boom's errors over rms of torque, at unseen poses. As a user of the boom file has it.
+/// Returns per joint the rms error of a boom file's torques over the rms torque, at poses not used for calibration.
 Pose3 staticErrors(const FreeBoom& machine, const BoomParameters& parameters, std::mt19937& random) {
   Boom boom = Boom::make(test::shippedUrdf(), parameters).value.value();
   Pose3 error{}, torque{};
@@ -52,7 +52,7 @@ BoomCalibration calibrated(const FreeBoom& machine, std::mt19937& random, double
   return calibrateBoom(test::shippedBasis(), {{machine.record(random, seconds), {}}});
 }
 
-/// What is asked of two minutes: masses some 10 % off, seals unknown.
+/// Two minutes of recording correct mass errors of about 10 % and identify unknown seal friction.
 TEST(BoomCalibration, CorrectsWrongNominalMasses) {
   std::mt19937 random(1);
   double given = 0.0;
@@ -64,7 +64,7 @@ TEST(BoomCalibration, CorrectsWrongNominalMasses) {
     EXPECT_TRUE(found.determined());
     const Pose3 error = staticErrors(machine, found.found, random);
     for (std::size_t k = 0; k < 3; ++k) {
-      // A hammer that hangs near the vertical weighs little there: beyond 1.5 % it is what it is said to be.
+      // A hammer near the vertical has little static torque: its error is at most 1.5 % or three stated deviations.
       EXPECT_LT(error[k], std::max(0.015, 3.0 * found.joints[k].part())) << i << found.joints[k].joint;
       ++joints, weight_as_asked += error[k] < 0.015;
       const CylinderFit& cylinder = found.cylinders[k];
@@ -77,16 +77,16 @@ TEST(BoomCalibration, CorrectsWrongNominalMasses) {
   }
   EXPECT_GE(weight_as_asked, static_cast<int>(0.9 * joints)) << joints;
   EXPECT_GE(friction_as_asked, static_cast<int>(0.9 * joints)) << joints;
-  EXPECT_GT(given, 0.08);  // the test would see a calibration that does nothing
+  EXPECT_GT(given, 0.08);  // the nominal errors are large enough to expose a calibration without effect
 }
 
-/// Errors of the static torques at a pose over their stated deviations.
+/// Returns the errors of the static torques at a pose over their stated standard deviations.
 Eigen::Vector3d torqueErrors(const BoomModel& model, const BoomFit& fit, const JointVector& pose, const Pose3& truth) {
   const auto torques = [&](const Eigen::VectorXd& x) { return weightTorques(model, x, {pose}); };
   return (torques(fit.x) - Eigen::Map<const Eigen::Vector3d>(truth.data())).cwiseQuotient(stdsOf(fit, torques));
 }
 
-/// Sensors with zeros, offsets and gains of their own, at single poses: within two deviations.
+/// With sensor errors in zero, offset and gain, torques at single poses lie within two standard deviations.
 TEST(BoomCalibration, KnowsHowWellItKnows) {
   std::mt19937 random(2);
   int weights = 0, weights_within = 0, seals = 0, seals_within = 0;
@@ -114,12 +114,12 @@ TEST(BoomCalibration, KnowsHowWellItKnows) {
       ++seals, seals_within += std::abs(friction(fit.x)[0] - truth) < 2.0 * stdsOf(fit, friction)[0];
     }
   }
-  EXPECT_GE(weights_within, static_cast<int>(0.88 * weights)) << weights;  // 95.4 % of a normal error
+  EXPECT_GE(weights_within, static_cast<int>(0.88 * weights)) << weights;  // 95.4 % for a normal distribution
   EXPECT_LE(weights_within, static_cast<int>(0.995 * weights)) << weights;
   EXPECT_GE(seals_within, static_cast<int>(0.88 * seals)) << seals;
 }
 
-/// The machine of the demo, which vibrates on its oil while it is driven: another one than that of free_boom.h.
+/// Uses the demo machine, which vibrates on its oil while it moves, instead of the machine of free_boom.h.
 TEST(BoomCalibration, WeighsABoomOnItsOil) {
   simulation::MachineSettings m = simulation::workingMo100();
   m.hammer.drive_reaction_ratio = 1.0;
@@ -146,14 +146,14 @@ TEST(BoomCalibration, WeighsABoomOnItsOil) {
   const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{recording, {}}});
   ASSERT_EQ(found.problem, "");
   EXPECT_TRUE(found.determined());
-  // It is as given, but that the rocker hangs where the crank rests and not at its mean place over a turn, 0.1 m off.
+  // The masses are nominal. Only the rocker hangs where the crank rests, 0.1 m from its mean place over a revolution.
   const double rocker = 0.1 * m.hammer.rocker_mass * m.gravity;
   for (const JointWeight& joint : found.joints) EXPECT_LT(joint.before, 0.015 * joint.torque + rocker) << joint.joint;
   for (const CylinderFit& cylinder : found.cylinders)
     EXPECT_NEAR(cylinder.friction, 0.02 * cylinder.force, 0.3 * 0.02 * cylinder.force) << cylinder.name;
 }
 
-/// A boom weighed without a load says what hangs on it.
+/// A boom identified without a load measures the weight that is then hung on its tip.
 TEST(BoomCalibration, FindsAWeightOnTheTip) {
   constexpr double kLoad = 500.0, kX = -0.2, kZ = -0.9;  // [kg], [m] from D
   std::mt19937 random(3);
@@ -169,7 +169,7 @@ TEST(BoomCalibration, FindsAWeightOnTheTip) {
   EXPECT_LT(std::abs(found.weight_check->value - kLoad), 2.0 * found.weight_check->deviation);
 }
 
-/// The weight is the one thing that tells a bore from a mass.
+/// Only a known weight separates an error of the bore from an error of the masses.
 TEST(BoomCalibration, AKnownWeightSharpensTheCylindersGains) {
   constexpr double kLoad = 500.0, kX = -0.2, kZ = -0.9;
   std::mt19937 random(4);
@@ -248,8 +248,8 @@ TEST(BoomCalibration, LeavesOutWhatIsHammered) {
   }
 }
 
-/// Errors of static torques at unseen poses over their stated deviations, from some days of one machine. Each day has
-/// its own offset of the pressures and its own load on the tip, by which the torques differ by 3 to 12 %.
+/// Returns errors of static torques at unseen poses over their stated standard deviations, for several days of one
+/// machine. Each day has its own pressure offset and tip load, which change the torques by 3 to 12 %.
 std::vector<double> errorsFromDays(std::size_t days, std::mt19937& random) {
   constexpr double kLoad = 50.0, kLoadStd = 20.0, kOffsetStd = 1e5;  // [kg], [kg], [Pa]
   const std::complex<double> place(-0.2, -0.9);                      // [m] from D
@@ -275,7 +275,7 @@ std::vector<double> errorsFromDays(std::size_t days, std::mt19937& random) {
   return errors;
 }
 
-/// Few days show their own scatter only roughly: deviations allow for that. Two days are the most difficult.
+/// Few days determine their scatter only roughly, and the deviations allow for that. Two days are the hardest case.
 TEST(BoomCalibration, KnowsHowWellItKnowsFromFewDays) {
   std::mt19937 random(21);
   double torques = 0.0, within = 0.0;
@@ -283,14 +283,14 @@ TEST(BoomCalibration, KnowsHowWellItKnowsFromFewDays) {
     double own = 0.0, own_within = 0.0;
     for (int i = 0; i < machines; ++i)
       for (const double error : errorsFromDays(days, random)) own += 1.0, own_within += std::abs(error) < 2.0;
-    EXPECT_GE(own_within, 0.85 * own) << days;  // the torques of a machine err alike: 3 to 6 % less by chance
+    EXPECT_GE(own_within, 0.85 * own) << days;  // torque errors of one machine are correlated: 3 to 6 % less by chance
     torques += own, within += own_within;
   }
   EXPECT_GE(within, 0.88 * torques);
   EXPECT_LE(within, 0.99 * torques);
 }
 
-/// A bore sensor that drifts by 8 bar in the last quarter: formal deviations alone would not tell.
+/// A bore sensor drifts by 8 bar in the last quarter. The formal standard deviations alone would not reveal it.
 TEST(BoomCalibration, WritesNothingWhereWhatIsHeldOutDoesNotFit) {
   std::mt19937 random(23);
   const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
@@ -306,7 +306,7 @@ TEST(BoomCalibration, WritesNothingWhereWhatIsHeldOutDoesNotFit) {
   EXPECT_FALSE(found.determined());
 }
 
-/// Recordings of one machine, whose zeros and offsets are those of their days.
+/// Returns recordings of one machine on three days, each with its own zeros and offsets.
 std::vector<WeighedRecording> threeDays(std::mt19937& random) {
   std::normal_distribution<> normal;
   FreeBoom machine = FreeBoom::drawn(random);
@@ -322,7 +322,7 @@ std::vector<WeighedRecording> threeDays(std::mt19937& random) {
   return recordings;
 }
 
-/// A sensor whose readings a flaw changes, in one of three recordings of different days.
+/// A fault changes one sensor's readings in one of three recordings from different days.
 TEST(BoomCalibration, NamesTheJointAndTheRecordingOfAFaultySensor) {
   using Readings = std::vector<double>;
   constexpr double kDegree = kPi / 180.0;

@@ -62,7 +62,7 @@ TEST(Calibration, FindsAnEccentricEncoderThatTurnsTheOtherWay) {
   EXPECT_NEAR(find(c, "crank_eccentricity_1_phase_rad")->value, 0.8, 0.3);
 }
 
-/// Half of the drive's inertia turns with the encoder beyond the coupling.
+/// Half of the drive's inertia rotates with the encoder on the far side of the coupling.
 TEST(Calibration, NamesACouplingThatTwists) {
   simulation::MachineSettings s = atWork(10.0, 250.0);
   const auto namesCoupling = [](const Calibration& c) {
@@ -78,16 +78,16 @@ TEST(Calibration, NamesACouplingThatTwists) {
   }
 }
 
-/// Error of an eccentricity's amount and phase, as a distance.
+/// Returns the error of an eccentricity's amplitude and phase as a distance.
 double eccentricityError(const Calibration& c, int n, const simulation::Eccentricity& truth) {
   const std::string key = "crank_eccentricity_" + std::to_string(n);
   const double amount = find(c, key + "_rad")->value, phase = find(c, key + "_phase_rad")->value;
   return std::abs(std::polar(amount, phase) - std::polar(truth.amount, truth.phase));
 }
 
-/// Machines drawn at random, coarse counts and jitter included: errors within two deviations.
+/// Errors of random machines, with coarse counts and jitter, lie within two standard deviations.
 TEST(Calibration, DeviationsAreHonest) {
-  constexpr double kTwoOfBoth = 2.45;  // deviations within which 95 % of the errors in a plane lie, as two in a line
+  constexpr double kTwoOfBoth = 2.45;  // standard deviations that hold 95 % of errors in two dimensions, as 2 in one
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> part(0.0, 1.0);
   int within = 0, all = 0;
@@ -117,7 +117,7 @@ TEST(Calibration, DeviationsAreHonest) {
   EXPECT_GE(within, all * 9 / 10) << "of " << all;
 }
 
-/// A machine that its drawing has wrong by the deviations of a hammer file, the encoder right and on its centre.
+/// Draws a machine that differs from the nominal one by its standard deviations; the encoder is exact and centred.
 HammerParameters drawnFrom(const HammerParameters& drawing, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   HammerParameters p = drawing;
@@ -130,7 +130,7 @@ HammerParameters drawnFrom(const HammerParameters& drawing, std::mt19937_64& ran
   return p;
 }
 
-/// A machine's recording, calibrated by a hammer file of level linkage whose drive is right.
+/// Calibrates a machine's recording with a hammer file of level linkage whose drive inertia is correct.
 struct ByFile {
   explicit ByFile(const simulation::MachineSettings& machine)
       : drive_inertia(machine.drive.inertia), samples(recorded(machine)) {}
@@ -145,7 +145,7 @@ struct ByFile {
   std::vector<RecordedSample> samples;
 };
 
-/// What a drawing has wrong looks like a sensor that is wrong: it is in the deviations, and moves no key for certain.
+/// Errors of nominal parameters resemble sensor errors. They enter the deviations and shift no key significantly.
 TEST(Calibration, SeparatesNominalErrorsFromTheSensors) {
   HammerParameters drawing = test::mo100LinkageParameters(), exact = drawing;
   drawing.deviations = usualDeviations(drawing);
@@ -172,10 +172,10 @@ TEST(Calibration, SeparatesNominalErrorsFromTheSensors) {
     EXPECT_TRUE(find(c, "crank_zero_rad")->determined());
     EXPECT_FALSE(c.remarks.empty());
   }
-  EXPECT_GT(worst_of_exact, 5.0);  // a file that is sure of itself takes it for an eccentric encoder
+  EXPECT_GT(worst_of_exact, 5.0);  // a file without deviations attributes them to an eccentric encoder
 }
 
-/// A file as the calibration writes it, over the drawing.
+/// Returns the nominal parameters overwritten by the calibrated values and their standard deviations.
 HammerParameters writtenOver(HammerParameters drawing, const Calibration& c) {
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
     const Estimate *value = find(c, kHammerConstants[i].key), *deviation = find(c, deviationKey(kHammerConstants[i]));
@@ -185,8 +185,8 @@ HammerParameters writtenOver(HammerParameters drawing, const Calibration& c) {
   return drawing;
 }
 
-/// Readings show the crank's length with the distance of the pivots and the rocker's inertia. Where those are measured,
-/// the file gets the length; where they are not, none is moved.
+/// Readings show the crank's length only together with the pivot distance and the rocker's inertia. If those are
+/// measured, the length is written. Otherwise no length is changed.
 TEST(Calibration, ALengthThatShowsIsWritten) {
   HammerParameters drawing = test::mo100LinkageParameters();
   drawing.deviations = usualDeviations(drawing);
@@ -224,7 +224,7 @@ TEST(Calibration, ALengthThatShowsIsWritten) {
   EXPECT_NEAR(std::sqrt(squares), 1.0, 0.5);
 }
 
-/// With measured speeds too: what a stamp's error does to a speed near the blow is no noise of the angle.
+/// Runs with and without measured speeds. A stamp error changes the speed near a blow, which is no angle noise.
 TEST(Calibration, JitterIsMeasured) {
   for (const bool speeds : {true, false}) {
     simulation::MachineSettings s = atWork(12.0, 200.0);
@@ -266,7 +266,7 @@ TEST(Report, WritesNoKeyThatIsNotDetermined) {
   EXPECT_EQ(yamlOf(c, "a.bag"), "");
 }
 
-/// Sixteen keys and twenty correlations, as of a hammer file whose constants hide each other.
+/// Uses sixteen keys and twenty correlations, as from a hammer file whose constants are hard to separate.
 TEST(Report, StatesResultsGapsAndActionsInSixLines) {
   Calibration c;
   c.seconds = 60.0, c.blows = 240, c.more_blows = std::numeric_limits<double>::infinity(), c.facts.period = 1e-3;
@@ -300,7 +300,7 @@ TEST(Report, StatesResultsGapsAndActionsInSixLines) {
   EXPECT_NE(textOf(c).find("next: start the node with this file"), std::string::npos) << textOf(c);
 }
 
-/// The found values leave a thousandth of what there was: both must be seen.
+/// The fitted values leave a thousandth of the initial residual. Both curves must be visible.
 TEST(Report, PictureShowsBothCurvesOverHalfOfTheirPanels) {
   Calibration c;
   for (ResidualCurve* curve : {&c.before, &c.after}) {

@@ -43,7 +43,7 @@ TEST(CrankRecording, ExactStampsStayAndDisorderedOnesAreRetimed) {
     if (way == 2) flawed.crank.burst = 10;
     const CrankTrack track = trackOf(recorded(flawed), 1.0);
     EXPECT_TRUE(track.facts.retimed);
-    // Against the instants: a constant shift apart within 0.15 ms, the samplings' own 0.03 ms among it.
+    // The times differ from the true ones by a constant within 0.15 ms rms, of which 0.03 ms is the sampling's.
     double sum = 0.0, squares = 0.0, n = 0.0;
     for (std::size_t i = 1000; i + 1000 < track.points.size() && i < exact.size(); ++i) {
       const double shift = track.points[i].time - exact[i].time;

@@ -1,5 +1,5 @@
-/// A boom that an operator moves freely, by its own equations: planar Newton-Euler, cylinders' triangles as complex
-/// numbers, seals by Stribeck's curve. What its sensors say, with their flaws.
+/// A boom that an operator moves freely, with independent equations: planar Newton-Euler, cylinder triangles as complex
+/// numbers, Stribeck seal friction. Its sensor readings contain the sensors' errors.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace hammer_loads::test {
 
-/// Moves from place to place, one joint at a time.
+/// Moves from position to position, one joint at a time.
 class OperatorMotion {
  public:
   OperatorMotion(std::mt19937& random, double seconds) {
@@ -32,7 +32,7 @@ class OperatorMotion {
     }
   }
 
-  /// Position, velocity, acceleration of a joint [rad, 1/s, 1/s2].
+  /// Returns position, velocity and acceleration of a joint [rad], [rad/s], [rad/s2].
   std::array<double, 3> at(std::size_t joint, double time) const {
     std::array<double, 3> now{};
     bool first = true;
@@ -58,15 +58,15 @@ class OperatorMotion {
 struct FreeBoom {
   PlanarChain<3> chain;  ///< boom, arm, bracket with hull
   std::array<simulation::OilCylinder, 3> cylinders;
-  std::array<double, 3> friction{};               ///< over the force [-]
+  std::array<double, 3> friction{};               ///< friction force over the cylinder's force [-]
   std::array<double, 3> friction_force{};         ///< [N]
   std::array<double, 3> zero{};                   ///< [rad]
-  std::array<double, 3> offset{};                 ///< of the bore's pressure [Pa]
-  std::array<double, 3> gain{};                   ///< of both pressures, less one [-]
+  std::array<double, 3> offset{};                 ///< of the bore's pressure sensor [Pa]
+  std::array<double, 3> gain{};                   ///< of both pressure sensors, minus one [-]
   double joint_rate{50.0}, pressure_rate{100.0};  ///< [Hz]
   double joint_noise{2e-4}, pressure_noise{2e4};  ///< [rad], [Pa]
 
-  /// As the shipped description and boom file have it.
+  /// Has the nominal values of the shipped description and boom file.
   FreeBoom() {
     const simulation::OilBoom given = simulation::oilBoomEo2621();
     for (std::size_t k = 0; k < 3; ++k) {
@@ -76,7 +76,7 @@ struct FreeBoom {
     cylinders = given.cylinders;
   }
 
-  /// Masses, centres and everything else that a drawing and a fitter get wrong; seals from good to bad.
+  /// Draws errors of masses, centres and sensors as a drawing and a fitter make them, and low to high seal friction.
   static FreeBoom drawn(std::mt19937& random) {
     std::normal_distribution<> normal;
     FreeBoom boom;
@@ -92,7 +92,7 @@ struct FreeBoom {
     return boom;
   }
 
-  /// A point of mass on the hull, at x + i z from D in the hull's axes.
+  /// Adds a point mass to the hull at x + i z from D in the hull's axes.
   void hang(double mass, std::complex<double> at) {
     auto& hull = chain.links[2];
     const std::complex<double> from_joint = hull.to_next + at, way = from_joint - hull.com;
@@ -101,7 +101,7 @@ struct FreeBoom {
     hull.mass += mass;
   }
 
-  /// Of weight on the joints [N m].
+  /// Returns the joint torques due to weight [N m].
   std::array<double, 3> staticTorque(const std::array<double, 3>& q) const { return chain.loads(q, {}, {}, 0.0, 0.0); }
 
   double rubbing(std::size_t k, double force, double speed) const {
@@ -132,7 +132,7 @@ struct FreeBoom {
         const simulation::OilCylinder& c = cylinders[k];
         const double arm = c.arm(q[k]), force = -load[k] / arm, oil = force + rubbing(k, force, arm * qd[k]);
         const double back =
-            8e5 + 4e5 * std::sin(0.7 * t + static_cast<double>(k));  // of the valve, in the other chamber
+            8e5 + 4e5 * std::sin(0.7 * t + static_cast<double>(k));  // back pressure of the valve in the other chamber
         const double bore = oil > 0.0 ? (oil + back * c.rod_area) / c.bore_area : back;
         const double rod = oil > 0.0 ? back : (back * c.bore_area - oil) / c.rod_area;
         for (std::size_t chamber = 0; chamber < 2; ++chamber) {

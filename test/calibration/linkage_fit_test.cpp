@@ -1,4 +1,4 @@
-// Lengths of bucket linkages from tables of stroke and angle, against linkages that close by Newton's method.
+// Fits of bucket linkages to tables of stroke and angle, tested on linkages that are closed by Newton's method.
 #include "hammer_loads/calibration/linkage_fit.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::LinkageReference;
 
 constexpr double kClosed = 0.84;  // [m]
 
-/// The linkage of the shipped excavator's hammer cylinder.
+/// Returns the linkage of the shipped excavator's hammer cylinder.
 LinkageReference excavator() {
   return {{{-1.35, 0.28}, {-0.26, 0.05}, {0.25, 0.13}, 1.0}, {-0.26, 0.05, 0.34, 0.31, -1.0}};
 }
@@ -32,7 +32,7 @@ StrokeTable tableOf(const LinkageReference& linkage, double noise) {
   return table;
 }
 
-/// rms of the lever's error between the table's ends, over that of the lever.
+/// Returns the rms error of the lever arm between the table's ends over the rms lever arm.
 double leverError(const LinkageFit& fit, const LinkageReference& truth) {
   double off = 0.0, all = 0.0;
   for (double q = -1.83; q < 0.05; q += 0.03) {
@@ -42,7 +42,7 @@ double leverError(const LinkageFit& fit, const LinkageReference& truth) {
   return std::sqrt(off / all);
 }
 
-/// The table alone, read with half a millimetre: levers are right, whatever of the lengths it does not show.
+/// A table read to 0.5 mm determines the lever arm, although it does not determine every length.
 TEST(LinkageFits, FindTheLeverFromTheTableAlone) {
   const LinkageReference truth = excavator();
   const LinkageFit fit = fitLinkage(tableOf(truth, 5e-4), {}, "hammer_cylinder");
@@ -54,8 +54,8 @@ TEST(LinkageFits, FindTheLeverFromTheTableAlone) {
   EXPECT_FALSE(fit.correlations.empty());
 }
 
-/// With a tape's centimetre on every length as well: each is within three deviations, the lever better than by the
-/// tape.
+/// Every length is also measured by tape to 1 cm. Each fitted length lies within three standard deviations, and the
+/// lever arm is better than that of the tape.
 TEST(LinkageFits, ImproveWhatATapeHasMeasured) {
   const LinkageReference truth = excavator();
   const Unknowns::Vector value =

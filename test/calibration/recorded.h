@@ -40,7 +40,7 @@ inline Mechanism mechanismOf(const simulation::MachineSettings& s, double guess 
   return *Mechanism::make(p).value;
 }
 
-/// Null where there is none.
+/// Returns null if the key is not found.
 inline const calibration::Estimate* find(const calibration::Calibration& c, const std::string& key) {
   const auto at = std::find_if(c.estimates.begin(), c.estimates.end(),
                                [&](const calibration::Estimate& e) { return e.key == key; });

@@ -1,4 +1,4 @@
-// Machines whose rod gives: a zero that a rigid rod's fit would move is refused, with the reason.
+// Machines with an elastic connecting rod: a zero that a rigid-rod fit would shift is refused, with the reason.
 #include "hammer_loads/calibration/rod_check.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ Calibration withRod(const simulation::RodSettings& rod, double zero, double rate
   return calibrate(test::recorded(s), test::basisOf(mechanism));
 }
 
-/// "Dead": damping ratio 3. Nothing is written, with the reason, whether the fit settles or not: loads stay as they
-/// were.
+/// Damping ratio 3 is an overdamped rod. Whether the fit converges or not, nothing is written and the reason is stated,
+/// so the loads stay unchanged.
 TEST(RodCheck, NothingIsWrittenThatARodMovesByMoreThanAFifthOfADegree) {
   std::mt19937_64 random(77);
   std::uniform_real_distribution<double> part(0.0, 1.0);
@@ -55,7 +55,7 @@ TEST(RodCheck, ARigidRodIsNotSuspected) {
   }
 }
 
-/// Blows of a hammer with other links look alike: no fit explains them either, and both are named.
+/// Blows of a hammer with other links have similar residuals: no fit explains them, and both causes are named.
 TEST(RodCheck, AnotherHammerIsNamedBesideIt) {
   const simulation::MachineSettings s = test::atWork(12.0, 1000.0);
   HammerParameters other = s.hammer;

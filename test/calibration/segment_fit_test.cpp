@@ -7,7 +7,7 @@
 namespace hammer_loads::calibration {
 namespace {
 
-/// Work of the torque, with drag and stiffness in it, is the gain of energy.
+/// The work of the torque, including drag and stiffness, equals the gain of energy.
 TEST(BlowShot, TorquesWorkIsTheGainOfEnergy) {
   const Mechanism mechanism = test::mechanismOf(simulation::workingMo100());
   const ShaftModel model(mechanism, Level::kRocker);
@@ -32,7 +32,7 @@ TEST(BlowShot, TorquesWorkIsTheGainOfEnergy) {
   EXPECT_NEAR(energy(points.back()) - energy(points.front()), work, 1e-4 * std::abs(work));
 }
 
-/// Right-hand sides against differences of the cost.
+/// Compares the right-hand sides with finite differences of the cost.
 TEST(SegmentFit, RightHandSidesAreTheCostsSlopes) {
   const simulation::MachineSettings s = test::atWork(3.0, 500.0);
   const Mechanism mechanism = test::mechanismOf(s);
@@ -41,7 +41,7 @@ TEST(SegmentFit, RightHandSidesAreTheCostsSlopes) {
   ASSERT_GT(segments.size(), 3U);
   Globals globals;
   globals << 0.01, 0.01, -0.02, 0.005, 0.003, std::log(0.55), 5.0, 0.1;
-  const Noise noise{0.02, true, 0.0, 2.0, 74.0, 295.0};  // wide: no residual is cut off, no deviation moves
+  const Noise noise{0.02, true, 0.0, 2.0, 74.0, 295.0};  // wide: no residual is clipped, no deviation changes
   SegmentFit fit(segments[2], globals);
   const NormalEquations e = fit.linearise(model, globals, noise);
   const auto numeric = [&](auto move) {

@@ -1,4 +1,4 @@
-/// Bags to try process_bag with, in a directory of their own.
+/// Fixture that runs process_bag on bags in a temporary directory.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,9 +36,9 @@ class BagFiles : public testing::Test {
     std::filesystem::copy_file(from, path(name));
     return path(name);
   }
-  /// Each argument a file or an option.
+  /// Runs process_bag; each argument is a file or an option.
   static Outcome run(const std::string& arguments) { return runCommand(HAMMER_LOADS_PROCESS_BAG, arguments); }
-  /// Names in the directory, sorted.
+  /// Returns the names in the directory, sorted.
   std::vector<std::string> names() const {
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(directory_))
@@ -46,7 +46,7 @@ class BagFiles : public testing::Test {
     std::sort(found.begin(), found.end());
     return found;
   }
-  /// One line on stderr that has these words, exit code 1.
+  /// Expects exit code 1 and one line on stderr with these words.
   static void expectRefused(const Outcome& outcome, const std::vector<std::string>& words) {
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
@@ -57,13 +57,13 @@ class BagFiles : public testing::Test {
   std::filesystem::path directory_;
 };
 
-/// Hands every message of the session on.
+/// Passes every message of the session to `take`.
 inline void forEachOfSession(const std::function<void(const rosbag::MessageInstance&)>& take) {
   rosbag::Bag bag(kSession);
   for (const rosbag::MessageInstance& item : rosbag::View(bag)) take(item);
 }
 
-/// A message as it is recorded from a node.
+/// Writes a message as it is recorded from a node.
 template <typename Message>
 void writeFrom(rosbag::Bag& bag, const std::string& node, const std::string& topic, const ros::Time& time,
                const Message& message) {
@@ -76,7 +76,7 @@ void writeFrom(rosbag::Bag& bag, const std::string& node, const std::string& top
   bag.write(topic, time, message, header);
 }
 
-/// Everything in a bag but run_info, in record order: topic, record time [ns], content.
+/// Returns everything in a bag except run_info, in record order: topic, record time [ns], content.
 inline std::vector<std::string> contentOfBag(const std::string& path) {
   std::vector<std::string> content;
   rosbag::Bag bag(path);

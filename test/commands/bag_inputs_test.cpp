@@ -1,4 +1,4 @@
-/// What process_bag reads: splits as one run, and what it says of bags that it cannot use.
+/// Inputs of process_bag: split bags count as one run, and unusable bags are reported.
 #include "commands/bag_files.h"
 
 namespace hammer_loads {
@@ -9,7 +9,7 @@ using test::kSession;
 
 class BagInputFiles : public test::BagFiles {
  protected:
-  /// The session in so many bags, cut between messages.
+  /// Returns the session split into `count` bags, cut between messages.
   std::vector<std::string> split(int count) const {
     constexpr int kMessages = 4479;
     std::vector<std::string> files;
@@ -24,7 +24,7 @@ class BagInputFiles : public test::BagFiles {
     });
     return files;
   }
-  /// A bag of one message.
+  /// Writes a bag of one message.
   template <typename Message>
   std::string write(const std::string& name, const std::string& topic, const Message& message) const {
     rosbag::Bag bag(path(name), rosbag::bagmode::Write);
@@ -49,7 +49,7 @@ TEST_F(BagInputFiles, SplitsOfARecordingAreOneRun) {
     for (const char* word : {"2979 crank samples", " wrenches", "122 turns", out.c_str()})
       EXPECT_NE(outcome.out.find(word), std::string::npos) << outcome.out;
   }
-  // One of them alone starts without knowledge.
+  // A single part starts without the state from the parts before it.
   ASSERT_EQ(run(f[1] + " " + path("part.bag")).exit_code, 0);
   EXPECT_LT(contentOfBag(path("part.bag")).size(), whole.size() / 2);
 }
@@ -61,7 +61,7 @@ TEST_F(BagInputFiles, ABagGivenTwiceIsRefused) {
 }
 
 TEST_F(BagInputFiles, AnUnindexedBagNamesReindex) {
-  // As kill -9 leaves it: the file header says that there is no index.
+  // After kill -9 the file header states that there is no index.
   std::string bytes = test::contentOf(kSession);
   const std::size_t index = bytes.find("index_pos=");
   ASSERT_LT(index, 200U);
@@ -73,7 +73,7 @@ TEST_F(BagInputFiles, AnUnindexedBagNamesReindex) {
   EXPECT_EQ(names().size(), 2U);
 }
 
-/// Chunks in the middle overwritten: the index is whole, what it leads to is not.
+/// Chunks in the middle are overwritten: the index is intact, but the data it refers to are not.
 TEST_F(BagInputFiles, ADamagedBagIsBlamedNotTheOutput) {
   std::string bytes = test::contentOf(kSession);
   std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 3), 20000, '\x5a');
@@ -83,11 +83,11 @@ TEST_F(BagInputFiles, ADamagedBagIsBlamedNotTheOutput) {
   EXPECT_EQ(names().size(), 1U);
 }
 
-/// Some kB that say that they are a GB unpacked, or that a record is that long: no such memory is asked for.
+/// A file of some kB claims 1 GB of unpacked data or a record of that length. No such memory is allocated.
 TEST_F(BagInputFiles, ABagThatClaimsTooMuchIsRefused) {
   const std::string in = write("in.bag", "/hammer/crank", sensor_msgs::JointState()), good = test::contentOf(in);
   ASSERT_LT(good.size(), 10000U);
-  // Where the chunk begins is in its entry of the index: the length of its header.
+  // The chunk's index entry holds its position, at which the length of the chunk's header is stored.
   std::uint64_t chunk_at = 0;
   std::memcpy(&chunk_at, good.data() + good.find("chunk_pos=") + 10, sizeof chunk_at);
   const std::size_t field = good.find("size=", chunk_at);

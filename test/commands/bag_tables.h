@@ -1,4 +1,4 @@
-/// Tables that process_bag --db writes, asked in SQL.
+/// Queries in SQL to the tables that process_bag --db writes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace hammer_loads::test {
 class Tables : public BagFiles {
  protected:
   using Database = life::Database;
-  /// First column of each row, "NULL" for nothing.
+  /// Returns the first column of each row, with "NULL" for null values.
   std::vector<std::string> ask(const std::string& file, const std::string& sql) const {
     Database database(path(file), Database::Use::kRead, 0);
     std::vector<std::string> rows;
@@ -20,7 +20,7 @@ class Tables : public BagFiles {
     EXPECT_EQ(database.problem(), "") << sql;
     return rows;
   }
-  /// First number of the first row, with every digit.
+  /// Returns the first number of the first row with all digits.
   double number(const std::string& file, const std::string& sql) const {
     Database database(path(file), Database::Use::kRead, 0);
     Database::Statement query(database, sql.c_str());

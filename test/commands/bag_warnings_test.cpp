@@ -1,4 +1,4 @@
-/// What process_bag says at its end: missing, suspicious, how much was written.
+/// Final report of process_bag: missing inputs, suspicious inputs, amount written.
 #include <geometry_msgs/WrenchStamped.h>
 #include <hammer_loads/HullLoads.h>
 #include <topic_tools/shape_shifter.h>
@@ -21,13 +21,13 @@ constexpr char kMissingHammer[] = "warning: no hammer file was given";
 class BagWarnings : public test::BagFiles {
  protected:
   using Change = std::function<void(rosbag::Bag&, const rosbag::MessageInstance&)>;
-  /// The session, each message as `write` writes it.
+  /// Writes the session to a bag, each message through `write`.
   std::string session(const std::string& name, const Change& write) const {
     rosbag::Bag bag(path(name), rosbag::bagmode::Write);
     test::forEachOfSession([&](const rosbag::MessageInstance& item) { write(bag, item); });
     return path(name);
   }
-  /// Its stderr, with a hammer file given.
+  /// Returns the stderr of a run with a given hammer file.
   std::string warnings(const std::string& in, const std::string& more = {}) const {
     const test::Outcome outcome = run(in + " " + path("out_" + std::to_string(names().size()) + ".bag") + " --params " +
                                       configDirectory() + "/hammer_mo100.yaml" + more);
@@ -97,7 +97,7 @@ TEST_F(BagWarnings, TwoPublishersOnOneTopicAreNamed) {
   expectWarned(warnings(in), {"warning: /hammer/crank: several publishers: /driver, /old_driver"});
 }
 
-/// Half of the day is good: its loads come out as the node had them, and neither ledger nor tables take the day.
+/// Half of the day is valid. Its loads are written as the node had them, but ledger and tables reject the day.
 TEST_F(BagWarnings, ARecordingPartlyInDegreesGivesItsLoadsButNoFigures) {
   std::optional<ros::Time> begin;
   const ros::Duration good(15.0);

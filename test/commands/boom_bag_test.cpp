@@ -1,5 +1,5 @@
-/// process_bag with a robot description, as its user runs it, on bags written here: against the live node's flow, and
-/// with sensors of the hull and its cylinders against the machine's own equations.
+/// process_bag with a robot description, run as a command on bags written here. Its outputs are compared with the live
+/// node's and, with sensors on hull and cylinders, with the machine's own equations.
 #include <ros/serialization.h>
 #include <sensor_msgs/FluidPressure.h>
 #include <tf2_msgs/TFMessage.h>
@@ -33,7 +33,7 @@ Recorded recordedIn(const std::string& path) {
   return recorded;
 }
 
-/// The messages of a bag through a HammerBridge, as the node hands them on; topics without a message are left out.
+/// Passes a bag's messages through a HammerBridge as the node does; topics without a message are left out.
 Recorded recordedLive(const std::string& path, const Settings& settings) {
   Recorded recorded;
   HammerBridge flow(settings);
@@ -71,11 +71,11 @@ std::vector<Message> messagesIn(const std::string& path, const std::string& topi
 
 constexpr double kSide = 0.8;  // [m] from arm_link back to the strain gauge
 const std::string kUrdf = sourceFile("urdf/eo2621_mo100.urdf");
-/// The encoder's zero is known as by `calibrate`: else samples of the first turns are withheld.
+/// The encoder's zero is known as after `calibrate`. Otherwise samples of the first revolutions are withheld.
 const std::string kCalibrated = kKnownZeroYaml;
 const std::string kBoomFile = configDirectory() + "/boom_eo2621.yaml";
 
-/// Two and a half seconds of a machine that soon strikes and moves its boom.
+/// Returns a machine that soon strikes and moves its boom, for 2.5 s.
 simulation::MachineSettings machineOfBag() {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = 2.5;
@@ -97,7 +97,7 @@ geometry_msgs::TransformStamped transform(const ros::Time& stamp, const std::str
   return t;
 }
 
-/// Inputs of a session as they would be recorded, 2 ms late.
+/// Writes the inputs of a session as they would be recorded, 2 ms late.
 class InputBag {
  public:
   InputBag(const std::string& path, const simulation::Session& session) : bag_(path, rosbag::bagmode::Write) {
@@ -164,7 +164,7 @@ class BoomBag : public BagFiles {
                                                     " --params " + kBoomFile + " --params " + given.path() + " " +
                                                     more);
   }
-  /// What the live node's flow makes of the same messages.
+  /// Returns the live node's outputs for the same messages.
   Recorded live(const std::string& parameters) const {
     const TemporaryFile given(kCalibrated + parameters);
     const Settings settings = *loadFiles(configDirectory(), {kBoomFile, given.path()}, textOf(kUrdf)).value;
@@ -229,7 +229,7 @@ TEST_F(BoomBag, RefusesABadDescriptionOrBoomFileInOneLineAndWritesNothing) {
   EXPECT_EQ(names(), std::vector<std::string>{"in.bag"});
 }
 
-/// Oil 30 % softer than the boom file says, known by every sensor; against the machine's own equations.
+/// Oil 30 % softer than in the boom file, with all sensors in use, compared with the machine's own equations.
 TEST_F(BoomBag, StatesTheSectionLoadsOfAMachineOnSofterOil) {
   simulation::MachineSettings m = machineOfBag();
   m.duration = 7.0, m.drive.stop_time = 1e9;

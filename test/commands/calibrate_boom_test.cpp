@@ -1,4 +1,4 @@
-// calibrate --boom as its user meets it: bags in, a boom file out that every other command reads.
+// The command calibrate --boom: it reads bags and writes a boom file that every other command reads.
 #include <rosbag/bag.h>
 #include <sensor_msgs/FluidPressure.h>
 #include <sensor_msgs/JointState.h>
@@ -53,7 +53,7 @@ class CalibrateBoom : public test::BagFiles {
 TEST_F(CalibrateBoom, WritesABoomFileThatOtherCommandsRead) {
   std::mt19937 random(1);
   FreeBoom machine;
-  for (auto& link : machine.chain.links) link.mass *= 1.1;  // the drawing has it 9 % too low
+  for (auto& link : machine.chain.links) link.mass *= 1.1;  // the nominal mass is 9 % too low
   machine.friction = {0.02, 0.02, 0.02};
   writeBag(path("free.bag"), machine.record(random, 120.0));
   const std::string out = path("boom.yaml");
@@ -66,7 +66,7 @@ TEST_F(CalibrateBoom, WritesABoomFileThatOtherCommandsRead) {
   const Checked<Settings> settings = loadFiles(configDirectory(), {out}, test::shippedUrdf());
   ASSERT_TRUE(settings.value) << settings.problems.front();
   Boom found = *settings.value->boom, given = test::shippedBoom();
-  EXPECT_EQ(found.sections().size(), given.sections().size());  // what was given is still there
+  EXPECT_EQ(found.sections().size(), given.sections().size());  // the given sections are kept
   const std::array<double, 3> q{-0.3, 1.2, -0.5}, truth = machine.staticTorque(q);
   for (Boom* boom : {&found, &given})
     boom->move({test::joints({0.0, q[0], q[1], q[2]}), test::kZero, test::kZero}, test::kLevel);

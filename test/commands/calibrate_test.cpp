@@ -1,4 +1,4 @@
-// The command calibrate as its user meets it: files, errors and exit codes.
+// The command calibrate: files, errors and exit codes.
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ TEST_F(Calibrate, WritesParametersThatEveryOtherCommandReads) {
   EXPECT_LE(test::linesOf(outcome.out).size(), 8U) << outcome.out;
   const Checked<Settings> settings = loadFiles(configDirectory(), {output_});
   ASSERT_TRUE(settings.value) << settings.problems.front();
-  // The recording's encoder sits where it should: 4096 counts, drive inertia 0.6.
+  // The recording's encoder has no zero offset and 4096 counts. The drive inertia is 0.6 kg m2.
   EXPECT_NEAR(settings.value->pipeline.crank_sensor.reading(0.0), 0.0, 0.006);
   EXPECT_NEAR(settings.value->pipeline.crank_angle_resolution, kTwoPi / 4096, 1e-9);
   EXPECT_NEAR(settings.value->mechanism.parameters().drive_inertia, 0.6, 0.05);
@@ -75,7 +75,7 @@ TEST_F(Calibrate, RefusesWhatItCannotUse) {
   EXPECT_EQ(runCalibrate("--help").exit_code, 0);
 }
 
-/// A hammer file that is exact: what is not known is by too few blows.
+/// Returns an exact hammer file, so that only too few blows leave a key undetermined.
 std::string exactHammer() {
   std::string yaml;
   for (const HammerConstant& constant : kHammerConstants)
@@ -84,7 +84,7 @@ std::string exactHammer() {
   return yaml;
 }
 
-/// A machine at work, recorded on a topic of its own, its encoder 0.4 deg off and with 1024 counts. The first reading
+/// Records a machine at work on a topic of its own; the encoder is 0.4 deg off and has 1024 counts. The first reading
 /// is recorded before the first message of /clock, at 1 ns.
 void recordWork(const std::string& path, double seconds, double rate, const std::string& topic) {
   simulation::MachineSettings machine = simulation::workingMo100();
@@ -94,7 +94,7 @@ void recordWork(const std::string& path, double seconds, double rate, const std:
   machine.crank.zero = 0.4 * kDegree;
   machine.crank.counts = 1024;
   rosbag::Bag bag(path, rosbag::bagmode::Write);
-  bag.setChunkThreshold(100000);  // [byte], of some seconds
+  bag.setChunkThreshold(100000);  // [byte], a few seconds
   RunInfo info;
   info.header.stamp.fromNSec(static_cast<std::uint64_t>(machine.start_stamp));
   const TemporaryFile exact(exactHammer(), ".yaml");
@@ -114,7 +114,7 @@ void recordWork(const std::string& path, double seconds, double rate, const std:
   }
 }
 
-/// Each key's deviation and limit as printed.
+/// Returns each key's printed standard deviation and limit.
 std::map<std::string, std::pair<double, double>> deviationsIn(const std::string& out) {
   std::map<std::string, std::pair<double, double>> found;
   const std::regex line(R"((\w+) +\S+.* \+- (\S+), limit ([0-9.e+-]+))");
@@ -126,11 +126,11 @@ std::map<std::string, std::pair<double, double>> deviationsIn(const std::string&
 
 TEST_F(Calibrate, ReadsNoMoreOfALongRecordingThanItNeeds) {
   const std::string bag = path("work.bag");
-  recordWork(bag, 300.0, 100.0, "/drive/encoder");  // topic and parameters are those of the run_info in it
+  recordWork(bag, 300.0, 100.0, "/drive/encoder");  // topic and parameters come from its run_info
   const Outcome outcome = runCalibrate(bag + " --verbose --write " + output_);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("parameters of /hammer_loads/run_info are used"), std::string::npos) << outcome.err;
-  EXPECT_EQ(outcome.err.find('\r'), std::string::npos);  // no bar without a terminal
+  EXPECT_EQ(outcome.err.find('\r'), std::string::npos);  // no progress bar without a terminal
   const double seconds = std::stod(outcome.out);
   EXPECT_GT(seconds, 100.0);
   EXPECT_LT(seconds, 250.0);

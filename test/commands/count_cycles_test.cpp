@@ -1,4 +1,4 @@
-// count_cycles as its user runs it.
+// Tests of the command count_cycles.
 #include <gtest/gtest.h>
 
 #include "support/command.h"

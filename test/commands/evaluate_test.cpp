@@ -1,4 +1,4 @@
-// evaluate: states in, loads out, as the library's function and as the command.
+// evaluate computes loads from states, as a library function and as a command.
 #include "hammer_loads/hammer/evaluate.h"
 
 #include <boost/multiprecision/cpp_dec_float.hpp>
@@ -49,7 +49,7 @@ std::map<std::string, double> rowOf(const std::string& csv, std::size_t row) {
 
 double offsetOf(const std::string& text) { return crankAngleFromText(text).value().offset; }
 
-/// 2 pi turns + offset with so many decimals.
+/// Returns 2 pi turns + offset with this number of decimals.
 std::string angleText(int turns, const std::string& offset, int decimals) {
   using Decimal = boost::multiprecision::cpp_dec_float_100;
   const Decimal two_pi("6.28318530717958647692528676655900576839433879875021164194988918461563");
@@ -87,7 +87,7 @@ TEST(CrankAngleText, RefusesWhatIsNoAngle) {
   }
 }
 
-/// Errors over the column's peak, angles absolute; every row of a reference table.
+/// Compares every row of a reference table: load errors relative to the column's peak, angle errors absolute.
 void expectReference(const std::string& name, Level level, const HammerParameters& parameters, double angle_error,
                      double load_error) {
   const std::string path = std::string(HAMMER_LOADS_TEST_DATA) + "/" + name;

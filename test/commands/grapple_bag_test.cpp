@@ -1,4 +1,4 @@
-/// process_grapple, as its user runs it, on bags written here.
+/// The command process_grapple on bags written here.
 #include "commands/bag_files.h"
 #include "grapple/grapples.h"
 #include "ros/grapple_messages.h"
@@ -12,7 +12,7 @@ double sliderAt(int i) { return 0.332 + 0.3 * std::sin(0.02 * i); }
 
 class GrappleBag : public test::BagFiles {
  protected:
-  /// 100 Hz; sample `bad` lies across the fold. Record times are 5 ms late.
+  /// Writes 100 Hz samples with record times 5 ms late; sample `bad` lies beyond the fold.
   std::string writeBag(const std::string& name, const std::string& topic, int bad = -1) const {
     rosbag::Bag bag(path(name), rosbag::bagmode::Write);
     for (int i = 0; i < kSamples; ++i) {
@@ -52,7 +52,7 @@ TEST_F(GrappleBag, WritesBothJawsAtTheRecordTimeOfTheirInput) {
     const auto edge = item.instantiate<geometry_msgs::PointStamped>();
     ASSERT_EQ(edge->header.stamp, ros::Time(100.0 + 0.01 * i));
     ASSERT_EQ(item.getTime(), edge->header.stamp + ros::Duration(0.005));
-    ASSERT_NEAR(edge->point.x, grapple.at(sliderAt(i))->p.re, 1e-13);  // cold against warm: rounding
+    ASSERT_NEAR(edge->point.x, grapple.at(sliderAt(i))->p.re, 1e-13);  // cold and warm start differ by rounding
     ++i;
   }
 }

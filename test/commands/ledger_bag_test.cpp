@@ -1,4 +1,4 @@
-/// process_bag --ledger: what it adds, what it refuses, what it leaves as it was.
+/// process_bag --ledger: additions, refusals and what stays unchanged.
 #include "commands/bag_files.h"
 #include "hammer_loads/life/ledger_reader.h"
 #include "hammer_loads/settings/load.h"
@@ -37,7 +37,7 @@ TEST_F(LedgerOfBags, HasEachRecordingOnce) {
   EXPECT_EQ(epochs().at(0).days.at(0).turns, 122U + 76U);
 }
 
-/// The machine starts at 2 s and strikes four times a second: eight revolutions take until 4 s.
+/// The machine starts at 2 s and strikes four times a second, so eight revolutions end at 4 s.
 TEST_F(LedgerOfBags, CountsNothingBeforeTheZeroIsKnown) {
   EXPECT_EQ(add(kSession).exit_code, 0);
   EXPECT_NEAR(1e-9 * static_cast<double>(epochs().at(0).days.at(0).duration), 26.0, 1.0);

@@ -1,4 +1,4 @@
-// life as its user runs it, on a ledger of the series of ASTM E1049-85, Fig. 6.
+// The command life on a ledger of the series of ASTM E1049-85, Fig. 6.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -87,7 +87,7 @@ TEST(Life, CsvHasTheFiguresOfTheStandardsExample) {
   const Outcome outcome = runLife(ledger.path() + " --csv");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<Row> rows = rowsOf(outcome.out);
-  ASSERT_EQ(rows.size(), 4U);  // two channels, all and a day each
+  ASSERT_EQ(rows.size(), 4U);  // two channels, each with a total and one day
   const Row& load = rows[0];
   EXPECT_EQ(load.at("channel"), "hull_wrench/force_z");
   EXPECT_EQ(load.at("unit"), "N");
@@ -103,7 +103,7 @@ TEST(Life, CsvHasTheFiguresOfTheStandardsExample) {
   EXPECT_EQ(load.at("damage"), "");
   EXPECT_EQ(load.at("remaining_hours"), "");
   EXPECT_EQ(rows[1].at("day"), "2024-10-04");
-  EXPECT_EQ(rows[1].at("cycles"), "1");  // what closed
+  EXPECT_EQ(rows[1].at("cycles"), "1");  // closed cycles only
   const Row& stress = rows[2];
   EXPECT_EQ(stress.at("channel"), "stress/toe");
   EXPECT_EQ(stress.at("unit"), "MPa");
@@ -138,7 +138,7 @@ TEST(Life, AFileThatIsNoLedgerIsOneLineAndExitCode1) {
   }
 }
 
-/// What a run cannot have written; SQL, and what the line must name.
+/// Values that no run can have written: the SQL that sets them and the text that the message must contain.
 const std::pair<const char*, const char*> kDamage[] = {
     {"UPDATE epochs SET equivalent_cycles_per_hour = 0", "epochs: equivalent_cycles_per_hour 0.0"},
     {"UPDATE epochs SET equivalent_cycles_per_hour = 9e999", "epochs: equivalent_cycles_per_hour"},

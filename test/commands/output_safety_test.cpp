@@ -1,4 +1,4 @@
-/// process_bag destroys nothing and leaves nothing half-written, as its user runs it.
+/// process_bag destroys no file and leaves no partial output.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mount.h>
@@ -33,7 +33,7 @@ TEST_F(OutputSafety, AnInputIsNeverTheOutputByWhateverNameOrLink) {
   for (const char* force : {"", " --force"}) {
     for (const char* name : {"in.bag", "symbolic.bag", "hard.bag", "d/up/in.bag", "d/../in.bag"})
       expectRefused(run(in + " " + path(name) + force), {path(name), "input"});
-    // One of several, and reached by a link itself.
+    // The input is one of several and is itself given as a link.
     const std::string second = path("second.bag");
     if (!fs::exists(second)) fs::copy_file(std::string(HAMMER_LOADS_TEST_DATA) + "/mo100_1khz.bag", second);
     expectRefused(run(second + " " + path("symbolic.bag") + " " + in + force), {in, "input"});
@@ -54,7 +54,7 @@ TEST_F(OutputSafety, AnExistingFileStaysWithoutForce) {
   EXPECT_FALSE(fs::exists(path("nowhere")));
 }
 
-/// A recording, a node's log (outputs and inputs, these perhaps under the node's own name), notes.
+/// Recordings, logs of a node (outputs and inputs, the latter possibly under the node's own name) and notes are kept.
 TEST_F(OutputSafety, ForceReplacesNothingElse) {
   const auto write = [&](const std::string& name, const std::string& crank_topic, bool run_info) {
     rosbag::Bag bag(path(name), rosbag::bagmode::Write);
@@ -75,7 +75,7 @@ TEST_F(OutputSafety, ForceReplacesNothingElse) {
     EXPECT_TRUE(contentOf(path(name)) == bytes) << name;
   }
   EXPECT_EQ(names().size(), 8U) << "nothing left behind";
-  // What is an output of one command may be the input of the next.
+  // The output of one command may be the input of the next.
   ASSERT_EQ(run(kSession + " " + path("out.bag")).exit_code, 0);
   expectRefused(run(kSession + " " + path("out.bag") + " --force --imu-topic /hammer_loads/mechanism"), {"an input"});
 }
@@ -101,7 +101,7 @@ TEST_F(OutputSafety, NeverReplacesAFileThatIsNotRegular) {
   EXPECT_TRUE(fs::is_socket(path("socket")));
 }
 
-/// A null device of its own, where one can be made: the system's is never touched by a test.
+/// Uses a null device of its own where one can be created. A test never touches the system's device.
 TEST_F(OutputSafety, ADeviceIsNeverReplaced) {
   const std::string device = path("null");
   if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "only root makes devices";
@@ -111,8 +111,8 @@ TEST_F(OutputSafety, ADeviceIsNeverReplaced) {
 }
 
 TEST_F(OutputSafety, AFullQuotaIsOneLineAndLeavesNothing) {
-  // At the bag's header, a chunk, the index: the shell counts blocks of 512 bytes. The last limit is one byte or more
-  // too little.
+  // The limits end the file at the bag's header, in a chunk and in the index. The shell counts blocks of 512 bytes, so
+  // the last limit is one byte or more too small.
   ASSERT_EQ(run(kSession + " " + path("whole.bag")).exit_code, 0);
   const auto blocks = fs::file_size(path("whole.bag")) / 512;
   for (const std::uintmax_t limit : {std::uintmax_t{2}, blocks / 2, blocks}) {
@@ -133,7 +133,7 @@ TEST_F(OutputSafety, AFullDiskIsOneLineAndLeavesNothing) {
   EXPECT_TRUE(empty);
 }
 
-/// What the file held before is still there.
+/// The previous content of the file is still there.
 TEST_F(OutputSafety, AFailureWithForceKeepsTheOldOutput) {
   ASSERT_EQ(run(kSession + " " + path("out.bag")).exit_code, 0);
   const std::string bytes = contentOf(path("out.bag"));
@@ -144,7 +144,7 @@ TEST_F(OutputSafety, AFailureWithForceKeepsTheOldOutput) {
   EXPECT_EQ(names().size(), 1U);
 }
 
-/// Between the look and the end of the work.
+/// The file appears between the check and the end of the work.
 TEST_F(OutputSafety, AFileThatAppearsMeanwhileIsNotReplaced) {
   const auto publish = [&](bool appears) {
     Checked<OutputFile> file = OutputFile::make({path("out"), {}, true, [](const std::string&) { return ""; }});
@@ -155,16 +155,16 @@ TEST_F(OutputSafety, AFileThatAppearsMeanwhileIsNotReplaced) {
   EXPECT_NE(publish(true).find(path("out") + ": has appeared meanwhile"), std::string::npos);
   EXPECT_EQ(contentOf(path("out")), "other");
   EXPECT_EQ(names(), (std::vector<std::string>{"out"}));
-  EXPECT_EQ(publish(false), "");  // by force
+  EXPECT_EQ(publish(false), "");  // the file may be replaced
   EXPECT_EQ(contentOf(path("out")), "new");
   EXPECT_EQ(names(), (std::vector<std::string>{"out"}));
 }
 
-/// Interrupted while it writes.
+/// process_bag interrupted by a signal while it writes.
 class Interrupted : public OutputSafety, public testing::WithParamInterface<int> {};
 
 TEST_P(Interrupted, EndsWith130AndLeavesNothing) {
-  // Long enough to be caught at work: the session again and again.
+  // The bag repeats the session, so that the run lasts long enough to be interrupted.
   {
     rosbag::Bag bag(path("long.bag"), rosbag::bagmode::Write);
     test::forEachOfSession([&](const rosbag::MessageInstance& item) {

@@ -1,4 +1,4 @@
-/// process_bag on the recorded sessions, judged by their truth.
+/// process_bag on the recorded sessions, compared with their truth.
 #include <cstdio>
 
 #include "commands/bag_files.h"
@@ -71,7 +71,7 @@ Loads outputOf(const std::string& path) {
     }
   }
   for (BlowAt& blow : output.blows) {
-    const auto pulse = pulses.find(blow.time);  // stamped with the blow that ends its turn
+    const auto pulse = pulses.find(blow.time);  // stamped with the blow that ends its revolution
     if (pulse == pulses.end()) continue;
     blow.turn_peak = pulse->second.amplitude;
     blow.turn_impulse_z = pulse->second.turn_impulse_z;

@@ -1,4 +1,4 @@
-/// process_bag on a node's log: parameters, robot description and topics of its run_info, run by run.
+/// process_bag on a node's log uses the parameters, robot description and topics of each run_info.
 #include <hammer_loads/HullLoads.h>
 #include <topic_tools/shape_shifter.h>
 
@@ -12,7 +12,7 @@ namespace {
 using test::contentOfBag;
 using test::kSession;
 
-/// Every parameter in force with these over the shipped ones, as a node writes them.
+/// Returns all parameters in force as a node writes them: the shipped ones overridden by these.
 std::string yamlWith(const std::string& parameters = "level: rocker\n", const InputTopics& topics = {}) {
   const test::TemporaryFile file(parameters);
   return withInputTopics(*loadFiles(configDirectory(), {file.path()}).value, topics).yaml;
@@ -31,7 +31,7 @@ const ros::Time kStart(1700000000.0), kMiddle(1700000015.0), kEnd(1700000100.0);
 
 class RecordedRuns : public test::BagFiles {
  protected:
-  /// The session's messages of [from, to) under other names, beside what `more` writes first.
+  /// Writes the session's messages of [from, to) under other names, after those that `more` writes.
   std::string writeLog(const std::string& name, const std::function<void(rosbag::Bag&)>& more,
                        const ros::Time& from = kStart, const ros::Time& to = kEnd,
                        const InputTopics& topics = {"/hammer/crank", "/joint_states", ""}) const {
@@ -52,7 +52,7 @@ class RecordedRuns : public test::BagFiles {
     bag.write(node + "/run_info", time, runInfo(yaml, time));
     return yaml;
   }
-  /// What process_bag gives with these parameters and no run_info.
+  /// Returns the output of process_bag with these parameters and no run_info.
   std::vector<std::string> reference(const std::string& in, const std::string& yaml) const {
     const test::TemporaryFile file(yaml);
     const std::string out = path("reference_" + std::to_string(names().size()) + ".bag");
@@ -98,13 +98,13 @@ TEST_F(RecordedRuns, ParametersAndTopicsAreThoseOfTheLog) {
   EXPECT_TRUE(again == reference(plain("plain.bag"), changed));
   EXPECT_FALSE(again == reference(path("plain.bag"), "level: rocker\n")) << "the parameters count";
 
-  // Given parameters go over the log's; it still says where its inputs are.
+  // Given parameters override the log's. The log still determines the input topics.
   const test::TemporaryFile other("level: rocker\n");
   const test::Outcome given = run(log + " " + path("given.bag") + " --params " + other.path());
   ASSERT_EQ(given.exit_code, 0) << given.err;
   EXPECT_EQ(given.err.find("parameters of"), std::string::npos) << given.err;
   EXPECT_TRUE(contentOfBag(path("given.bag")) == reference(path("plain.bag"), "level: rocker\n"));
-  // Names that are given go over both.
+  // Given topic names override both.
   const test::TemporaryFile named("level: rocker\ninput_topic_crank: /nowhere\n");
   expectRefused(run(log + " " + path("x.bag") + " --params " + named.path()), {"no topic /nowhere"});
   expectRefused(run(log + " " + path("x.bag") + " --crank-topic /hammer/crank"), {"no topic /hammer/crank"});
@@ -121,7 +121,7 @@ TEST_F(RecordedRuns, TheOutputsRunInfoNamesTheTopics) {
     EXPECT_NE(yaml.find(line), std::string::npos) << yaml;
 }
 
-/// Reference: the two halves as two recordings.
+/// The reference is the two halves processed as two recordings.
 TEST_F(RecordedRuns, EachRunInfoAppliesFromItsRecordTime) {
   const std::string first = yamlWith("level: linkage\n"), second = yamlWith("gravity_m_s2: 1.6\n");
   const std::string log = writeLog("log.bag", [&](rosbag::Bag& bag) {
@@ -151,7 +151,7 @@ TEST_F(RecordedRuns, ARepeatedRunInfoBeginsNoRun) {
   EXPECT_TRUE(contentOfBag(path("out.bag")) == reference(plain("plain.bag"), yaml));
 }
 
-/// Recorded while the node ran already: its latched run_info comes some time after the first inputs.
+/// The recording began while the node ran already: its latched run_info comes some time after the first inputs.
 TEST_F(RecordedRuns, ALateRunInfoAppliesToWhatCameBeforeItAsWell) {
   const std::string yaml = yamlWith("level: linkage\n");
   const std::string log = writeLog("log.bag", [&](rosbag::Bag& bag) {
@@ -260,7 +260,7 @@ TEST_F(RecordedRuns, ReadsTheImuFromTheLogsTopicAndReportsItsAbsence) {
       flagged += (item.instantiate<HullLoads>()->flags & HullLoads::FLAG_HULL_MOTION) != 0 ? 1 : 0;
   }
   EXPECT_GT(flagged, 2900U);
-  // The same without its name: looked for where it is not, and said so.
+  // Without its topic name the IMU is looked for on the default topic, and this is reported.
   const std::string nameless = writeLog("nameless.bag", [&](rosbag::Bag& bag) {
     run_info(bag, yamlWith("hull_motion: imu\n"), kStart);
     imu(bag);

@@ -1,4 +1,4 @@
-/// The file of process_bag --db: the same bytes each time, whole or not there, and nothing else is lost for it.
+/// The file of process_bag --db has the same bytes each time, is complete or absent, and costs no other file.
 
 #include <sys/mount.h>
 
@@ -15,7 +15,7 @@ using test::Tables;
 TEST_F(Tables, GivesEqualBytesForEqualInputWithAndWithoutABag) {
   ASSERT_EQ(tables(kSession, "one.sqlite").exit_code, 0);
   ASSERT_EQ(run(kSession + " " + path("out.bag") + " --db " + path("two.sqlite")).exit_code, 0);
-  // Under another name, in another directory, from another one.
+  // The input has another name and directory, and the command runs in another directory.
   fs::create_directory(path("elsewhere"));
   const std::string other = copy(kSession, "elsewhere/renamed.bag");
   const test::Outcome third = test::runCommand("cd " + path("elsewhere") + " && " HAMMER_LOADS_PROCESS_BAG,

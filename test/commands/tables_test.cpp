@@ -1,4 +1,4 @@
-/// process_bag --db as its user runs it: the tables say what the output bag and the console say.
+/// The tables of process_bag --db agree with the output bag and the console.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ using test::contentOf;
 using test::kSession;
 using test::Tables;
 
-/// Column by column: what a reader of the bag sees. NaN is NULL.
+/// Compares column by column with what a reader of the bag sees. NaN is NULL.
 TEST_F(Tables, EqualTheOutputBag) {
   const test::Outcome outcome = run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -56,7 +56,7 @@ TEST_F(Tables, EqualTheOutputBag) {
   EXPECT_NEAR(number("out.sqlite", "SELECT duration FROM runs"), 29.8, 0.2);
 }
 
-/// Loads of turns and counted cycles, as their messages have them.
+/// Loads of revolutions and counted cycles agree with their messages.
 TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
   ASSERT_EQ(run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite")).exit_code, 0);
   TurnLoads turn;
@@ -93,7 +93,7 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
   }
 }
 
-/// Each alarm of the output bag, from its first message to the last of its level.
+/// Each alarm of the output bag lasts from its first message to the last of its level.
 TEST_F(Tables, HoldTheAlarms) {
   const test::TemporaryFile limits(
       "limit_blow_energy_least_warn_J: 980.0\nlimit_blow_energy_greatest_warn_J: 1020.0\n"
@@ -149,7 +149,7 @@ TEST_F(Tables, KnowInputParametersAndMachine) {
   EXPECT_NE(yaml.find("crank_length_m: "), std::string::npos);
   for (const char* part : {"/tmp", ".bag", "mo100_100hz"})
     EXPECT_EQ(contentOf(path("shipped.sqlite")).find(part), std::string::npos) << part;
-  // Where a node logs and counts is in a log's parameters, but no property of the machine.
+  // Paths of log and ledger are among a log's parameters but are no property of the machine.
   EXPECT_EQ(contentOf(path("paths.sqlite")).find("/tmp"), std::string::npos);
   const std::string hash = "SELECT parameters_sha256 FROM runs";
   EXPECT_EQ(ask("paths.sqlite", hash), ask("shipped.sqlite", hash));
@@ -183,7 +183,7 @@ TEST_F(Tables, TracesAreSamplesOfTheirTurn) {
             (std::vector<std::string>{"typical", "worst"}));
   EXPECT_EQ(ask("out.sqlite", "SELECT DISTINCT turn FROM traces WHERE kind = 'worst'"),
             ask("out.sqlite", "SELECT turn FROM turns ORDER BY amplitude DESC LIMIT 1"));
-  // The typical turn lies in the middle half of all.
+  // The typical revolution's amplitude lies in the middle half of all.
   EXPECT_NEAR(number("out.sqlite",
                      "SELECT avg(t.amplitude <= (SELECT amplitude FROM turns WHERE turn = "
                      "(SELECT turn FROM traces WHERE kind = 'typical'))) FROM turns t"),
@@ -191,7 +191,7 @@ TEST_F(Tables, TracesAreSamplesOfTheirTurn) {
   for (const char* kind : {"typical", "worst"}) {
     const std::string of_kind = std::string(" FROM traces JOIN turns USING(run_id, turn) WHERE kind = '") + kind + "'";
     EXPECT_EQ(number("out.sqlite", "SELECT sum(time <= 0.0 OR time > period)" + of_kind), 0.0);
-    // Samples 10 ms apart; a sample is at most the peak, which is found between samples.
+    // Samples are 10 ms apart. None exceeds the peak, which is found between samples.
     EXPECT_NEAR(number("out.sqlite", "SELECT count(*) * 0.01 - period" + of_kind), 0.0, 0.011);
     EXPECT_LE(number("out.sqlite", "SELECT max(force_z) / amplitude" + of_kind), 1.0 + 1e-9);
     EXPECT_GT(number("out.sqlite", "SELECT max(force_z) / amplitude" + of_kind), 0.5);
