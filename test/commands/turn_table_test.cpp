@@ -1,4 +1,4 @@
-// The command turn_table as its user meets it: what it prints, its errors and exit codes.
+// The command turn_table: output, errors and exit codes.
 #include <cmath>
 
 #include "support/command.h"

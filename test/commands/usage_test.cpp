@@ -55,7 +55,7 @@ TEST(Usage, OutputThatCannotBeWrittenIsAnError) {
   }
 }
 
-/// The ledger's library, and SQLite with it, is loaded when a ledger is asked for (ros/ledger.test).
+/// The ledger's library and SQLite with it are loaded only when a ledger is requested (ros/ledger.test).
 TEST(HammerLoadsNode, LinksNeitherGrappleNorSqliteNorOpenssl) {
   const test::Outcome linked = test::runCommand("ldd", HAMMER_LOADS_HAMMER_LOADS_NODE);
   ASSERT_NE(linked.out.find("libhammer_loads_pipeline.so"), std::string::npos) << linked.out;

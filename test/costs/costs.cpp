@@ -34,7 +34,7 @@ void add(const std::string& name, std::size_t evaluations, Pass pass) {
 
 Settings shipped() { return *load(configDirectory(), {}).value; }
 
-/// Evenly spaced angles of a turn, none at the blow [rad].
+/// Returns evenly spaced angles of a revolution, none at the blow [rad].
 std::vector<double> turn() {
   std::vector<double> angles;
   for (std::size_t i = 0; i < kStates; ++i) angles.push_back(kTwoPi * (static_cast<double>(i) + 0.5) / kStates);
@@ -76,7 +76,7 @@ void addBatch(const Mechanism& mechanism, const char* name, Level level) {
       });
 }
 
-/// Crank readings of a hammer at work at 1 kHz, what the level knows being there: links with masses, an elastic rod.
+/// Returns 1 kHz readings of a working hammer with what the level models: links with masses, an elastic rod.
 std::vector<simulation::CrankReading> workingReadings(const Settings& settings, Level level) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = settings.mechanism.parameters();
@@ -109,7 +109,7 @@ void addFilter(const Settings& settings, const char* name, Level level) {
   });
 }
 
-/// counts: turn loads and cycles of the shipped channels as well.
+/// Adds the cost of a pipeline; counts: with revolution loads and cycles of the shipped channels.
 void addPipeline(const Settings& settings, const char* name, Level level, bool counts = false) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
   const auto pipeline = std::make_shared<Pipeline>(settings.mechanism, withLevel(settings.pipeline, level));
@@ -124,7 +124,7 @@ void addPipeline(const Settings& settings, const char* name, Level level, bool c
   });
 }
 
-/// With the shipped boom under it, level rocker.
+/// Adds the cost of a pipeline on the shipped boom at level rocker.
 void addOnBoom(const simulation::Session& session, const char* name, const char* keys, bool sensors) {
   add(name, session.crank.size(), [settings = accuracy::shippedBoom(keys), session, sensors] {
     accuracy::SessionPlayer player(settings.mechanism, settings.pipeline, settings.boom, session);
@@ -136,7 +136,7 @@ void addOnBoom(const simulation::Session& session, const char* name, const char*
 constexpr std::size_t kSamples = 100000, kChannels = 20, kSamplesOfTurn = 200;
 constexpr double kScale = 200000.0;  // [N]
 
-/// A pulse a turn with noise of a thousandth of the scale.
+/// Returns a load of one pulse per revolution, with noise of a thousandth of the scale.
 std::vector<double> hammerLoad() {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 1e-3 * kScale);

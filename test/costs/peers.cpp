@@ -50,8 +50,8 @@ struct CrankState {
   double angle, speed, acceleration;  ///< [rad], [rad/s], [rad/s2]
 };
 
-/// Angles of rod and rocker by the law of cosines and their derivatives by the closed loop, as a user of a general
-/// library computes them; the crank between 0 and 2 pi, not at the blow.
+/// Angles of rod and rocker by the law of cosines and derivatives from the closed loop, as a user of a general library
+/// computes them. The crank lies between 0 and 2 pi, not at the blow.
 struct Closure {
   Closure(const LinkLengths& l, const CrankState& crank) {
     const Complex b = std::polar(l.crank, crank.angle), from_d = b - l.pivot_distance;
@@ -75,7 +75,7 @@ struct Closure {
   double beta, psi, beta_rate, psi_rate, beta_accel, psi_accel;
 };
 
-/// Load on the hull, moment about D, from the base's reactions in the mechanism's frame.
+/// Returns the load on the hull with the moment about D from the base's reactions in the mechanism's frame.
 Eigen::Vector3d seenFromHull(const Mechanism& mechanism, const Eigen::Vector3d& base) {
   const Complex turned = Complex(base[0], base[1]) * Complex(mechanism.cosComAngle(), -mechanism.sinComAngle());
   return {turned.real(), -turned.imag(), -base[2]};
@@ -92,7 +92,7 @@ class KdlDynamics {
   KdlDynamics& operator=(const KdlDynamics&) = delete;
 
   void setTipLoad(const KDL::Wrench& load) { external_.back() = load; }
-  /// Torques of the joints that give the motion q, rate, acceleration.
+  /// Returns the joint torques for the motion q, rate, acceleration.
   const Eigen::VectorXd& torques() {
     solver_.CartToJnt(q, rate, acceleration, external_, torque_);
     return torque_.data;
@@ -123,7 +123,7 @@ Link rockerOf(const HammerParameters& p) {
           p.rocker_inertia_about_pivot - p.rocker_mass * p.rocker_com_distance * p.rocker_com_distance};
 }
 
-/// Links from a base at D that three joints hold; the first link turns about a pivot beside D [m].
+/// Returns links that three joints hold from a base at D; the first link rotates about a pivot beside D [m].
 KDL::Chain heldChain(double pivot, const std::vector<Link>& links) {
   KDL::Chain chain;
   chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::TransX)));
@@ -139,8 +139,8 @@ KDL::Chain heldChain(double pivot, const std::vector<Link>& links) {
   return chain;
 }
 
-/// Crank and rod as one chain, the rocker as another, both from the held base: the torques of its joints are the hull's
-/// load. No pin force is needed: KDL closes no loop, and internal forces cancel in the sum.
+/// Models crank and rod as one chain and the rocker as another, both from the held base. The forces of the base's
+/// joints are the hull's load. No pin force is needed: KDL closes no loop, and internal forces cancel in the sum.
 class KdlHammer {
  public:
   explicit KdlHammer(const Mechanism& mechanism)
@@ -187,7 +187,7 @@ class KdlBoom {
 };
 
 #ifdef HAMMER_LOADS_MUJOCO
-/// A model from its text, with the memory of one evaluation.
+/// Model built from its text, with the memory of one evaluation.
 class MujocoModel {
  public:
   explicit MujocoModel(const std::string& text) {
@@ -208,7 +208,7 @@ class MujocoModel {
     mj_inverse(model_.get(), data_.get());
     return {data_->qfrc_inverse, model_->nv};
   }
-  /// Torques of a load on the last body at a place in its axes, after torques().
+  /// Returns the joint torques of a load at a place on the last body, in its axes; call after torques().
   Eigen::VectorXd torquesOfTipLoad(const Eigen::Vector3d& place, const Wrench& load) {
     const int body = model_->nbody - 1;
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data_->xmat + 9 * body);
@@ -237,7 +237,7 @@ std::string textOfLink(double x, const Link& link) {
   return out.str();
 }
 
-/// The same cut as KdlHammer's as one tree.
+/// Returns the two chains of KdlHammer as one tree.
 std::string textOfHammer(const HammerParameters& p) {
   return "<mujoco><compiler angle='radian' boundmass='1e-9' boundinertia='1e-12'/><option gravity='0 0 0'/><worldbody>"
          "<body><joint type='slide' axis='1 0 0'/><joint type='slide' axis='0 1 0'/><joint type='hinge' axis='0 0 "
@@ -270,7 +270,7 @@ std::string textOf(const KDL::Vector& v) {
   return out.str();
 }
 
-/// A chain as nested bodies, each at its joint; a segment's inertia is about its centre of mass in its tip's axes.
+/// Returns a chain as nested bodies at their joints; a segment's inertia is about its centre in its tip's axes.
 std::string textOfChain(const KDL::Chain& chain) {
   std::ostringstream out;
   out.precision(17);

@@ -1,5 +1,5 @@
-// A recording of the shipped machine at work on its boom, of any length: crank and IMU at 1 kHz, pressures at 200 Hz
-// and joints at 50 Hz on the topics of the launch files. Usage: recording OUT.bag SECONDS
+// Records the shipped machine at work on its boom for any length of time: crank and IMU at 1 kHz, pressures at 200 Hz
+// and joints at 50 Hz, on the topics of the launch files. Usage: recording OUT.bag SECONDS
 #include <sensor_msgs/FluidPressure.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>

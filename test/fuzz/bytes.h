@@ -1,4 +1,4 @@
-/// What the fuzz targets share: numbers out of an input's bytes, and a check that ends the program.
+/// Shared by the fuzz targets: numbers from an input's bytes, and a check that ends the program.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace hammer_loads::test {
 
-/// What is cut off at the end counts as zeros.
+/// Reads numbers from bytes; bytes missing at the end count as zeros.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}

@@ -1,4 +1,4 @@
-// What the fuzzer begins with, what it has ever found, and a fixed number of mutations of both, without the fuzzer.
+// Runs the fuzzer's start corpus, all its findings and a fixed number of mutations of both, without the fuzzer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using Input = std::vector<std::uint8_t>;
 
-/// Files of the directories in HAMMER_LOADS_FUZZ_INPUTS, by name; all config files as one input are whole settings.
+/// Returns the files in HAMMER_LOADS_FUZZ_INPUTS by name; all config files as one input are whole settings.
 std::vector<Input> inputs() {
   std::vector<std::filesystem::path> files;
   std::istringstream directories(HAMMER_LOADS_FUZZ_INPUTS);

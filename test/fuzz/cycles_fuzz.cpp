@@ -1,7 +1,7 @@
-// Any series, whole and in pieces: the counts agree and are possible.
+// Counts any series as a whole and in pieces: the counts agree and are possible.
 //
-// Bytes of an input: the classes, then samples, each an operation and its arguments; what is cut off at the end counts
-// as zeros.
+// The bytes of an input are the classes, then samples, each an operation and its arguments. Bytes missing at the end
+// count as zeros.
 #include <cmath>
 #include <cstdint>
 
@@ -66,13 +66,13 @@ class Session {
     exact_.add(value);
   }
 
-  /// A new counter, as after a restart.
+  /// Replaces the counter by a new one, as after a restart.
   void cut() {
     append(piece_.take(), sum_);
     piece_ = CycleCounter(grid_);
   }
 
-  /// Ranges and means are finite numbers, sorted by range.
+  /// Checks that ranges and means are finite and sorted by range.
   static void check(const std::vector<RangeMean>& cycles) {
     double before = 0.0;
     for (const RangeMean& c : cycles) {

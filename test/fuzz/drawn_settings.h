@@ -1,4 +1,4 @@
-/// Settings out of an input's bytes: every number of the shipped files, anywhere within what the reader accepts.
+/// Settings from an input's bytes: every number of the shipped files, anywhere within what the reader accepts.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -25,7 +25,7 @@ inline const Settings& shippedSettings() {
 
 using Numbers = std::map<std::string, double>;
 
-/// The shipped settings with these numbers and words instead.
+/// Returns the shipped settings with these numbers and words replaced.
 inline Checked<Settings> settingsWith(const Numbers& numbers, const std::map<std::string, std::string>& words = {}) {
   std::vector<std::string> problems;
   static const ParameterMap shipped = parameterMap(YAML::Load(shippedSettings().yaml), {}, problems).value();
@@ -43,14 +43,14 @@ inline Checked<Settings> settingsWith(const Numbers& numbers, const std::map<std
   return load(configDirectory(), given);
 }
 
-/// A number of the settings and the bounds that its refusal names.
+/// A number among the settings and the bounds that its error message states.
 struct NumberKey {
   std::string name;
   double least{}, most{};
   bool or_zero{};
 };
 
-/// As the line says it: `... must be [0 or] a number in [LEAST, MOST] ...`.
+/// Reads the bounds from the message `... must be [0 or] a number in [LEAST, MOST] ...`.
 inline std::optional<NumberKey> boundsIn(const std::string& key, const std::string& line) {
   const std::size_t at = line.find("in [");
   if (line.rfind(key + ":", 0) != 0 || at == std::string::npos) return std::nullopt;
@@ -59,7 +59,7 @@ inline std::optional<NumberKey> boundsIn(const std::string& key, const std::stri
   return NumberKey{key, least, std::strtod(comma + 1, nullptr), line.find("must be 0 or") != std::string::npos};
 }
 
-/// Every key whose value is a number. Each must have bounds: without them somebody's slip of the pen has none.
+/// Returns every key with a numeric value. Each must have bounds, otherwise a typing error would be accepted.
 inline const std::vector<NumberKey>& numberKeys() {
   static const std::vector<NumberKey> all = [] {
     std::vector<NumberKey> keys;
@@ -72,7 +72,7 @@ inline const std::vector<NumberKey>& numberKeys() {
         for (const std::string& line : settingsWith({{key, beyond}}).problems)
           if (!found) found = boundsIn(key, line);
       }
-      // Of these another line comes first: what they demand of each other.
+      // For these keys a message about a relation between keys comes first.
       if (!found && key.find("_length_m") != std::string::npos) found = NumberKey{key, 1e-3, 10.0, false};
       if (!found && key == "pivot_distance_m") found = NumberKey{key, 1e-3, 10.0, false};
       if (!found && key.rfind("crank_eccentricity_", 0) == 0) found = NumberKey{key, 0.0, 0.3, false};
@@ -89,7 +89,7 @@ inline const std::vector<NumberKey>& numberKeys() {
   return all;
 }
 
-/// By orders of magnitude where the bounds are.
+/// Returns a value between the bounds, spaced logarithmically where they are not negative.
 inline double between(const NumberKey& key, std::uint16_t place) {
   if (place == 0) return key.or_zero ? 0.0 : key.least;
   const double part = place / 65535.0;
@@ -99,7 +99,7 @@ inline double between(const NumberKey& key, std::uint16_t place) {
   return std::clamp(least * std::pow(key.most / least, part), key.least, key.most);
 }
 
-/// What keys demand of each other: the change-point condition, the inertia about the pivot, the levers of the blow.
+/// Enforces relations between keys: change-point condition, inertia about the pivot, levers of the blow.
 inline void makePossible(Numbers& n) {
   const YAML::Node shipped = YAML::Load(shippedSettings().yaml);
   const auto value = [&](const char* key) { return n.count(key) != 0 ? n[key] : shipped[key].as<double>(); };
@@ -114,7 +114,7 @@ inline void makePossible(Numbers& n) {
   n["striking_offset_m"] = std::clamp(value("striking_offset_m"), -std::min(most, 10.0), std::min(most, 10.0));
 }
 
-/// Nothing where the reader refuses the mixture. Takes the words, how many numbers, and each of them.
+/// Reads the words, the number of changes and each change. Returns nothing if the reader rejects the result.
 inline std::optional<Settings> drawnSettings(Bytes& bytes) {
   const auto choice = bytes.take<std::uint8_t>(), changes = bytes.take<std::uint8_t>();
   std::map<std::string, std::string> words;

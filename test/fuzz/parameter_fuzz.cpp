@@ -1,4 +1,4 @@
-// Any parameter file: settings, or problems of one line each; settings that are accepted read back as the same.
+// Any parameter file gives settings or one-line problems; accepted settings read back as the same settings.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -33,7 +33,7 @@ class File {
   int descriptor_;
 };
 
-/// Every parameter in force; nothing when something is wrong.
+/// Returns all parameters in force, or nothing if the file is rejected.
 std::string yamlOf(const void* data, std::size_t size) {
   const File file(data, size);
   std::vector<std::string> problems, notes;

@@ -1,8 +1,8 @@
-// Any sequence of input messages: loads are finite or refused, and every message is counted once.
+// For any sequence of input messages the loads are finite or refused, and every message is counted once.
 //
-// Bytes of an input: first the level and the estimator, then messages, each an operation and its arguments; what is cut
-// off at the end counts as zeros. The common operation is a plausible sample, so that the filter is at work when the
-// others come. Operation 254 begins anew with other settings: any that the reader accepts.
+// The bytes of an input are the level and the estimator, then messages, each an operation and its arguments. Bytes
+// missing at the end count as zeros. The common operation is a plausible sample, so that the filter is at work when the
+// others come. Operation 254 restarts with other settings: any that the reader accepts.
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -131,7 +131,7 @@ class Session {
     require(loads.turn_ends <= loads.ends.size());
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
       const TurnEnd& end = loads.ends[i];
-      // An energy outside of what is possible is NaN, whether or not its deviation explains it.
+      // An energy outside the possible range is NaN, whether or not its standard deviation explains it.
       require(std::isnan(end.blow.energy) || (std::isfinite(end.blow.energy) && !end.blow.impossible));
       require(std::isfinite(end.blow.support_impulse_z));
       if (end.pulse) require(std::isfinite(end.pulse->amplitude) && std::isfinite(end.pulse->half_sine_rms_error));
@@ -157,7 +157,7 @@ class Session {
     }
   }
 
-  /// The nominal turn of a hammer drawn next to a dead centre takes a second with the instruments, once a column.
+  /// With instruments, the nominal revolution of a hammer near a dead centre takes a second, once per column.
   static constexpr int kMostBegun = 4;
 
   Bytes bytes_;

@@ -1,4 +1,4 @@
-/// Properties over random linkages of the grapple's topology: one branch, kept, and right to 50 digits.
+/// Properties of random linkages of the grapple's topology: one branch, kept, and correct to 50 digits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace hammer_loads {
 namespace {
 
-/// theta2 and theta5 over the whole working branch by Newton alone in steps so small that the curve cannot be left:
-/// knows nothing of predictors, signs, polynomials and limits but where to stop.
+/// Computes theta2 and theta5 over the whole working branch by Newton's method alone, in steps too small to leave the
+/// curve. It uses no predictors, signs or polynomials, and the limits only to know where to stop.
 class DenseBranch {
  public:
   explicit DenseBranch(const Grapple& grapple) : grapple_(grapple), group_(grapple.parameters()) {
@@ -24,7 +24,7 @@ class DenseBranch {
     extend(start, high);
   }
 
-  /// Linear between nodes.
+  /// Interpolates linearly between nodes.
   std::pair<double, double> at(double slider) const {
     const auto after = std::lower_bound(nodes_.begin() + 1, nodes_.end() - 1, slider,
                                         [](const Angles& n, double s) { return n.slider < s; });
@@ -41,7 +41,7 @@ class DenseBranch {
     double slider, theta2, theta5;
   };
 
-  /// Steps such that no angle moves by more than 0.001 rad; ends where those become tiny, beside the limit.
+  /// Steps so that no angle moves by more than 0.001 rad; ends beside the limit, where the steps become tiny.
   void extend(Angles here, double limit) {
     const GrappleParameters& p = grapple_.parameters();
     const SliderDrive drive(p);

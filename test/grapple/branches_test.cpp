@@ -28,7 +28,7 @@ TEST(Branches, FindsAllSixOfTheSixModeCase) {
   const Branches found = enumerateBranches(LeverGroup(p), pinA(p, 0.4));
   ASSERT_EQ(found.count, 6);
   EXPECT_FALSE(found.self_motion);
-  // To 40 digits by Newton elsewhere.
+  // Reference values computed independently by Newton's method to 40 digits.
   for (const Angles& expected : {Angles{-2.945252945483, 0.463930253426},
                                  {-2.581850934118, -2.559905175605},
                                  {-2.054058583304, -0.107159404127},
@@ -40,8 +40,8 @@ TEST(Branches, FindsAllSixOfTheSixModeCase) {
             3);
 }
 
-/// Modes counted without the polynomial: seen from link 5 the jaw's side DB is the crank of a four-bar D-B-C-E; a mode
-/// is a crank angle at which |OA| has its given value. Counts sign changes over a scan on both sides of the four-bar.
+/// Counts modes without the polynomial, as sign changes over a scan on both sides of a four-bar. Seen from link 5, the
+/// jaw's side DB is the crank of D-B-C-E. A mode is a crank angle at which |OA| has its given value.
 int modesByScan(const GrappleParameters& p, double distance, int samples) {
   const Planar d{p.od, 0.0}, e = p.oe * direction(p.doe), bc = p.ac * direction(p.bac) - Planar{p.ab, 0.0};
   int modes = 0;
@@ -72,13 +72,13 @@ TEST(Branches, AreAsManyAsAScanOfTheConfigurationCurveFinds) {
     const Planar a = pinA(p, random(-kPi, kPi));
     const Branches found = enumerateBranches(LeverGroup(p), a);
     with_six += found.count == 6;
-    // A scan overlooks pairs closer than its step and pairs across the end of a side: look closer before judging.
+    // A scan misses pairs closer than its step and pairs across the end of a side, so a finer scan decides.
     if (modesByScan(p, norm(a), 2000) == found.count || modesByScan(p, norm(a), 200000) == found.count) continue;
     ++differing;
     EXPECT_GT(found.count, modesByScan(p, norm(a), 200000)) << "linkage " << i << ": a mode is missing";
   }
   EXPECT_GT(with_six, 0);
-  EXPECT_LE(differing, 5);  // the scan's own losses at the ends of its sides
+  EXPECT_LE(differing, 5);  // modes that the scan misses at the ends of its sides
 }
 
 TEST(Branches, SpecialTrianglesLoseNoMode) {
@@ -86,7 +86,7 @@ TEST(Branches, SpecialTrianglesLoseNoMode) {
   for (int i = 0; i < 250; ++i) {
     GrappleParameters p = test::randomLinkage(random);
     const int kind = i % 4;
-    const double scale = kind == 0 ? random(0.5, 2.0) : 1.0;  // similar, else congruent
+    const double scale = kind == 0 ? random(0.5, 2.0) : 1.0;  // similar triangles, else congruent
     if (kind <= 2) {
       p.od = scale * p.ab;
       p.oe = scale * p.ac;

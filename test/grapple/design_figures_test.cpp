@@ -16,7 +16,7 @@ DesignFigures figuresOf(const GrappleParameters& p) {
   return designFigures(test::grappleOf(p), p.slider_closed, p.slider_open);
 }
 
-/// The definitions, literally, from a fine polyline.
+/// Evaluates the definitions literally on a fine polyline.
 struct Polyline {
   std::vector<double> arc, y;
   explicit Polyline(const GrappleParameters& p, int points = 40000) {
@@ -45,7 +45,7 @@ TEST(DesignFigures, FollowTheirDefinitions) {
     const Polyline path(p);
     const std::size_t end = path.end(0.8), last = path.y.size() - 1;
     EXPECT_NEAR(f.path_length, path.arc.back(), 1e-8);
-    EXPECT_NEAR(f.line_height, 0.5 * (path.low(end) + path.high(end)), 5e-6);  // the polyline's own step
+    EXPECT_NEAR(f.line_height, 0.5 * (path.low(end) + path.high(end)), 5e-6);  // tolerance: the polyline's step
     EXPECT_NEAR(f.scoop_height, path.y[last] - f.line_height, 1e-12);
     EXPECT_NEAR(f.deviation_first_80, path.deviation(end), 1e-6);
     EXPECT_NEAR(f.deviation_whole, path.deviation(last), 1e-8);
@@ -92,8 +92,8 @@ TEST(DesignFigures, StraightSetIsStraighterButDropsAtTheOpenEnd) {
 }
 
 TEST(DesignFigures, NoStretchOf200MillimetresRises70Millimetres) {
-  // The paper's L = 200 mm with h = 70 mm: neither set has it anywhere on its path, whether L is meant per jaw or for
-  // both.
+  // The paper states L = 200 mm with h = 70 mm. Neither set has this anywhere on its path, whether L is meant per jaw
+  // or for both.
   for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
     const Grapple grapple = test::grappleOf(p);
     for (const double extent : {0.1, 0.2}) {

@@ -1,5 +1,5 @@
-/// The grapple's whole configuration curve without iteration, to 50 digits: an oracle that shares nothing with the
-/// code.
+/// Computes the grapple's whole configuration curve without iteration to 50 digits, as an oracle that shares nothing
+/// with the code.
 ///
 /// Seen from link 5 (O-E-D) the jaw's side DB is the crank of a four-bar D-B-C-E. Its angle psi gives B, then C by two
 /// circles, A by similarity, the distance |OA| and with it rocker 1, the true orientation, H and the slider: every
@@ -71,7 +71,7 @@ struct ExplicitPose {
   }
 };
 
-/// Which of the two circles' points, of the two triangles O-O1-A and of the two slider positions.
+/// Signs that select a point of the two circles, a triangle O-O1-A and a slider position.
 using Signs = std::array<int, 3>;
 
 inline std::optional<ExplicitPose> explicitPose(const GrappleParameters& k, const Digits50& psi, const Signs& signs) {
@@ -87,10 +87,10 @@ inline std::optional<ExplicitPose> explicitPose(const GrappleParameters& k, cons
   const PsiJet h_squared = bc_squared / l - along * along;
   if (h_squared.v <= 0) return std::nullopt;
   const PsiPoint bc = along * be + PsiJet(double(signs[0])) * sqrt(h_squared) * across(be);
-  // A by similarity: (A - B)/(C - B) as in the lever.
+  // A follows by similarity: (A - B)/(C - B) is as in the lever.
   const PsiPoint ratio = PsiJet(-k.ab) / bc_squared * conj(bc_in_lever);
   const PsiPoint a = b + bc * ratio;
-  // The true place of A: |OA| from here, |O1A| given.
+  // True position of A: |OA| from above, |O1A| given.
   const PsiPoint o1{PsiJet(k.o1.re), PsiJet(k.o1.im)};
   const PsiJet n = sqrt(squared(o1)), r_squared = squared(a);
   const PsiJet u = (r_squared + n * n - PsiJet(Digits50(k.o1a) * k.o1a)) / (PsiJet(2.0) * n);
@@ -113,13 +113,13 @@ inline std::optional<ExplicitPose> explicitPose(const GrappleParameters& k, cons
   return pose;
 }
 
-/// A point of the curve: which psi, which signs.
+/// A point of the curve, given by psi and the signs.
 struct CurvePlace {
   Digits50 psi;
   Signs signs{};
 };
 
-/// psi and signs of a pose computed in double precision; nothing if no combination comes near.
+/// Returns psi and signs of a pose computed in double precision, or nothing if no combination is close.
 inline std::optional<CurvePlace> placeOf(const GrappleParameters& k, const GrappleMotion& m) {
   const Digits50 psi(angleOf((m.b - m.d) * conj(m.d)));
   std::optional<CurvePlace> best;
@@ -136,7 +136,7 @@ inline std::optional<CurvePlace> placeOf(const GrappleParameters& k, const Grapp
   return best;
 }
 
-/// The exact pose at the slider position of a pose computed in double precision.
+/// Returns the exact pose at the slider position of a pose computed in double precision.
 inline std::optional<ExplicitPose> exactPoseOf(const GrappleParameters& k, const GrappleMotion& m) {
   auto place = placeOf(k, m);
   if (!place) return std::nullopt;
@@ -151,7 +151,7 @@ inline std::optional<ExplicitPose> exactPoseOf(const GrappleParameters& k, const
   return explicitPose(k, place->psi, place->signs);
 }
 
-/// The exact fold next to a pose: ds/dpsi = 0.
+/// Returns the exact fold next to a pose, where ds/dpsi = 0.
 inline std::optional<ExplicitPose> exactFoldNear(const GrappleParameters& k, const GrappleMotion& m) {
   auto place = placeOf(k, m);
   if (!place) return std::nullopt;

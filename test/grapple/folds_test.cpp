@@ -10,8 +10,8 @@ namespace {
 
 FirstRocker rockerOf(const GrappleParameters& p) { return {p.o1, p.o1a}; }
 
-/// det J = 0 exactly where the lines AO, BD and CE meet in one point or are parallel: the volume of their three
-/// normalised line coordinates, relative to lengths of one metre.
+/// Returns the volume of the three normalised line coordinates of AO, BD and CE, relative to lengths of one metre. det
+/// J = 0 exactly where these lines meet in one point or are parallel.
 double concurrency(const FirstRocker& rocker, const GroupPose& pose, double theta1) {
   const Planar a = rocker.o1 + rocker.armAt(theta1);
   struct Line {
@@ -102,7 +102,7 @@ TEST(SliderLimits, FoldsOfRandomGrapplesEqualTheExplicitCurve) {
       ASSERT_TRUE(beside) << i;
       ++tried;
       const auto fold = test::exactFoldNear(grapple->parameters(), *beside);
-      if (!fold) continue;  // Newton of the oracle left its neighbourhood
+      if (!fold) continue;  // the oracle's Newton iteration left its neighbourhood
       const double exact = static_cast<double>(fold->slider.v);
       if (std::abs(exact - limit.slider) > 1e-3 * width) continue;  // it found the next fold
       EXPECT_NEAR(limit.slider, exact, 1e-12) << i;

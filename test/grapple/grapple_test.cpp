@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-/// With one or more lines laid over the claims set.
+/// Loads the claims set with one or more lines that override it.
 auto loadClaimsWith(const std::string& lines) {
   const test::TemporaryFile over(lines + '\n');
   return loadGrapple({test::shippedFile("grapple_claims.yaml"), over.path()});

@@ -39,13 +39,13 @@ TEST(GrappleTracker, NeverLeavesTheBranchUpToTheFold) {
   p.slider_margin = 0.0;
   GrappleTracker tracker = trackerOf(p);
   test::Random random(51);
-  // Onto the fold in ever shorter steps, and away from it in one; det J keeps its sign.
+  // Moves onto the fold in ever shorter steps and away from it in one. det J keeps its sign.
   for (int i = 0; i < 2000; ++i) {
     const double distance = i % 2 == 0 ? std::pow(10.0, random(-9.0, -1.0)) : random(0.1, 0.7);
     ASSERT_EQ(tracker.update({whole.upperLimit().slider - distance, 0.0, 0.0}), SliderRefusal::kNone) << distance;
     EXPECT_LT(tracker.motion().determinant, 0.0);
     const GrappleMotion cold = *whole.at(tracker.slider().position);
-    // Beside the fold rounding moves the pose by eps/sqrt(distance).
+    // Near the fold, rounding moves the pose by eps/sqrt(distance).
     EXPECT_NEAR(tracker.motion().theta2, cold.theta2, 1e-14 / std::sqrt(distance));
   }
   EXPECT_EQ(tracker.refused(), 0u);

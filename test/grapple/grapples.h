@@ -19,12 +19,12 @@ inline std::string shippedFile(const std::string& name) {
   return std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/" + name;
 }
 
-/// Published ten lengths and the angles fitted to the paper's claims.
+/// Returns the ten published lengths with the angles fitted to the paper's claims.
 inline GrappleParameters claimsParameters() {
   return loadGrapple({shippedFile("grapple_claims.yaml")}).value.value().parameters();
 }
 
-/// The same with the angles fitted to the straightest path.
+/// Returns the ten published lengths with the angles fitted to the straightest path.
 inline GrappleParameters straightParameters() {
   return loadGrapple({shippedFile("grapple_straight.yaml")}).value.value().parameters();
 }
@@ -48,7 +48,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Lengths and angles anywhere, no thought of a working machine; no stroke and no reference yet.
+/// Draws any lengths and angles, without regard to a working machine; stroke and reference are not set.
 inline GrappleParameters randomLinkage(Random& random) {
   GrappleParameters p;
   p.o1 = {random(-1.5, 1.5), random(-1.5, 1.5)};
@@ -71,7 +71,7 @@ inline GrappleParameters randomLinkage(Random& random) {
   return p;
 }
 
-/// Six modes at theta1 = 0.4 rad.
+/// Returns a linkage with six modes at theta1 = 0.4 rad.
 inline GrappleParameters sixModeLinkage() {
   GrappleParameters p;
   p.o1 = {1.3, -1.3};
@@ -88,11 +88,11 @@ inline GrappleParameters sixModeLinkage() {
   return p;
 }
 
-/// Between two angles [rad], whole turns aside.
+/// Returns the difference of two angles modulo whole revolutions [rad].
 inline double apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * kPi)); }
 
-/// A random linkage in one of its poses at a random slider position, with the shortest of strokes there. About one draw
-/// in ten assembles.
+/// Draws a random linkage in one of its poses at a random slider position, with a very short stroke there. About one
+/// draw in ten assembles.
 inline std::optional<Grapple> randomGrapple(Random& random) {
   constexpr double kStroke = 1e-5;
   GrappleParameters p = randomLinkage(random);

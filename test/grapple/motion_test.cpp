@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kPositions = 1e-12, kFirst = 1e-10, kSecond = 1e-8;  // demanded, relative to max(1, |value|)
+constexpr double kPositions = 1e-12, kFirst = 1e-10, kSecond = 1e-8;  // required, relative to max(1, |value|)
 
 void expectClose(double value, double expected, double tolerance, const std::string& what) {
   EXPECT_NEAR(value, expected, tolerance * std::max(1.0, std::abs(expected))) << what;
@@ -49,7 +49,7 @@ TEST(GrappleMotion, DerivativesGrowAsTheyMustBesideTheFold) {
   expectClose(near(1e-4).dp, {80.36312, -0.77317}, 1e-5, "dP/ds at 1e-4");
   EXPECT_NEAR(near(1e-6).dp.re, 779.453, 1e-3);
   EXPECT_NEAR(near(1e-8).dp.re, 7770.7, 0.1);
-  // Rounding is amplified by 1/det J, which falls with the root of the distance: e^-1/2, then e^-1, then e^-2.
+  // det J falls with the root of the distance e and amplifies rounding: e^-1/2 in positions, then e^-1, then e^-2.
   for (const double distance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
     const GrappleMotion m = near(distance);
     const auto exact = test::exactPoseOf(p, m);
@@ -94,7 +94,7 @@ TEST(GrappleMotion, TimeDerivativesEqualDifferencesAndTheLeftJawMirrorsThem) {
     return rightJaw(*grapple.at(0.3 + speed * t + 0.5 * acceleration * t * t), speed + acceleration * t, acceleration);
   };
   const JawMotion before = jawAt(-step), now = jawAt(0.0), after = jawAt(step);
-  // Central differences: error step^2/6 times the third or fourth derivative, here below 100.
+  // Central differences have the error step^2/6 times the third or fourth derivative, here below 100.
   const double tolerance = 100.0 * step * step;
   const auto difference = [&](double b, double a) { return (a - b) / (2.0 * step); };
   EXPECT_NEAR(now.edge_velocity.re, difference(before.edge.re, after.edge.re), tolerance);

@@ -1,4 +1,4 @@
-/// What the paper's printed formulas give, beside what holds.
+/// Results of the paper's printed formulas compared with the correct ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,14 +24,14 @@ TEST(GebelsFormulas, FailWhereTheErrataStateIt) {
   EXPECT_NEAR(norm(inverted), norm(m.a), 1e-15);
   const GrappleMotion at_45 = *grapple.at(0.178894907739);
   EXPECT_NEAR(at_45.theta5, -kPi / 4, 1e-11);
-  EXPECT_GT(std::abs(at_45.determinant), 0.1);  // nothing is singular there but the printed matrix
+  EXPECT_GT(std::abs(at_45.determinant), 0.1);  // only the printed matrix is singular there
   // phi_O1A = arccos(...) + phi_HO1A lacks the direction of O1G and the sign of the closure.
   const Planar g = m.g - p.o1;
   const double bracket = std::acos((p.o1h * p.o1h + squaredNorm(g) - p.gh * p.gh) / (2.0 * norm(g) * p.o1h));
   EXPECT_NEAR(bracket, 1.301980, 5e-7);
   EXPECT_NEAR(angleOf(m.h - p.o1), 0.268816, 5e-7);
   EXPECT_NEAR(kPi / 2 - bracket, angleOf(m.h - p.o1), 1e-14);
-  // arctg instead of atan2: off by pi while P lies inside of B or A.
+  // arctg in place of atan2 is off by pi while P lies inside of B or A.
   const GrappleMotion closed = *grapple.at(0.008);
   EXPECT_NEAR(angleOf(closed.p - closed.b), -2.626708, 5e-7);
   EXPECT_NEAR(std::atan((closed.p - closed.b).im / (closed.p - closed.b).re), 0.514884, 5e-7);
@@ -39,8 +39,8 @@ TEST(GebelsFormulas, FailWhereTheErrataStateIt) {
   EXPECT_NEAR(std::atan((closed.p - closed.a).im / (closed.p - closed.a).re), 1.046659, 5e-7);
 }
 
-/// The paper's chain: P demanded on a line, A from link 1, B by triangle ABP, D on link 3; E and C would then have to
-/// keep their distances. Returns the largest misses of |OD| and |CE|, lever and rocker in their best fit through C, E.
+/// Follows the paper's chain: P on a line, A from link 1, B by triangle ABP, D on link 3. E and C would then have to
+/// keep their distances. Returns the largest errors of |OD| and |CE|.
 std::pair<double, double> missesOnTheLine(const GrappleParameters& p, double height, double x_most) {
   const Grapple grapple = test::grappleOf(p);
   double miss_od = 0.0, miss_ce = 0.0;

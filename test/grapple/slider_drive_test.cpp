@@ -11,7 +11,7 @@ namespace {
 
 using Digits100 = boost::multiprecision::cpp_bin_float_100;
 
-/// theta_H by the law of cosines, as the paper has it, to 100 digits.
+/// Returns theta_H by the law of cosines as in the paper, to 100 digits.
 Digits100 directionOfH(const GrappleParameters& p, const Digits100& slider) {
   const Digits100 gx = Digits100(p.slider_x) - p.o1.re, gy = slider - p.o1.im;
   const Digits100 distance = sqrt(gx * gx + gy * gy), r(p.o1h), l(p.gh);
@@ -22,7 +22,7 @@ struct Exact {
   Digits100 angle, first, second;
 };
 
-/// Central differences with a step of 1e-20: error some 1e-40 relative to the fourth derivative.
+/// Uses central differences with a step of 1e-20: error some 1e-40 relative to the fourth derivative.
 Exact exactDrive(const GrappleParameters& p, double slider) {
   const Digits100 step("1e-20"), s(slider);
   const Digits100 before = directionOfH(p, s - step), now = directionOfH(p, s), after = directionOfH(p, s + step);
@@ -43,7 +43,7 @@ TEST(SliderDrive, EqualsTheLawOfCosinesToHundredDigits) {
     const auto relative = [](double value, const Digits100& truth) {
       return static_cast<double>(abs(value - truth) / (1 + abs(truth)));
     };
-    // Rounding of |O1G| and of the four lengths' sums moves the flat triangle by some 1e-16: divided by its height.
+    // Rounding of |O1G| and of sums of the four lengths moves a flat triangle by 1e-16 over its height.
     const auto reach = drive.reachAround(slider);
     ASSERT_TRUE(reach);
     const double from_dead_centre = std::min(slider - reach->low, reach->high - slider);

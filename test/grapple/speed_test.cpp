@@ -1,4 +1,4 @@
-/// What one step costs: time and heap.
+/// Cost of one step: time and heap allocations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Median over batches of the time per call [ns].
+/// Returns the median over batches of the time per call [ns].
 template <typename Call>
 double medianTime(int batches, int calls, const Call& call) {
   std::vector<double> times;
@@ -26,7 +26,7 @@ double medianTime(int batches, int calls, const Call& call) {
   return times[static_cast<std::size_t>(batches / 2)];
 }
 
-/// A slider that swings over the stroke, 2000 samples per swing (2 s at 1 kHz).
+/// Returns a slider that moves over the stroke and back, 2000 samples per cycle (2 s at 1 kHz).
 std::vector<double> swing(const GrappleParameters& p) {
   std::vector<double> sliders;
   const double middle = 0.5 * (p.slider_closed + p.slider_open), half = 0.5 * (p.slider_open - p.slider_closed);
@@ -34,7 +34,7 @@ std::vector<double> swing(const GrappleParameters& p) {
   return sliders;
 }
 
-constexpr double kWarmLimit = 300.0, kColdLimit = 20000.0;  // [ns], demanded
+constexpr double kWarmLimit = 300.0, kColdLimit = 20000.0;  // [ns], required
 
 TEST(Speed, StaysBelowItsBoundInAWarmStepOfBothJaws) {
   for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {

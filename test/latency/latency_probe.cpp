@@ -1,7 +1,8 @@
-// Time from publishing a crank sample to receiving its wrench: live node, nodelet in this process, and a bare relay of
-// the sample, in turn, so that each has the machine to itself. Usage: latency_probe RATE_HZ ROUNDS
-// Prints CSV: rate_Hz,path,quantile,microseconds, quantile "ratio" being the median over the rounds of the path's
-// median over the relay's.
+// Measures the time from publishing a crank sample to receiving its wrench for the live node, a nodelet in this process
+// and a bare relay. The paths run in alternation, so that each has the machine to itself. Usage: latency_probe RATE_HZ
+// ROUNDS
+// Prints CSV: rate_Hz,path,quantile,microseconds. Quantile "ratio" is the median over the rounds of the path's median
+// over the relay's.
 #include <geometry_msgs/WrenchStamped.h>
 #include <nodelet/loader.h>
 #include <ros/callback_queue.h>
@@ -19,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kBlock = 250;  // samples of one path before the next has its turn
+constexpr int kBlock = 250;  // samples of one path before the next path follows
 constexpr std::uint32_t kQueue = 10000;
 constexpr std::size_t kMemory = 1024;  // sending times kept: more than a block
 
@@ -29,7 +30,7 @@ double quantile(std::vector<double> values, double part) {
   return values[at];
 }
 
-/// One way from a sample to an answer.
+/// A path from a sample to its answer.
 struct Path {
   std::string name;
   ros::Publisher publisher;
@@ -50,7 +51,7 @@ class Probe {
 
   bool connected() {
     ros::param::set("nodelet_loads/log_enabled", false);
-    ros::param::set("nodelet_loads/crank_zero_std_rad", 0.003);  // a known zero: nothing is withheld for it
+    ros::param::set("nodelet_loads/crank_zero_std_rad", 0.003);  // a known zero: no sample is withheld for it
     const std::string loads = ros::names::resolve("nodelet_loads");
     const ros::M_string remappings{{ros::names::resolve("crank"), ros::names::resolve("crank_of_nodelet")}};
     if (!loader_.load(loads, "hammer_loads/HammerLoadsNodelet", remappings, {})) return false;
@@ -67,8 +68,8 @@ class Probe {
       for (Path& path : paths_) {
         path.block.clear();
         measure(path);
-        // topic_tools' relay keeps ten messages and loses some on a loaded machine, which counts as
-        // later than any; the others may lose none.
+        // topic_tools' relay keeps ten messages and loses some on a loaded machine. A lost message counts as later than
+        // any other; the other paths may lose none.
         const std::size_t least = &path == &paths_.back() ? kBlock / 10 : kBlock;
         if (path.block.size() < least) {
           std::fprintf(stderr, "%s: %zu answers to %d samples\n", path.name.c_str(), path.block.size(), kBlock);
@@ -112,8 +113,8 @@ class Probe {
     return condition();
   }
 
-  /// A crank at 4 rad/s from 1 rad behind the blow on: no sample is withheld, neither beside a blow nor at the start.
-  /// Its stamp is the number of the sample.
+  /// Publishes a crank at 4 rad/s, from 1 rad after the blow on. No sample is withheld, neither beside a blow nor at
+  /// the start. The stamp is the number of the sample.
   void send(Path& path) {
     const auto message = boost::make_shared<sensor_msgs::JointState>();
     message->name = {"hammer_crank_joint"};

@@ -1,4 +1,4 @@
-/// Many states, with nothing but what doc/api.md names.
+/// Computes many states using only names from doc/api.md.
 #include API_HEADER
 
 int main() {

@@ -1,4 +1,4 @@
-/// A header that needs no other before it.
+/// Includes a header that needs no other header before it.
 #include API_HEADER
 
 int main() { return 0; }

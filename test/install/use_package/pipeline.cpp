@@ -1,4 +1,4 @@
-/// Samples to loads, with nothing but what doc/api.md names.
+/// Computes loads from samples using only names from doc/api.md.
 #include API_HEADER
 
 int main() {

@@ -1,4 +1,4 @@
-/// The pulse of a turn, from the installed parameters.
+/// Prints the pulse of a revolution from the installed parameters.
 #include <iostream>
 
 #include "hammer_loads/hammer/turn_table.h"
