@@ -64,7 +64,7 @@ TEST(BoomCalibration, CorrectsWrongNominalMasses) {
     EXPECT_TRUE(found.determined());
     const Pose3 error = staticErrors(machine, found.found, random);
     for (std::size_t k = 0; k < 3; ++k) {
-      // A hammer near the vertical has little static torque: its error is at most 1.5 % or three stated deviations.
+      // A hammer near the vertical has little static torque: its error is within 1.5 % or three standard deviations.
       EXPECT_LT(error[k], std::max(0.015, 3.0 * found.joints[k].part())) << i << found.joints[k].joint;
       ++joints, weight_as_asked += error[k] < 0.015;
       const CylinderFit& cylinder = found.cylinders[k];

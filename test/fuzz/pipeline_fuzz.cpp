@@ -157,7 +157,7 @@ class Session {
     }
   }
 
-  /// With instruments, the nominal revolution of a hammer near a dead centre takes a second, once per column.
+  /// With instrumentation, the nominal revolution of a hammer near a dead centre takes a second, once per column.
   static constexpr int kMostBegun = 4;
 
   Bytes bytes_;

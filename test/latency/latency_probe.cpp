@@ -1,8 +1,7 @@
-// Measures the time from publishing a crank sample to receiving its wrench for the live node, a nodelet in this process
-// and a bare relay. The paths run in alternation, so that each has the machine to itself. Usage: latency_probe RATE_HZ
-// ROUNDS
-// Prints CSV: rate_Hz,path,quantile,microseconds. Quantile "ratio" is the median over the rounds of the path's median
-// over the relay's.
+// Measures the time from publishing a crank sample to its wrench for the live node, a nodelet here and a bare relay.
+// The paths run in turn, so that each has the machine to itself. Usage: latency_probe RATE_HZ ROUNDS
+// Prints CSV: rate_Hz,path,quantile,microseconds. Quantile "ratio" is the median over rounds of the ratio of the path's
+// median to the relay's.
 #include <geometry_msgs/WrenchStamped.h>
 #include <nodelet/loader.h>
 #include <ros/callback_queue.h>

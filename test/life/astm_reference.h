@@ -1,4 +1,4 @@
-/// Rainflow count as ASTM E1049-85, 5.4.4, words it (three points, a start point that moves), and lists of cycles.
+/// Rainflow count as worded in ASTM E1049-85, 5.4.4 (three points, moving start point), and lists of cycles.
 #pragma once
 
 #include <algorithm>
@@ -75,7 +75,7 @@ inline CycleCount gridCount(const Series& series, const LoadGrid& grid) {
   return counter.take();
 }
 
-/// Whose classes are centred on the integers from least to greatest: a series of these keeps its values.
+/// Returns a grid with classes centred on the integers from least to greatest, so that such a series keeps its values.
 inline LoadGrid integerGrid(int least, int greatest) {
   return LoadGrid::make(least - 0.5, greatest + 0.5, greatest - least + 1).value.value();
 }

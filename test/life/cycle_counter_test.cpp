@@ -1,4 +1,4 @@
-// The counter on its grid: full scale, what is skipped, memory.
+// The counter on its grid: full scale, skipped values, memory.
 #include "hammer_loads/life/cycle_counter.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(CycleCounter, TakesNoMemoryAfterItsStart) {
   std::uniform_real_distribution<double> value(-1.1, 1.1);
   Series noise(100000);
   for (double& v : noise) v = value(random);
-  Series spiral;  // the longest residue there is
+  Series spiral;  // the longest possible residue
   for (int i = 1; i < 4096; ++i) spiral.push_back((i % 2 == 0 ? 1 : -1) * (i / 4096.0));
   for (int i = 4095; i > 0; --i) spiral.push_back((i % 2 == 0 ? -1 : 1) * (i / 4096.0));
   const std::size_t before = ::hammer_loads::test::allocations;
@@ -81,7 +81,7 @@ TEST(CycleCounter, TakesNoMemoryAfterItsStart) {
   EXPECT_EQ(::hammer_loads::test::allocations, before);
 }
 
-// Cycles of many kinds come one after another in the months of a node; its memory is that of one period.
+// A node counts many kinds of cycles over months. Its memory is that of one period.
 TEST(CycleCounter, GivesBackItsMemoryWithEachPiece) {
   CycleCounter counter(LoadGrid::make(-1.0, 1.0, 4096).value.value());
   std::mt19937 random(8);
@@ -95,7 +95,7 @@ TEST(CycleCounter, GivesBackItsMemoryWithEachPiece) {
   EXPECT_LT(::hammer_loads::test::residentMemory() - before, 2e6);
 }
 
-// More cycles of one kind than a cell holds, twice that and just as many.
+// Counts as many cycles of one kind as a cell holds, slightly more and several times as many.
 TEST(CycleCounter, ManyCyclesOfOneKindAreCounted) {
   for (const std::uint64_t cycles : {65535ULL, 65536ULL, 65537ULL, 200000ULL}) {
     CycleCounter counter(integerGrid(0, 9));

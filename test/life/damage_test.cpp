@@ -1,4 +1,4 @@
-// Figures against printed values, hand calculation and finite differences.
+// Results compared with printed values, hand calculation and finite differences.
 #include "hammer_loads/life/damage.h"
 
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@ TEST(EquivalentLoad, EqualsO1OfTheStandardsExample) {
   EXPECT_NEAR(equivalentLoad(kFigure6, 10.0, 1.0, kNone).value, 8.82000396, 5e-9);
 }
 
-// O11: a sine of amplitude A at frequency f over T, with one equivalent cycle each T_eq, has 2 A (f T_eq)^(1/m)
-// whatever its mean. Samples at the peaks; the half cycles from and to the mean at both ends are the rest.
+// O11: with one equivalent cycle per T_eq, a sine of amplitude A and frequency f over T has 2 A (f T_eq)^(1/m) for any
+// mean. Samples lie at the peaks; the half cycles from and to the mean at both ends are the rest.
 TEST(EquivalentLoad, EqualsO11ForASine) {
   const double amplitude = 7.0, frequency = 5.0, equivalent_period = 2.0;
   const int periods = 100000;
@@ -44,7 +44,7 @@ TEST(EquivalentLoad, EqualsO11ForASine) {
   }
 }
 
-// O11: damage sums of joined records add.
+// O11: damage sums of joined records are additive.
 TEST(EquivalentLoad, AddsUpOverRecordsAsInO11) {
   std::vector<RangeMean> both = kFigure6;
   both.insert(both.end(), {{2.5, 0.0, 17.0}, {11.0, 3.0, 0.5}});
@@ -76,7 +76,7 @@ TEST(Damage, EqualsO12ForTwoSines) {
   const double by_hand = 8.451272e-4;
   const ExactCycles count = exactCount(twoSines());
   EXPECT_NEAR(damage(rangesAndMeans(count), curve, {}, kNone).value, 8.44221e-4, 5e-10);
-  Series twice = twoSines();  // the record repeated; less the record once: the repeated residue
+  Series twice = twoSines();  // the record repeated, minus the record once: the repeated residue
   for (const double value : twoSines()) twice.push_back(value);
   const double repeated = damage(rangesAndMeans(exactCount(twice)), curve, {}, kNone).value - 8.44221e-4;
   EXPECT_NEAR(repeated, 8.45013e-4, 1e-9);
@@ -84,7 +84,7 @@ TEST(Damage, EqualsO12ForTwoSines) {
   for (const auto& [pair, n] : count.closed())
     closed += static_cast<double>(n) * curve.damage(pair.second - pair.first);
   EXPECT_NEAR(closed, 4.159e-4, 5e-8);
-  // On a grid each range is off by less than one width; nearly all damage is that of the 500 largest cycles.
+  // On a grid each range has an error below one width. The 500 largest cycles cause nearly all damage.
   for (const int classes : {64, 1024, 4096, 16384}) {
     const LoadGrid grid = LoadGrid::make(-2000.0, 2000.0, classes).value.value();
     const CycleCount on_grid = gridCount(twoSines(), grid);
@@ -107,7 +107,7 @@ TEST(Damage, EqualsO13ForMeanStressByFkm) {
     EXPECT_NEAR(fkm.atAlternating(row.amplitude, row.mean).amplitude, row.at_alternating, 1e-6);
   EXPECT_EQ(fkm.atAlternating(0.0, 0.0).amplitude, 0.0);
   EXPECT_EQ(fkm.atAlternating(0.0, 5.0).amplitude, 0.0);
-  for (double mean = -5.0; mean < 8.0; mean += 0.0371) {  // no step, and the derivative is one
+  for (double mean = -5.0; mean < 8.0; mean += 0.0371) {  // continuous, and the derivative agrees
     const double h = 1e-7, at = fkm.atAlternating(2.0, mean).amplitude;
     EXPECT_NEAR(fkm.atAlternating(2.0, mean + h).amplitude, at, 1e-6);
     const double derivative = (fkm.atAlternating(2.0 + h, mean).amplitude - at) / h;

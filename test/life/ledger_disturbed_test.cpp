@@ -1,4 +1,4 @@
-// A ledger that others write, lock, replace or take away, or whose disk is full: no load is lost, nothing else gets in.
+// Ledgers that others write, lock, replace or remove, or on a full disk: no load is lost and nothing else is added.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -52,7 +52,7 @@ TEST(Ledger, ALockedFileCostsNothingButTime) {
   }
 }
 
-/// In a process that may write no file beyond some size, as on a full disk.
+/// Runs in a process with a file size limit, which acts like a full disk.
 TEST(Ledger, AFullDiskCostsNothingButTime) {
   const LedgerFile file;
   const pid_t child = fork();
@@ -120,7 +120,7 @@ TEST(Ledger, AnythingElseInItsPlaceIsLeftAsItIs) {
   refused(file.path(), "a ledger of version 99, must be 1");
   EXPECT_NE(contentsOf(file.path()).problem.find("version 99"), std::string::npos);
   for (const char* name : {"text", "other", "directory", "none"}) EXPECT_NE(contentsOf(file.path(name)).problem, "");
-  std::ofstream(file.path("empty")).close();  // what a kill at the very start leaves
+  std::ofstream(file.path("empty")).close();  // remains of a kill at the very start
   EXPECT_EQ(LedgerRun(file.path("empty"), machine(), "a").end(piece), kWritten);
 }
 

@@ -16,7 +16,7 @@ using namespace test;
 
 constexpr int kSamples = 200;  // of a period
 
-/// Adds period after period, each reported to the pipe when it is in the ledger, until it is killed.
+/// Adds one period after the other until it is killed and reports each to the pipe once it is in the ledger.
 [[noreturn]] void work(const std::string& path, unsigned run, int pipe) {
   LifeRecorder part = recorder();
   Loads loads(run);
@@ -42,7 +42,7 @@ TEST(LedgerKill, FiftyKillsLoseAtMostAPeriodEach) {
     close(ends[1]);
     char mark = 0;
     std::int64_t reported = 0;
-    // The instant: some microseconds after one of the first periods, the very first included.
+    // Kills some microseconds after one of the first periods, including the very first.
     for (auto wait = random() % 4; wait > 0 && read(ends[0], &mark, 1) == 1; --wait) ++reported;
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     ASSERT_EQ(kill(child, SIGKILL), 0);

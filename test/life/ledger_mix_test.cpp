@@ -1,4 +1,4 @@
-// Any mix of broken runs, replays, corrections, parts and names: the ledger of the whole recordings, each once.
+// Any mix of interrupted runs, replays, corrections, parts and names gives the ledger of the recordings, each once.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ using namespace test;
 
 constexpr int kPieces = 5, kSamplesOfPiece = 120;
 
-/// A part of a recording in pieces, as a node or process_bag would count it; `wrong`: with other sensor parameters.
+/// Part of a recording in pieces, as counted by a node or process_bag; `wrong`: with other sensor parameters.
 struct Part {
   unsigned recording{};
   int first{}, last{kPieces};
@@ -45,7 +45,7 @@ std::vector<LifePiece> piecesOf(const Part& part) {
   return pieces;
 }
 
-/// process_bag. What it says in one line; empty: counted, or in it already.
+/// Counts a part as process_bag does. Returns its message; empty if it is counted now or was before.
 std::string batch(const std::string& path, const Part& part, bool replace) {
   LedgerBatch ledger(path, replace);
   ledger.begin(machine(), idOf(part));
@@ -55,7 +55,7 @@ std::string batch(const std::string& path, const Part& part, bool replace) {
   return problem.empty() ? ledger.commit() : problem;
 }
 
-/// A live node that is killed after some pieces.
+/// Runs a live node and kills it after some pieces.
 void killed(const std::string& path, const Part& part, int after) {
   const pid_t child = fork();
   if (child == 0) {
@@ -151,7 +151,7 @@ TEST(LedgerMix, ARunThatContradictsTheMachineGoes) {
   EXPECT_EQ(figures(file.path()), before);
 }
 
-/// While it is written, someone counts its bag: what the bag has is counted once, and the whole bag completes it.
+/// A run's bag is counted while the run is being written. Its content counts once, and the whole bag completes it.
 TEST(LedgerMix, ARunWhoseBagIsCountedMeanwhileIsNotCountedTwice) {
   for (const int written : {1, 2}) {
     const LedgerFile file;

@@ -1,4 +1,4 @@
-/// A machine with two channels, its runs, and a directory for its ledger.
+/// Test machine with two channels, its runs and a directory for its ledger.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ inline LedgerMachine machine(const std::string& identity = "mo100", const LifeSe
   return ledgerMachine(of, identity);
 }
 
-/// Loads at 10 Hz, the same for the same seed.
+/// Generates loads at 10 Hz, identical for the same seed.
 class Loads {
  public:
   explicit Loads(unsigned seed, std::int64_t start = kStart) : random_(seed), stamp_(start) {}
@@ -85,7 +85,7 @@ class LedgerFile {
   std::filesystem::path directory_;
 };
 
-/// Another program that reads or writes the file and does not let go.
+/// Another program that keeps a lock on the file for reading or writing.
 class Holder {
  public:
   Holder(const std::string& path, const char* sql) : database_(path, Database::Use::kWrite, 0) {

@@ -1,4 +1,4 @@
-// The ledger of a machine: runs add to what one count of all of them gives, each once, on its days.
+// The ledger of a machine: its runs sum to one count of all of them, each once and on its days.
 #include "life/ledger_support.h"
 
 namespace hammer_loads::life {
@@ -22,7 +22,7 @@ TEST(Ledger, RunsInAnyPiecesAreTheCountOfAllTheirLoads) {
     }
     if (run % 2 == 0) {
       EXPECT_EQ(ledger.end(part.take()), kWritten);
-    }  // else it is ended by the next one
+    }  // otherwise the next run ends it
     whole.gap();
     const Contents contents = contentsOf(file.path());
     EXPECT_EQ(contents.problem, "");
@@ -51,7 +51,7 @@ TEST(Ledger, ARunIsCountedOnce) {
       EXPECT_EQ(ended ? first.end(piece) : first.add(piece), kWritten);
       if (ended) {
         EXPECT_EQ(first.end({}), kWritten);
-        EXPECT_EQ(first.add(piece), kWritten);  // after the end: nothing is added
+        EXPECT_EQ(first.add(piece), kWritten);  // nothing is added after the end
       }
     }
     const std::vector<std::string> once = statesOf(contentsOf(file.path()).totals.at(0));
@@ -95,10 +95,10 @@ TEST(Ledger, AnotherMachineOrGridBeginsAnEpoch) {
   steeper.channels[1].curve = SnCurve::make(50.0, 1e6, 4.0, 5.0).value.value();
   steeper.equivalent_cycles_per_hour = 60.0;
   run("1", machine("a"), settings());
-  run("2", machine("a", steeper), steeper);  // other judgement, same counts
+  run("2", machine("a", steeper), steeper);  // other judgement of the same counts
   run("3", machine("b"), settings());
   run("4", machine("b", finer), finer);
-  run("5", machine("a"), settings());  // back again: not mixed with the first, between them the boom carried another
+  run("5", machine("a"), settings());  // back again: not mixed with the first, as the boom carried another in between
   const Contents contents = contentsOf(file.path());
   ASSERT_EQ(contents.epochs.size(), 4U);
   EXPECT_EQ(contents.epochs[0].runs, 2U);
@@ -126,7 +126,7 @@ TEST(Ledger, AClockThatRunsBackReordersNothing) {
   EXPECT_EQ(statesOf(contents.totals[0]), statesOf(whole.take().counts));
 }
 
-/// Three runs across midnights, cut as a node with this period cuts them.
+/// Returns the days of three runs across midnights, cut as a node with this period cuts them.
 std::vector<std::string> daysWithPeriod(std::int64_t period) {
   const LedgerFile file;
   LifeSettings s = settings();

@@ -1,4 +1,4 @@
-// Ledgers beside the work and behind it: the same as one written piece by piece.
+// A ledger written by a separate thread equals one written piece by piece.
 #include "hammer_loads/life/ledger_thread.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-/// Two runs of some pieces each, into anything that takes pieces.
+/// Feeds two runs of some pieces each into any sink.
 void work(PieceSink& sink) {
   for (unsigned run = 0; run < 2; ++run) {
     LifeRecorder part = recorder();
@@ -69,7 +69,7 @@ bool comesTrue(const std::function<bool()>& condition) {
   return true;
 }
 
-/// Thirty thousand kinds of cycles each, half a megabyte.
+/// Each piece has thirty thousand kinds of cycles, half a megabyte.
 TEST(LedgerThread, PiecesThatWaitForTheDiskAreAddedUp) {
   const LedgerFile file;
   LedgerThread thread(file.path());

@@ -1,4 +1,4 @@
-// Channels and hot spots of a machine, in pieces.
+// Channels and hot spots of a machine, counted in pieces.
 #include "hammer_loads/life/life_recorder.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST(LifeRecorder, RangesOfTurnsCarryTheErrorsOfTheirTwoEnds) {
   };
   EXPECT_TRUE(std::isnan(rangeDeviation(CycleCount(recorder.grid(0))).common));
   sample(1, -100.0, 5.0, 3.0);   // own 4
-  sample(2, 0.0, 100.0, 100.0);  // no end of the range
+  sample(2, 0.0, 100.0, 100.0);  // not an end of the range
   sample(3, 300.0, 13.0, 12.0);  // own 5
   recorder.turn();
   const RangeDeviation one = rangeDeviation(recorder.take().counts[0]);
@@ -124,12 +124,12 @@ TEST(LifeRecorder, TimeIsThatBetweenSamplesWithoutGaps) {
   recorder.sample(10 * kSecond, values, nullptr);
   recorder.sample(11 * kSecond, values, nullptr);
   take();
-  recorder.sample(13 * kSecond, values, nullptr);  // across the piece's end
+  recorder.sample(13 * kSecond, values, nullptr);  // across the end of the piece
   take();
   recorder.gap();
   recorder.sample(23 * kSecond, values, nullptr);
   recorder.sample(24 * kSecond, values, nullptr);
-  recorder.sample(20 * kSecond, values, nullptr);  // back
+  recorder.sample(20 * kSecond, values, nullptr);  // time runs back
   recorder.sample(22 * kSecond, values, nullptr);
   take();
   EXPECT_EQ(duration, 6U * kSecond);

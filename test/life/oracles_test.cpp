@@ -1,4 +1,4 @@
-// Counts printed in ASTM E1049-85 and counts worked out by hand, by the exact counter and by the one on a grid.
+// Counts printed in ASTM E1049-85 and counts by hand, compared with the exact counter and the one on a grid.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(Oracles, EqualsO1AstmFigure6) {
   EXPECT_EQ(cyclesOf(rangesAndMeans(exactCount(kSeriesOfFigure6))), expected);
 }
 
-// A repeating history: begun at its largest peak it closes up to one cycle (ASTM E1049-85, 5.4.5).
+// A repeating history that starts at its largest peak closes except for one cycle (ASTM E1049-85, 5.4.5).
 TEST(Oracles, EqualsO2AstmFigure7) {
   const Series history{-2, 1, -3, 5, -1, 3, -4, 4};
   Series from_peak;

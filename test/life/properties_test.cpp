@@ -1,4 +1,4 @@
-// What holds for every series: the count of ASTM's own procedure, pieces that add, largest range, sign flip.
+// Properties of every series: agreement with ASTM's own procedure, additive pieces, largest range, sign reversal.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ TEST(Properties, EqualsAstmsProcedure) {
   }
 }
 
-/// Pieces of 1 to some values; empty pieces between.
+/// Cuts a series into pieces of one to several values, with empty pieces in between.
 std::vector<Series> cut(const Series& series, std::mt19937& random) {
   std::vector<Series> pieces(1);
   const auto every = 2 + random() % 40;
@@ -53,7 +53,7 @@ TEST(Properties, CuttingsAddToTheWholeExactly) {
   }
 }
 
-// ((a + b) + c) and (a + (b + c)): pieces may be added in groups.
+// ((a + b) + c) equals (a + (b + c)): pieces may be added in groups.
 TEST(Properties, AddingIsAssociative) {
   std::mt19937 random(3);
   const LoadGrid grid = integerGrid(0, 30);
@@ -87,11 +87,11 @@ TEST(Properties, LargestRangeIsMaximumLessMinimumAndASignFlipMirrors) {
   }
 }
 
-// n classes: ranges of 1, 2 .. n - 1, n - 1 .. 2, 1 steps never close: 2n - 1 points, one more than often quoted
-// (2n - 2 without the running end).
+// With n classes, ranges of 1, 2 .. n - 1, n - 1 .. 2, 1 steps never close. They have 2n - 1 points, one more than
+// often quoted (2n - 2 without the running end).
 TEST(Properties, ResidueOnAGridHasAtMostTwiceTheClassesLessOnePoints) {
   for (std::uint32_t n = 2; n <= 5; ++n) {
-    std::set<std::vector<std::uint32_t>> reached{{}};  // every residue that any series gives
+    std::set<std::vector<std::uint32_t>> reached{{}};  // every residue that a series can give
     std::vector<std::vector<std::uint32_t>> open{{}};
     std::size_t longest = 0;
     while (!open.empty()) {

@@ -1,4 +1,4 @@
-// Least, largest and mean load of a turn against what a curve has.
+// Minimum, maximum and mean load of a revolution compared with those of a known curve.
 #include "hammer_loads/life/turn_loads.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(TurnLoads, AreThoseOfSamplesAndTheExtremesBetween) {
   EXPECT_NEAR(turn.channels[1].mean, (15.0 - 10.0 + 0.0) / 24.0, 1e-14);
 }
 
-// 10 turns of a curve that jumps at the blow, irregularly sampled: min, max and mean are the curve's.
+// Samples 10 revolutions of a curve with a jump at the blow irregularly: min, max and mean are the curve's.
 TEST(TurnLoads, MeanIsTheCurvesHoweverItIsSampled) {
   TurnLoadsRecorder recorder(1);
   const double period = 0.2;
@@ -48,7 +48,7 @@ TEST(TurnLoads, MeanIsTheCurvesHoweverItIsSampled) {
     if (t > next_blow) {
       const TurnLoads& turn = recorder.endTurn(static_cast<std::int64_t>(std::llround(1e9 * next_blow)));
       EXPECT_EQ(turn.whole, turns > 0);
-      // a value held over at most 0.95 ms at each end, where the slope is at most 70 1/s; trapezoidal rule 3e-5
+      // A value is held for at most 0.95 ms at each end, with a slope of at most 70 1/s; trapezoidal rule: 3e-5.
       if (turn.whole) {
         EXPECT_NEAR(turn.channels[0].mean, 3.0 + 7.0 / 3.0, 70.0 * 0.95e-3 * 0.95e-3 / period + 3e-5);
       }
@@ -71,7 +71,7 @@ TEST(TurnLoads, AChannelWithoutAValueHasNone) {
   EXPECT_EQ(turn.channels[0].mean, 1.0);
   const auto& [minimum, maximum, mean] = turn.channels[1];
   EXPECT_TRUE(std::isnan(mean) && std::isnan(minimum.value) && std::isnan(maximum.value));
-  EXPECT_TRUE(std::isnan(recorder.endTurn(4).channels[0].mean));  // nothing is left of the turn before
+  EXPECT_TRUE(std::isnan(recorder.endTurn(4).channels[0].mean));  // the previous revolution leaves no value
 }
 
 TEST(TurnLoads, ARestartForgetsTheTurnBegun) {
@@ -94,7 +94,7 @@ TEST(TurnExtremes, ASampleThatIsHardlyKnownMayBeTheExtreme) {
     turn->add(10.0, {1.0, 0.1});
     turn->add(0.0, {2.0, 0.2});
   }
-  known.add(4.0, {3.0, 9.0});    // 1 to 7: within
+  known.add(4.0, {3.0, 9.0});    // 1 to 7: within the extremes
   hardly.add(4.0, {12.0, 9.0});  // -8 to 16
   EXPECT_EQ(known.range(), 10.0);
   EXPECT_EQ(hardly.range(), 10.0);

@@ -1,4 +1,4 @@
-/// The log against slow and standing disks, write errors, directories that are closed to it.
+/// The log with slow or blocked disks, write errors and directories without write permission.
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -13,7 +13,7 @@
 namespace hammer_loads::test {
 namespace {
 
-/// A disk that stops when told to.
+/// A disk that blocks on request.
 class Gate {
  public:
   void close() { set(false); }
@@ -60,7 +60,7 @@ TEST_F(LogTest, StandingDiskBlocksNobodyAndDropsAreCounted) {
     gate.open();
     ASSERT_TRUE(waitFor([&] { return log.health().messages_written + dropped == 3001; }));
     log.write("/a", at(2001), wrench(2001));
-    log.write("/a", at(2002), noise(60'000, 1));  // another type on this topic is not mixed in
+    log.write("/a", at(2002), noise(60'000, 1));  // another type on this topic is rejected
     log.write("/c", at(2003), noise(60'000, 1));  // larger than half the queue
     log.write("/c", at(2004), noise(10'000, 1));
     dropped += 2;
@@ -79,13 +79,13 @@ TEST_F(LogTest, StandingDiskBlocksNobodyAndDropsAreCounted) {
   EXPECT_EQ(onTopic(entries, "/c").size(), 1u);
 }
 
-/// Runs in a process of its own; 0 if all went well.
+/// Runs an action in a child process and returns 0 if it succeeds.
 template <typename Action>
 int inChild(Action action) {
   const pid_t child = fork();
   if (child == 0) {
     action();
-    std::exit(::testing::Test::HasFailure() ? 1 : 0);  // destructors of statics too: nothing may end the process there
+    std::exit(::testing::Test::HasFailure() ? 1 : 0);  // destructors of statics run too; none may end the process
   }
   int status = -1;
   waitpid(child, &status, 0);
@@ -95,7 +95,7 @@ int inChild(Action action) {
 TEST_F(LogTest, OutlivesWriteErrors) {
   const int status = inChild([this] {
     signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{2'000'000, 2'000'000};  // writes beyond fail, whatever was allocated ahead
+    const rlimit limit{2'000'000, 2'000'000};  // writes beyond fail, whatever was allocated in advance
     setrlimit(RLIMIT_FSIZE, &limit);
     BagLog log(settings_);
     ASSERT_TRUE(log.start().empty());
@@ -115,7 +115,7 @@ TEST_F(LogTest, OutlivesWriteErrors) {
 }
 
 TEST_F(LogTest, ReportsThatItsDirectoryMayNotBeWritten) {
-  settings_.directory = "/proc";  // not even by root
+  settings_.directory = "/proc";  // not writable even by root
   EXPECT_NE(BagLog(settings_).start().at(0).find("log_directory: '/proc', must be writable"), std::string::npos);
   settings_.directory = path("locked");
   std::filesystem::create_directory(settings_.directory);
@@ -141,7 +141,7 @@ TEST_F(LogTest, StopsAlsoWhileTooManyOrdersWait) {
   BagLog log(settings_, disk);
   ASSERT_TRUE(log.start().empty());
   gate.close();
-  log.write("/a", at(0), wrench(0));  // the writer waits with this one
+  log.write("/a", at(0), wrench(0));  // the writer blocks at this message
   std_msgs::String text;
   for (std::size_t i = 0; i < 2000; ++i) log.writeLatched("/latched", at(1), text);
   EXPECT_FALSE(log.split()) << "no order is taken any more";

@@ -12,7 +12,7 @@
 namespace hammer_loads::test {
 namespace {
 
-/// Some bags' worth of messages through a log that splits.
+/// Writes messages for several bags through a log that splits.
 LogHealth record(const LogSettings& settings, std::size_t count) {
   std::mt19937 random(1);
   BagLog log(settings);
@@ -28,7 +28,7 @@ LogHealth record(const LogSettings& settings, std::size_t count) {
 }
 
 TEST_F(LogTest, NeverOverwritesAFile) {
-  // Every name of the next seconds that the log would choose first is taken, by a bag or by one being written.
+  // Every name that the log would choose first in the next seconds is taken, by a bag or by one being written.
   std::vector<std::string> taken;
   const std::time_t now = std::time(nullptr);
   for (int second = -1; second < 30; ++second) {
@@ -50,7 +50,7 @@ TEST_F(LogTest, NeverOverwritesAFile) {
     second.write("/wrench", at(2), wrench(2));
     late = first.health().file;
     late = late.substr(0, late.size() - std::string(".active").size());
-    writeFile(late, "precious");  // its final name, taken while it writes
+    writeFile(late, "precious");  // its final name is taken while it is written
   }
   taken.push_back(late);
   for (const std::string& file : taken) EXPECT_EQ(readFile(file), "precious") << file;
@@ -155,7 +155,7 @@ TEST_F(LogTest, NamesBagsThatWereNotClosed) {
   EXPECT_EQ(BagLog(settings_).unfinishedBags(), std::vector<std::string>{line}) << "not the one being written";
 }
 
-/// The lock of a process that was killed is gone.
+/// The lock of a killed process is released.
 TEST_F(LogTest, NamesTheBagOfAKilledProcess) {
   settings_.prefix = "killed";
   const pid_t child = fork();

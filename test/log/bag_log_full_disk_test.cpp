@@ -1,4 +1,4 @@
-/// The log where the disk is full or becomes full: it stops in time, and its bag is whole.
+/// The log on a disk that is or becomes full: it stops in time, and its bag is complete.
 #include <sys/mount.h>
 
 #include <atomic>
@@ -32,7 +32,7 @@ TEST_F(LogTest, StopsCleanlyWhenTheDiskIsNearlyFullAndStartsAgain) {
   EXPECT_EQ(log.health().state, LogState::kDiskFull);
   EXPECT_TRUE(log.settingProblems().empty()) << "no reason to end the node";
   EXPECT_FALSE(log.hasRoomAgain());
-  free = 16'999'999;  // enough to start on request, too little to do so by itself
+  free = 16'999'999;  // enough for a start on request, too little for an automatic one
   EXPECT_FALSE(log.hasRoomAgain());
   free = 17'000'000;
   EXPECT_TRUE(log.hasRoomAgain());
@@ -47,7 +47,7 @@ TEST_F(LogTest, StopsCleanlyWhenTheDiskIsNearlyFullAndStartsAgain) {
   EXPECT_EQ(log.health().reason, "");
 }
 
-/// A small disk of its own, where the system lets us mount one.
+/// A small disk for the test, where the system permits mounting one.
 class SmallDiskTest : public LogTest {
  protected:
   void SetUp() override {
@@ -63,7 +63,7 @@ class SmallDiskTest : public LogTest {
     directory_ = std::filesystem::path(directory_).parent_path();
   }
 
-  /// Writes noise until the log gives up; whatever bag that leaves must be whole.
+  /// Writes noise until the log stops; any bag that remains must be complete.
   void fillUp(BagLog& log, const std::string& reason) {
     ASSERT_TRUE(log.start().empty());
     ASSERT_TRUE(sendUntilFull(log));
@@ -80,7 +80,7 @@ class SmallDiskTest : public LogTest {
   bool is_mounted_{};
 };
 
-/// With log_min_free_mb: 0 there is no other limit than the disk's end.
+/// With log_min_free_mb: 0 the end of the disk is the only limit.
 TEST_F(SmallDiskTest, DoesNotStartOnAFullDisk) {
   std::ofstream(path("other")) << std::string(26'000'000, 'x');
   ASSERT_LT(freeSpace(directory_), 1'000'000u);

@@ -1,4 +1,4 @@
-/// The log against a sudden end of its process.
+/// The log when its process ends suddenly.
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -16,18 +16,18 @@ namespace {
 constexpr std::size_t kProcesses = 4;
 constexpr std::size_t kEvery[] = {1, 10, 100};  // ms between the messages of each topic
 
-/// Outlives the process that counts.
+/// Counts in memory that outlives the counting process.
 struct Counts {
   std::atomic<std::uint32_t> written[std::size(kEvery)];
 };
 
-/// Until somebody kills the process.
+/// Logs until the process is killed.
 void logUntilKilled(const LogSettings& settings, Counts& counts) {
   BagLog log(settings);
   if (!log.start().empty()) std::exit(1);
   log.writeLatched("/run_info", at(0), wrench(0));
   for (std::size_t i = 0;; ++i) {
-    // Never catches up: on a busy computer as well, a second holds no more messages than that.
+    // The loop never catches up, so a second holds no more messages than that even on a busy computer.
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     for (std::size_t k = 0; k < std::size(kEvery); ++k) {
       if (i % kEvery[k] != 0) continue;

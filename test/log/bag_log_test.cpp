@@ -77,7 +77,7 @@ TEST_F(LogTest, EverySplitStandsAlone) {
   EXPECT_EQ(next, kCount);
 }
 
-/// rosbag loads a plugin for every bag, which two threads must not do at once.
+/// rosbag loads a plugin for every bag, and two threads must not do this at the same time.
 TEST_F(LogTest, ManyLogsLiveInOneProcess) {
   constexpr std::size_t kSplits = 20;
   {
@@ -102,7 +102,7 @@ TEST_F(LogTest, NeedsTheMemoryOfItsQueueOnlyFromTheFirstStartOn) {
   EXPECT_GT(residentMemory() - before, 0.9 * queue);
 }
 
-/// rosbag keeps a copy of what passed through chunks that were not ended by their size.
+/// rosbag keeps a copy of the data that passed through chunks not ended by their size.
 TEST_F(LogTest, MemoryStaysFlatWhenChunksAreEndedByTime) {
   const std::shared_ptr<LogFile> file = LogFile::create(settings_, directory_);
   file->open();

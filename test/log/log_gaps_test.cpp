@@ -1,4 +1,4 @@
-/// What the log could not keep is in its bag and in its health.
+/// Messages that the log could not store are reported in its bag and in its health.
 #include "hammer_loads/log/log_gaps.h"
 
 #include <std_msgs/String.h>

@@ -1,4 +1,4 @@
-/// Shared by the tests of the log: a directory of one's own, waiting with a deadline, bags read back.
+/// Shared by the log tests: a temporary directory, waiting with a deadline, reading bags back.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -27,7 +27,7 @@ inline const bool clock_is_ready = (ros::Time::init(), true);
 
 inline constexpr std::chrono::seconds kDeadline{120};
 
-/// True as soon as the condition holds, false at the deadline.
+/// Returns true as soon as the condition holds, false at the deadline.
 inline bool waitFor(const std::function<bool()>& condition, std::chrono::milliseconds deadline = kDeadline) {
   const auto end = std::chrono::steady_clock::now() + deadline;
   while (!condition()) {
@@ -46,7 +46,7 @@ inline geometry_msgs::WrenchStamped wrench(std::size_t i) {
   return message;
 }
 
-/// Does not fit into less space by compression.
+/// Returns a message that compression cannot shorten.
 inline std_msgs::String noise(std::size_t size, std::size_t seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std_msgs::String message;
@@ -55,13 +55,13 @@ inline std_msgs::String noise(std::size_t size, std::size_t seed) {
   return message;
 }
 
-/// 1 ms apart.
+/// Returns the time of message i; messages are 1 ms apart.
 inline ros::Time at(std::size_t i) { return ros::Time(1000.0 + 1e-3 * static_cast<double>(i)); }
 
-/// The i-th of 50 kB.
+/// Sends the i-th message, of 50 kB.
 inline void send(BagLog& log, std::size_t i) { log.write("/noise", at(i), noise(50'000, i)); }
 
-/// Sends until the log gives up for want of space; false: it does not.
+/// Sends until the log stops for lack of space; returns false if it does not stop.
 inline bool sendUntilFull(BagLog& log) {
   std::size_t sent = 0;
   return waitFor([&] {
@@ -88,10 +88,10 @@ struct Entry {
   }
 };
 
-/// Which wrench(i) it is.
+/// Returns the i for which the entry is wrench(i).
 inline std::size_t number(const Entry& entry) { return entry.as<geometry_msgs::WrenchStamped>().header.seq; }
 
-/// In time order, as every tool reads it. Throws if the bag is not whole.
+/// Returns a bag's messages in time order, as every tool reads it. Throws if the bag is not complete.
 inline std::vector<Entry> readBag(const std::string& path) {
   rosbag::Bag bag(path, rosbag::bagmode::Read);
   std::vector<Entry> entries;
@@ -128,7 +128,7 @@ class LogTest : public ::testing::Test {
 
   std::string path(const std::string& name) const { return directory_ + '/' + name; }
 
-  /// Files whose names end so, in order of writing: N of the name counts up.
+  /// Returns the files whose names end so, in order of writing: N in the name counts up.
   std::vector<std::string> files(const std::string& ending = ".bag") const {
     std::vector<std::pair<long, std::string>> found;
     for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
@@ -143,7 +143,7 @@ class LogTest : public ::testing::Test {
     return names;
   }
 
-  /// All closed bags one behind the other.
+  /// Returns the messages of all closed bags in sequence.
   std::vector<Entry> readAll() const {
     std::vector<Entry> all;
     for (const std::string& file : files()) {

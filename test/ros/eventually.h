@@ -1,4 +1,4 @@
-/// Waiting for what other processes do, without sleeping.
+/// Waits for the effects of other processes without sleeping.
 #pragma once
 
 #include <ros/callback_queue.h>
@@ -8,8 +8,8 @@
 
 namespace hammer_loads::test {
 
-/// Spins until the condition holds; false if it still does not after some seconds [s] of wall time. What is waited for
-/// takes milliseconds: only what hangs takes longer than the limit, however busy the computer is.
+/// Spins until the condition holds. Returns false if it still does not after some seconds [s] of wall time. What is
+/// waited for takes milliseconds: only a hanging process exceeds the limit, however busy the computer is.
 inline bool eventually(const std::function<bool()>& condition, double seconds = 120.0) {
   const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(seconds);
   while (!condition()) {

@@ -11,7 +11,7 @@ TEST(FillHammer, FlagsAreThoseOfThisSampleAndThisBlow) {
   SampleResult result;
   result.pitch_known = true;
   TurnEnd end;
-  for (const bool flagged : {false, true, false}) {  // the messages are used again
+  for (const bool flagged : {false, true, false}) {  // the messages are reused
     result.inconsistent = end.blow.impossible = flagged;
     fillHullLoads(result, WrenchOutput{}, loads);
     fillBlow(end, blow);

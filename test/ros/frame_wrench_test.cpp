@@ -38,7 +38,7 @@ class Frames : public testing::Test {
     message.transforms = transforms;
     frames_.transforms(message, is_static, ros::Time(now));
   }
-  /// A load along z with stamp and record time.
+  /// Passes on a load along z with stamp and record time.
   void load(double stamp, double now, double force = 20e3) {
     frames_.wrench(ros::Time(stamp), {0.0, force, 7.0}, ros::Time(now));
   }
@@ -65,7 +65,7 @@ TEST_F(Frames, IncludeTheLeverArm) {
 }
 
 TEST_F(Frames, FollowAMovingTreeAtTheStamp) {
-  // arm carries the hull on one side and the gauge, turned by 90 deg about y, on the other.
+  // arm carries the hull on one side and on the other the gauge, rotated by 90 deg about y.
   tf({transform("arm", "gauge", 0.0, -0.5, 0.2, 0.5 * std::acos(-1.0))}, 1.0, true);
   tf({transform("arm", kHull, 1.0, 1.0, 0.0)}, 1.0);
   tf({transform("arm", kHull, 2.0, 2.0, 0.4)}, 2.0);
@@ -98,7 +98,7 @@ TEST_F(Frames, AWrenchWaitsForItsTransformAndIsRecordedWithIt) {
 TEST_F(Frames, PublishNothingAndNameTheFrameWithoutATransform) {
   tf({transform("gauge", kHull, 0.0, 1.0, 0.0)}, 0.9, true);
   load(1.0, 1.0);
-  EXPECT_EQ(told_.size(), 1U);  // the other frame is silent
+  EXPECT_EQ(told_.size(), 1U);  // no output for the other frame
   EXPECT_EQ(frames_.counts(1).waiting, 1U);
   EXPECT_EQ(frames_.complaint(1), "");
   load(1.5, 1.5);
@@ -111,7 +111,7 @@ TEST_F(Frames, PublishNothingAndNameTheFrameWithoutATransform) {
   EXPECT_EQ(complaint.rfind("other: no transform from hammer_hull within 0.5 s: ", 0), 0U) << complaint;
   EXPECT_EQ(complaint.find('\n'), std::string::npos);
   EXPECT_EQ(frames_.complaint(0), "");
-  // Good again.
+  // The transform is available again.
   tf({transform(kHull, "other", 0.0, 1.0, 0.0)}, 1.7, true);
   EXPECT_EQ(frames_.counts(1).published, 2U);
   EXPECT_EQ(frames_.complaint(1), "");
@@ -152,7 +152,7 @@ TEST_F(Frames, AcceptTimeThatRestarts) {
   EXPECT_EQ(told_[0].load.torque.y(), 7.0 - 20e3);
 }
 
-/// tf2 throws in the callback for a stamp near the end of time; what it takes may still be no place.
+/// tf2 throws in the callback for a stamp near the end of time. Transforms that it accepts may still be invalid.
 TEST_F(Frames, RefuseStampsBeyondTf2AndUseTheNextGoodOne) {
   const double nan = std::nan("");
   std::vector<geometry_msgs::TransformStamped> bad(8, transform("gauge", kHull, 1.0, 2.5, 0.0));

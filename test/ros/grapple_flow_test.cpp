@@ -14,12 +14,12 @@ using test::sliderMessage;
 
 constexpr std::size_t kLeft = 0, kRight = 1;
 constexpr double kStep = 0.01;       // between samples [s]
-constexpr double kRounding = 1e-13;  // between a cold and a warm start, doc/grapple.md 4 [m]
+constexpr double kRounding = 1e-13;  // between cold and warm start, doc/grapple.md 4 [m]
 
 class GrappleFlowTest : public testing::Test {
  protected:
   GrappleFlowTest() { kept_.attachTo(flow_.outputs()); }
-  /// A sample one step after the last one.
+  /// Sends a sample one step after the last one.
   void send(double position, std::optional<double> velocity) {
     stamp_ += ros::Duration(kStep);
     flow_.jointStates(sliderMessage(stamp_, position, velocity), recordTime());
@@ -50,7 +50,7 @@ TEST_F(GrappleFlowTest, GivesTheReferenceTablesValuesForBothJaws) {
     EXPECT_EQ(edge_time, recordTime());
     EXPECT_EQ(edge.header.stamp, stamp_);
     EXPECT_EQ(edge.header.frame_id, "grapple");
-    // The table's own accuracy, times the largest value of the column.
+    // The tolerance is the table's accuracy times the largest value of the column.
     EXPECT_NEAR(edge.point.x, at("Px"), 3e-12);
     EXPECT_NEAR(edge.point.y, at("Py"), 3e-12);
     EXPECT_NEAR(twist.twist.linear.x, kSpeed * at("dPx_ds"), 1e-9);
@@ -168,7 +168,7 @@ TEST(GrappleHotPath, AllocatesNothing) {
   ASSERT_GT(before, 0u) << "the counter works";
   for (int i = 0; i < 2000; ++i) {
     message.header.stamp += ros::Duration(0.001);
-    message.position[1] = i % 10 == 9 ? 0.74 : 0.3 + 1e-4 * i;  // refused ones as well
+    message.position[1] = i % 10 == 9 ? 0.74 : 0.3 + 1e-4 * i;  // including refused ones
     flow.jointStates(message, message.header.stamp);
   }
   EXPECT_EQ(test::allocations, before);

@@ -1,4 +1,4 @@
-/// Slider samples for the tests, and a sink that keeps what a GrappleFlow gives.
+/// Slider samples for the tests and a sink that keeps the output of a GrappleFlow.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,23 +26,23 @@ inline GrappleSettings grappleSettings(SliderAcceleration acceleration = SliderA
   return *settings.value;
 }
 
-/// The slider among other joints, position [m], velocity [m/s].
+/// Returns the slider among other joints, position [m], velocity [m/s].
 inline sensor_msgs::JointState sliderMessage(const ros::Time& stamp, double position, std::optional<double> velocity) {
   sensor_msgs::JointState m;
   m.header.stamp = stamp;
   m.name = {"boom_joint", "grapple_slider_joint", "arm_joint"};
   m.position = {0.1, position, 0.2};
-  if (velocity) m.velocity = {kNan, *velocity, 0.0};  // what other joints say is none of the grapple's
+  if (velocity) m.velocity = {kNan, *velocity, 0.0};  // values of other joints do not concern the grapple
   return m;
 }
 
-/// A way of spoiling a sample, and the name under which it is counted.
+/// A faulty sample and the name under which it is counted.
 struct BadSample {
   const char* reason;
   sensor_msgs::JointState message;
 };
 
-/// Each way once; the good samples before have stamp and position as given.
+/// Returns each fault once; the valid samples before have the given stamp and position.
 inline std::vector<BadSample> badSamples(const ros::Time& last, double position) {
   const ros::Time next = last + ros::Duration(0.01);
   sensor_msgs::JointState foreign = sliderMessage(next, position, 0.1), no_position = foreign, few_speeds = foreign;
@@ -63,7 +63,7 @@ inline std::vector<BadSample> badSamples(const ros::Time& last, double position)
           {"outside stroke", sliderMessage(next, 0.7, 0.1)}};
 }
 
-/// Keeps what a GrappleFlow gives; must outlive it.
+/// Keeps the output of a GrappleFlow; must outlive it.
 struct KeptMessages {
   template <typename Message>
   using Kept = std::vector<std::pair<ros::Time, Message>>;  // with record time

@@ -1,4 +1,4 @@
-/// The live grapple as its users see it; run against the node and against the nodelet.
+/// The live grapple as its users see it, run as node and as nodelet.
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
 
@@ -33,7 +33,7 @@ class GrappleNodeTest : public testing::Test {
       return joints_.getNumSubscribers() > 0 &&
              std::all_of(subscribers_.begin(), subscribers_.end(), [](auto& s) { return s.getNumPublishers() > 0; });
     })) << "the node must be there";
-    // Samples of an earlier test count in the node: begin well behind them.
+    // Samples of an earlier test count in the node, so stamps begin well after them.
     static double next_start = 1000.0;
     stamp_ = ros::Time(next_start += 1000.0);
   }
@@ -74,7 +74,7 @@ TEST_F(GrappleNodeTest, GivesTheLibrarysValuesForEverySample) {
     const JawMotion right = expected[i], left = leftJaw(right);
     ASSERT_EQ(right_[i].header.frame_id, "grapple");
     ASSERT_EQ(right_[i].header.stamp, start + ros::Duration(0.01 * (static_cast<double>(i) + 1.0)));
-    // An earlier test may have left the node on another pose to start from: the same value to rounding.
+    // An earlier test may have left the node at another start pose, so values agree only to rounding.
     ASSERT_NEAR(right_[i].point.x, right.edge.re, 1e-12);
     ASSERT_NEAR(right_[i].point.y, right.edge.im, 1e-12);
     ASSERT_NEAR(left_[i].point.x, left.edge.re, 1e-12);
@@ -95,7 +95,7 @@ TEST_F(GrappleNodeTest, ReportsASliderThatIsStaleOrWithoutVelocity) {
     return slider_status_.level == DiagnosticStatus::ERROR && slider_status_.message.find("stale") == 0;
   })) << slider_status_.message;
   const std::size_t twists = right_twist_.size();
-  // Others' joint states do not make the slider alive.
+  // Joint states of other joints do not make the slider alive.
   sensor_msgs::JointState foreign = test::sliderMessage(stamp_, 0.4, 0.1);
   foreign.name[1] = "wheel";
   slider_status_ = {};

@@ -1,4 +1,4 @@
-// The description that scripts/grapple_urdf writes, with the joint positions that a GrappleFlow gives.
+// The description written by scripts/grapple_urdf with the joint positions of a GrappleFlow.
 #include <gtest/gtest.h>
 #include <urdf_parser/urdf_parser.h>
 
@@ -24,7 +24,7 @@ class Description {
     const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
     if (!model || !kdl_parser::treeFromUrdfModel(*model, tree_)) throw std::runtime_error("cannot read the URDF");
   }
-  /// Pose of a link in the frame `grapple`.
+  /// Returns the pose of a link in the frame `grapple`.
   KDL::Frame frame(const std::string& link, const sensor_msgs::JointState& joints) const {
     KDL::Chain chain;
     EXPECT_TRUE(tree_.getChain("grapple", link, chain)) << link;
@@ -82,7 +82,7 @@ TEST(GrappleDescription, PinsMeetOverTheStrokeInBothJaws) {
 }
 
 TEST(GrappleDescription, PinsMeetWithEveryPivotOffTheAxis) {
-  // Another linkage than the shipped ones: no angle and no offset is zero.
+  // Unlike in the shipped linkages, no angle and no offset is zero.
   std::vector<std::string> problems;
   ParameterMap given = *readParameterFile(test::claimsFile(), problems);
   std::string yaml;

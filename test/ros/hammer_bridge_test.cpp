@@ -1,4 +1,4 @@
-/// The bridge from messages to messages: who listens changes no value, nothing throws, nothing is allocated.
+/// The bridge between messages: listeners change no value, nothing throws, no memory is allocated.
 #include "hammer_loads/ros/hammer_bridge.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ Bytes bytesOf(const Message& message) {
   return bytes;
 }
 
-/// Keeps the messages of the topics that `wants` names, which is asked before each message.
+/// Keeps messages of the topics that `wants` names; it is asked before each message.
 template <typename Wants>
 void attach(HammerBridge& bridge, const Wants& wants, Kept& kept) {
   bridge.outputs().forEach([&](auto& output) {
@@ -56,7 +56,7 @@ struct SentMessages {
   }
 };
 
-/// A session with drop-outs at this rate; after(time) is called after each sample.
+/// Plays a session with drop-outs at this rate and calls after(time) after each sample.
 template <typename After>
 void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
   simulation::MachineSettings machine = simulation::workingMo100();
@@ -110,11 +110,11 @@ TEST(WhoListens, GetsWhatTheOthersGotAfterComingBack) {
   bool listens = false;
   attach(
       with_some, [&](const std::string&) { return listens; }, some);
-  play(with_some, 1000.0, true, [&](double time) { listens = time < 3.0 || time > 5.0; });  // absent for ten turns
+  play(with_some, 1000.0, true, [&](double time) { listens = time < 3.0 || time > 5.0; });  // absent for 10 revolutions
   for (const char* topic : {"pulse", "blow", "joint_loads", "hull_loads"}) {
     ASSERT_GT(some[topic].size(), 5U) << topic;
     ASSERT_LT(some[topic].size(), all[topic].size()) << topic;
-    const std::size_t kept = 3;  // of the end: after it came back
+    const std::size_t kept = 3;  // at the end, after it returned
     EXPECT_TRUE(std::equal(some[topic].end() - kept, some[topic].end(), all[topic].end() - kept)) << topic;
   }
 }
@@ -150,14 +150,14 @@ TEST(WhoListens, WantsTheTurnsAloneGetsTheSameAndNoSampleIsComputed) {
 
 constexpr int kImu = 1, kCrank = 100;  // topics; the crank is last
 
-/// A message of a sensor: its stamp, its topic, by which bursts are ordered, and the call that gives it to a bridge.
+/// Message of a sensor: stamp, topic (by which bursts are ordered) and the call that passes it to a bridge.
 struct Arrival {
   std::int64_t stamp;
   int topic;
   std::function<void(HammerBridge&)> give;
 };
 
-/// All messages of a session on a boom, topic by topic.
+/// Returns all messages of a session on a boom, topic by topic.
 std::vector<Arrival> messagesOf(const simulation::Session& session) {
   std::vector<Arrival> messages;
   for (const simulation::JointReading& r : session.joints) {
@@ -196,7 +196,7 @@ std::vector<Arrival> messagesOf(const simulation::Session& session) {
   return messages;
 }
 
-/// A machine on its boom with IMU and pressures, whose messages reach a bridge in any order.
+/// A machine on its boom with IMU and pressures; its messages reach a bridge in any order.
 class MessagesOnBoom : public ::testing::Test {
  protected:
   struct Played {
@@ -225,7 +225,7 @@ class MessagesOnBoom : public ::testing::Test {
                      [&key](const Arrival& a, const Arrival& b) { return key(a) < key(b); });
   }
 
-  /// In the order of a key of each message.
+  /// Plays the messages in the order of a key.
   template <typename Key>
   Played play(const Key& key) {
     sort(key);
@@ -256,7 +256,7 @@ class MessagesOnBoom : public ::testing::Test {
   std::map<std::int64_t, const simulation::OnBoomTruth*> truth_;
 };
 
-/// A node that is held up receives the messages of that time topic by topic.
+/// A node that was blocked receives the messages of that time topic by topic.
 TEST_F(MessagesOnBoom, GiveTheSameTorquesInBurstsAsInOrder) {
   const Played in_order = playInOrder();
   for (const std::int64_t held_up : {40'000'000, 300'000'000}) {  // [ns]
@@ -269,7 +269,7 @@ TEST_F(MessagesOnBoom, GiveTheSameTorquesInBurstsAsInOrder) {
   }
 }
 
-/// A bus delays a topic; the stamps are those of the measurement.
+/// A bus delays a topic, but the stamps are those of the measurement.
 TEST_F(MessagesOnBoom, CostLittleWhereOneTopicIsLate) {
   const Played in_order = playInOrder();
   const auto lateBy = [&](int topic, std::int64_t late) {
@@ -290,7 +290,7 @@ struct MessagesOnRock : MessagesOnBoom {
   MessagesOnRock() : MessagesOnBoom({3e7, 3.0, 4000.0}) {}
 };
 
-/// The IMU alone does not show the rock's force.
+/// The IMU alone does not measure the rock's force.
 TEST_F(MessagesOnRock, HaveNoJointLoadsWithoutPressures) {
   HammerBridge bridge(test::settingsWith("boom: compliant\nhull_motion: imu\nboom_stiffness: identified\n"));
   ros::Time loads, wrench;
@@ -302,7 +302,7 @@ TEST_F(MessagesOnRock, HaveNoJointLoadsWithoutPressures) {
   EXPECT_GT(wrench, loads + ros::Duration(0.5));
 }
 
-/// Stamps of a clock that is an hour ahead, and those of a crank that has stopped, wait for nothing.
+/// Readings do not wait for stamps of a clock that is an hour ahead or for a crank that has stopped.
 TEST(ReadingQueue, HoldsReadingsForOneSecondAtMost) {
   std::vector<int> passed;
   ReadingQueue<int> queue([&passed](StampNs, int reading) { passed.push_back(reading); });
@@ -316,7 +316,7 @@ TEST(ReadingQueue, HoldsReadingsForOneSecondAtMost) {
   EXPECT_EQ(passed.back(), 7);
 }
 
-/// Says which pieces came.
+/// Records the pieces that it receives.
 class Notes final : public life::PieceSink {
  public:
   void begin(const life::LedgerMachine&, const life::RunId&) override {}

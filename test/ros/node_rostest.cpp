@@ -1,4 +1,4 @@
-/// The live node as its users see it; run against the node and against the nodelet.
+/// The live node as its users see it, run as node and as nodelet.
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ class NodeTest : public testing::Test {
       return crank_.getNumSubscribers() > 0 && joints_.getNumSubscribers() > 0 && wrench_.getNumPublishers() > 0 &&
              blow_.getNumPublishers() > 0 && pulse_.getNumPublishers() > 0;
     })) << "the node must be there";
-    // Samples of an earlier test count in the node: begin well behind them.
+    // Samples of an earlier test count in the node, so stamps begin well after them.
     static double next_start = 1000.0;
     start_ = ros::Time(next_start += 1000.0);
   }
@@ -62,7 +62,7 @@ class NodeTest : public testing::Test {
     }
   }
 
-  /// A machine that was at work before its samples stopped is trusted again only after some samples.
+  /// After a machine at work has stopped sending samples, it is accepted again only after some samples.
   void settle() {
     publishGoodSamples(100);
     const ros::Time last = start_ + ros::Duration(time_ - 1e-3);
@@ -120,7 +120,7 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   machine.duration = 4.0;
   machine.start_stamp = static_cast<std::int64_t>(start_.toNSec());
   Settings settings = *loadFiles(configDirectory(), {}).value;
-  settings.pipeline.crank_zero_std = kKnownZeroStd;  // as the node's
+  settings.pipeline.crank_zero_std = kKnownZeroStd;  // as in the node
   machine.hammer = settings.mechanism.parameters();
   machine.level = settings.pipeline.level;
   const simulation::Session session = simulation::recordSession(machine);
@@ -140,7 +140,7 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
     crank_.publish(crankMessage(stamp, reading.angle, *reading.speed));
     const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     blows += result.turn_ends;
-    if (result.isPublished()) expected.push_back(result);  // none beside a blow
+    if (result.isPublished()) expected.push_back(result);  // none next to a blow
   }
   ASSERT_TRUE(eventually([&] {
     return wrenches_.size() >= expected.size() && blows_.size() >= blows && pulses_.size() + 1 >= blows;
@@ -175,7 +175,7 @@ TEST_F(NodeTest, RefusesEachBadSampleCountsItAndTakesTheNextGoodOne) {
   const std::vector<std::pair<std::string, std::function<sensor_msgs::JointState()>>> bad{
       {"not finite", [&] { return crankMessage(at(time_), kNan, 5.0); }},
       {"implausible", [&] { return crankMessage(at(time_), 5.0 * time_, 1e6); }},
-      {"out of order", [&] { return crankMessage(at(time_ - 0.5), 5.0 * time_, 5.0); }},  // beyond stale_after_s
+      {"out of order", [&] { return crankMessage(at(time_ - 0.5), 5.0 * time_, 5.0); }},  // later than stale_after_s
       {"duplicate", [&] { return last_good_; }},
       {"missing joint", [&] { return foreign; }},
       {"short array", [&] { return bare; }}};

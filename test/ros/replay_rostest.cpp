@@ -1,4 +1,4 @@
-/// A bag played in simulated time through the live node, against process_bag on the same bag and on the node's own log.
+/// Plays a bag in simulated time through the live node and compares with process_bag on it and on the node's own log.
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ std::vector<WrenchStamped> wrenchesOf(const std::string& bag_file) {
 std::vector<WrenchStamped> processed(const std::string& bag_file) {
   BagJob job;
   job.inputs = {bag_file};
-  job.parameters = ParameterMap{};  // the shipped ones, whatever the bag says
+  job.parameters = ParameterMap{};  // the shipped ones, regardless of the bag
   job.output = (fs::temp_directory_path() / ("replay_rostest_" + std::to_string(getpid()) + ".bag")).string();
   BagReport report;
   EXPECT_TRUE(processBag(
@@ -52,7 +52,7 @@ std::vector<WrenchStamped> processed(const std::string& bag_file) {
   return wrenches;
 }
 
-/// A crank sample and the pitch known when it arrived.
+/// Crank sample and the pitch known when it arrived.
 struct Sample {
   ros::Time stamp;
   double pitch{};  ///< [rad]; 0 before the first joint states
@@ -73,7 +73,7 @@ std::vector<Sample> samplesOf(const std::string& bag_file) {
   return samples;
 }
 
-/// Until the node has taken it. Its diagnostics say so to those who come late as well, when the bag is over.
+/// Waits until the node has processed the sample. Its diagnostics report it to late subscribers too, after the bag.
 void waitForSample(const ros::Time& stamp) {
   std::string taken;
   ros::NodeHandle node;
@@ -86,7 +86,7 @@ void waitForSample(const ros::Time& stamp) {
   EXPECT_TRUE(eventually([&] { return taken == std::to_string(stamp.toNSec()); })) << taken;
 }
 
-/// The bag of a node that is told to stop its log; empty if there is none.
+/// Stops the node's log and returns its bag; empty if there is none.
 std::string closedLog(const std::string& directory) {
   std_srvs::Trigger stop;
   EXPECT_TRUE(ros::service::call("/hammer_loads/log/stop", stop));
@@ -114,16 +114,16 @@ TEST(Replay, LosesNoSampleAndEqualsProcessBagButForTheOrderOfJointAngles) {
   ASSERT_EQ(arrived.size(), sent.size()) << "none lost, none doubled";
   ASSERT_EQ(live.size(), expected.size());
   ASSERT_EQ(live.size(), again.size());
-  // Weight times what the pitch was off by at the sample, and as much again for the filter's memory of what it was off
-  // by before: gravity turns the crank as well. After a blow, whose factor on the crank's speed is measured anew each
-  // time, the speed hangs on few samples: what the pitch was off by then shows with some 5e-4 of the peak, and with
-  // 3e-3 where it decides whether a jitter or a tool was seen. The filter's own worst error is 7e-3.
+  // The bound is the weight times the pitch error at the sample, and once more for earlier errors in the filter's
+  // memory: gravity also turns the crank. After a blow, whose speed factor is measured each time, the speed rests on
+  // few samples. A pitch error then shows with 5e-4 of the peak, or 3e-3 where it decides whether jitter or a tool was
+  // seen. The filter's own largest error is 7e-3.
   constexpr double kWeight = 35.2 * 9.80665, kAfterBlow = 5e-3 * 10e3;
   double worst_pitch = 0.0, worst_force = 0.0;
   std::size_t i = 0, other_order = 0;
   for (std::size_t n = 0; n < live.size(); ++n) {
     ASSERT_EQ(live[n].wrench, again[n].wrench) << "the order of arrival explains all of it";
-    // A sample without a wrench is in the filter's memory as well.
+    // The filter's memory also contains samples without a wrench.
     for (const ros::Time& stamp = live[n].header.stamp; sent[i].stamp != stamp; ++i) {
       ASSERT_LT(i + 1, sent.size());
       worst_pitch = std::max(worst_pitch, std::abs(arrived[i].pitch - sent[i].pitch));

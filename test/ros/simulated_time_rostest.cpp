@@ -1,5 +1,5 @@
-/// The live node in simulated time, which stands, jumps and runs back. The node lives in this process, so that the time
-/// of each arrival is given exactly.
+/// The live node in simulated time that stops, jumps and runs backwards. The node runs in this process, so that the
+/// time of each arrival is given exactly.
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ JointState message(StampNs stamp, std::vector<std::string> names, std::vector<do
   return m;
 }
 
-/// A working machine's first second, joint states among the crank samples.
+/// Returns a working machine's first second, with joint states among the crank samples.
 Inputs recordInputs() {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = 1.0;
@@ -59,7 +59,7 @@ Inputs recordInputs() {
   return inputs;
 }
 
-/// From an instant on [s], all stamps later by so much [s].
+/// Returns the inputs from an instant on [s], with all stamps delayed by `later` [s].
 Inputs from(double begin, const Inputs& inputs, double later = 0.0) {
   Inputs part;
   for (const JointState& input : inputs) {
@@ -70,7 +70,7 @@ Inputs from(double begin, const Inputs& inputs, double later = 0.0) {
   return part;
 }
 
-/// As the node's: nothing is withheld for the zero.
+/// Sets the zero as known, as in the node: no sample is withheld for it.
 Settings withKnownZero(Settings settings) {
   settings.pipeline.crank_zero_std = kKnownZeroStd;
   return settings;
@@ -83,7 +83,7 @@ class SimulatedTime : public testing::Test {
     std::vector<std::string> problems;
     node_ = makeHammerNode(handle_, ros::NodeHandle("~"), problems);
     EXPECT_TRUE(problems.empty());
-    // Behind the node's own subscriptions: what has come here has been worked on there.
+    // Subscribed after the node: a message that has arrived here has been processed there.
     const auto count = [this](const JointState::ConstPtr&) { ++arrived_; };
     crank_arrival_ = handle_.subscribe<JointState>("crank", 10000, count);
     joint_arrival_ = handle_.subscribe<JointState>("joint_states", 10000, count);
@@ -109,7 +109,7 @@ class SimulatedTime : public testing::Test {
     ASSERT_TRUE(eventually([&] { return arrived_ > before; }));
   }
 
-  /// Each arrives when the clock shows its stamp.
+  /// Sends each input when the clock shows its stamp.
   void play(const Inputs& inputs) {
     for (const JointState& input : inputs) {
       ros::Time::setNow(input.header.stamp);
@@ -117,7 +117,7 @@ class SimulatedTime : public testing::Test {
     }
   }
 
-  /// Wrenches since the last call. The last one expected has this stamp.
+  /// Returns the wrenches since the last call. The last one expected has this stamp.
   std::vector<geometry_msgs::WrenchStamped> takeWrenches(const ros::Time& last) {
     EXPECT_TRUE(eventually([&] { return !wrenches_.empty() && wrenches_.back().header.stamp == last; }));
     std::vector<geometry_msgs::WrenchStamped> taken;
@@ -125,7 +125,7 @@ class SimulatedTime : public testing::Test {
     return taken;
   }
 
-  /// Takes the wrenches and compares them with those of a pipeline that has seen nothing but these inputs.
+  /// Compares the wrenches with those of a pipeline that has received only these inputs.
   void expectWrenchesOf(const Inputs& inputs) {
     const auto told = takeWrenches(inputs.back().header.stamp);
     Pipeline pipeline(settings_.mechanism, settings_.pipeline);
@@ -177,7 +177,7 @@ TEST_F(SimulatedTime, NeedsHeaderStampsAloneBeforeTheFirstClock) {
   for (std::size_t i = 0; i < half; ++i) send(inputs_[i]);
   play({inputs_.begin() + static_cast<std::ptrdiff_t>(half), inputs_.end()});
   expectWrenchesOf(inputs_);
-  expectDiagnostic("restarts", "1");  // the clock's is none of the machine's
+  expectDiagnostic("restarts", "1");  // the restart of the clock is not one of the machine
 }
 
 TEST_F(SimulatedTime, DetectsALoopByItsStampsWithoutAClock) {
@@ -194,7 +194,7 @@ TEST_F(SimulatedTime, SamplesOfTheNextLoopMayOvertakeTheClock) {
   constexpr std::ptrdiff_t kAhead = 20;
   play(inputs_);
   takeWrenches(inputs_.back().header.stamp);
-  for (std::ptrdiff_t i = 0; i < kAhead; ++i) send(inputs_[static_cast<std::size_t>(i)]);  // the old clock stands
+  for (std::ptrdiff_t i = 0; i < kAhead; ++i) send(inputs_[static_cast<std::size_t>(i)]);  // the old clock stands still
   const Inputs rest(inputs_.begin() + kAhead, inputs_.end());
   play(rest);
   const ros::Time last = rest.back().header.stamp;

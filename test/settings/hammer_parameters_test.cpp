@@ -15,7 +15,7 @@ Lines problemsWith(const std::map<std::string, std::string>& altered, const std:
   return test::problemsOf(hammerYaml(altered) + added);
 }
 
-/// The shipped hammer and what is added.
+/// Loads the shipped hammer file and the added keys.
 Checked<Settings> loadedWith(const std::string& added) {
   const TemporaryFile file(hammerYaml() + added);
   return loadFiles(configDirectory(), {file.path()});
@@ -39,7 +39,7 @@ TEST_P(EveryHammerKey, MustHaveItsSign) {
   }
 }
 
-/// A deviation of each constant, small enough for any hammer.
+/// Returns a standard deviation for each constant, small enough for any hammer.
 std::string allDeviations() {
   std::string text;
   for (const HammerConstant& constant : kHammerConstants) text += deviationKey(constant) + ": 1e-5\n";
@@ -53,7 +53,7 @@ TEST_P(EveryHammerKey, IsAloneAccusedBesideRightDeviations) {
     ASSERT_EQ(problems.size(), 1U) << wrong << ": " << problems[1];
     EXPECT_TRUE(beginsWith(problems[0], GetParam() + ": ")) << problems[0];
   }
-  // A value that is none of a hammer may break a rule of two keys.
+  // An implausible value may violate a rule between two keys.
   for (const std::string& problem : problemsWith({{GetParam(), "1e9"}}, allDeviations()))
     EXPECT_EQ(problem.find("_std"), std::string::npos) << problem;
 }
@@ -101,7 +101,7 @@ TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
   ASSERT_EQ(absent.notes.size(), 2U);
   EXPECT_TRUE(beginsWith(absent.notes[1], "drive_reaction_ratio: not given, counts as 1")) << absent.notes[1];
   EXPECT_EQ(given.value->mechanism.parameters().drive_reaction_ratio, -0.2);
-  EXPECT_EQ(given.notes.size(), 1U);  // of the deviations
+  EXPECT_EQ(given.notes.size(), 1U);  // about the deviations
   EXPECT_EQ(problemsWith({}, "drive_reaction_ratio: 1e9\n").size(), 1U);
 }
 

@@ -1,4 +1,4 @@
-/// The shipped hammer file as text, one key altered or left out.
+/// The shipped hammer file as text with keys altered or left out.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace hammer_loads::test {
 
-/// Texts to put in place of values; an empty text leaves the key out.
+/// Returns the file with these texts in place of values; an empty text leaves the key out.
 inline std::string hammerYaml(const std::map<std::string, std::string>& altered = {}) {
   std::vector<std::string> problems;
   const ParameterMap shipped = readParameterFile(configDirectory() + "/hammer_mo100.yaml", problems).value();

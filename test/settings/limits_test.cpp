@@ -1,4 +1,4 @@
-// Limits: what is read, from where, what is refused.
+// Limits: values read, their sources, refusals.
 #include "hammer_loads/settings/limits.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(Limits, ShippedExampleHasTheLimitsOfItsComments) {
   }
 }
 
-/// A log's run_info has the parameters in force, and no file is there when it is processed.
+/// The run_info in a log has the parameters in force. No file is needed when the log is processed.
 TEST(Limits, NeedTheFileNoMoreOnceInForce) {
   const test::TemporaryFile limits("limit_peak_force_warn_N: 9000\nlimit_toe_damage_per_hour_error: 0.01\n");
   const Checked<Settings> settings =

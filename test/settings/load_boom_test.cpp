@@ -1,4 +1,4 @@
-// A robot description with a boom file or without: when there is a boom, and faults of one line each.
+// A robot description with or without a boom file: when there is a boom, and one-line messages for faults.
 #include "boom/booms.h"
 #include "settings/hammer_yaml.h"
 #include "settings/load_support.h"
@@ -14,7 +14,7 @@ using test::withFirstReplaced;
 
 class LoadBoom : public testing::Test {
  protected:
-  /// Settings of a description and a boom file's content; beside it what else is given.
+  /// Loads a description and a boom file's content, followed by `more`.
   static Checked<Settings> loaded(const std::string& urdf, const std::string& boom, const std::string& more = {}) {
     const TemporaryFile boom_file(boom + more + "\n");
     return loadFiles(configDirectory(), {boom_file.path()}, urdf);
@@ -63,10 +63,10 @@ TEST_F(LoadBoom, AnotherMachinesDescriptionIsANoteUnlessABoomIsAskedFor) {
     EXPECT_EQ(settings.value->notes,
               Lines{"robot_description: has no link hammer_hull: no boom, the hammer's loads on its hull alone"});
   }
-  // A boom file, or a model that needs the description, is meant for it.
+  // A boom file or a model that needs the description is meant for this description.
   expectOne(loaded(foreign, boom_), "robot_description: link hammer_hull: not in the model");
   expectOne(loaded(foreign, rigid_), "robot_description: link hammer_hull: not in the model");
-  // What cannot be read is no other machine's.
+  // An unreadable description is not regarded as one of another machine.
   expectOne(loaded(other, "boom: auto\n"), "robot_description: cannot be read: ");
 }
 
@@ -82,7 +82,7 @@ TEST_F(LoadBoom, GivesNoneForBoomNone) {
   EXPECT_FALSE(loaded(urdf_, boom_, "boom: none").value.value().boom);
   EXPECT_FALSE(loaded("", boom_, "boom: none").value.value().boom);
   EXPECT_FALSE(loaded("no URDF", "boom: none").value.value().boom);
-  // Its keys are still judged.
+  // Its keys are still checked.
   expectOne(loaded("", withFirstReplaced(boom_, "bore_m: 0.110", "bore_m: wide"), "boom: none"),
             "boom_cylinder_bore_m: wide m, must");
 }

@@ -1,4 +1,4 @@
-// Single keys: each is read, and a bad value is one line that says what it must be.
+// Single keys: each is read, and a bad value gives one line that states what is required.
 #include "settings/load_support.h"
 
 namespace hammer_loads {

@@ -1,4 +1,4 @@
-/// Settings from the shipped files and those that a test writes.
+/// Loads settings from the shipped files and from those that a test writes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ inline Checked<Settings> loadShippedWith(const std::vector<std::string>& files) 
   return loadFiles(configDirectory(), files);
 }
 
-/// Of the shipped files and one of this content, which they call FILE.
+/// Returns the problems of the shipped files with one of this content, named FILE in the messages.
 inline Lines problemsOf(const std::string& content) {
   const TemporaryFile file(content);
   const Checked<Settings> settings = loadShippedWith({file.path()});

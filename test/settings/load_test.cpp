@@ -1,4 +1,4 @@
-// Shipped and given parameter files together: which value counts, what is kept of them, which files are refused.
+// Shipped and given parameter files together: which value applies, what is kept, which files are refused.
 #include <algorithm>
 #include <filesystem>
 
@@ -107,7 +107,7 @@ TEST(Load, RefusesUnreadableFilesAndNamesEach) {
   EXPECT_EQ(loadShippedWith({missing, testing::TempDir()}).problems,
             (Lines{missing + ": cannot be read: No such file or directory",
                    testing::TempDir() + ": is a directory, must be a file of parameters"}));
-  const std::string longest(4095, 'x');  // a legal path, and the message must name it
+  const std::string longest(4095, 'x');  // a legal path that the message must contain
   EXPECT_EQ(loadShippedWith({longest}).problems.at(0).rfind(longest + ": cannot be read: ", 0), 0U);
   const Lines no_config = loadFiles(testing::TempDir() + "nowhere", {}).problems;
   ASSERT_EQ(no_config.size(), 4U);

@@ -10,7 +10,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Every occurrence of each pair's first text replaced by its second.
+/// Replaces every occurrence of each pair's first text by its second.
 std::string withReplaced(std::string text, const std::vector<std::pair<std::string, std::string>>& pairs) {
   for (const auto& [from, to] : pairs)
     for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
@@ -26,7 +26,7 @@ class BoomFile : public testing::Test {
         file_(std::filesystem::temp_directory_path() / format("boom_%d.yaml", getpid())) {}
   ~BoomFile() override { std::filesystem::remove(file_); }
 
-  /// The shipped file with a piece of it replaced.
+  /// Returns the problems of the shipped file with a piece of it replaced.
   std::vector<std::string> problems(const std::string& piece, const std::string& by) {
     std::string text = yaml_;
     const std::size_t at = text.find(piece);
@@ -78,12 +78,12 @@ TEST_F(BoomFile, EachFaultOfASectionIsOneLine) {
             "boom_foot_section_mass_beyond_kg: 401 kg, must be from 0 to the mass of boom_link, 400 kg");
   expectOne("boom_foot_section_inertia_beyond_kg_m2: 114.3", "boom_foot_section_inertia_beyond_kg_m2: -1",
             "boom_foot_section_inertia_beyond_kg_m2: -1 kg m2, must be");
-  expectOne("boom_foot_section_mass_beyond_kg: 308.7", "", "boom_foot_section_mass_beyond_kg: ");  // all or none
+  expectOne("boom_foot_section_mass_beyond_kg: 308.7", "", "boom_foot_section_mass_beyond_kg: ");  // all keys or none
   expectOne("sections: [boom_foot,", "sections: [boom_foot, boom_foot,", "sections: ");
   expectOne("boom_foot_section_pitch_rad: 0.0", "", "boom_foot_section_pitch_rad: ");
 }
 
-/// A boom whose links were weighed holds as much as one whose description says so.
+/// A boom with identified links gives the same results as one whose description has these values.
 TEST_F(BoomFile, WeighedLinksReplaceTheDescriptions) {
   const std::string arm = R"(weighed_links: [arm_link]
 arm_link_mass_kg: 250.0
@@ -108,7 +108,7 @@ arm_link_moment_z_std_kg_m: 2.0
                              test::joints({0.5, 1.0, -2.0, 0.7})};
     weighed.move(motion, test::kLevel), otherwise.move(motion, test::kLevel);
     for (int j = 0; j < 4; ++j)
-      EXPECT_NEAR(weighed.steadyTorque(j), otherwise.steadyTorque(j), 1e-9 * 5e4);  // of the largest
+      EXPECT_NEAR(weighed.steadyTorque(j), otherwise.steadyTorque(j), 1e-9 * 5e4);  // relative to the largest
   }
   EXPECT_EQ(weighed.parameters().chain.weighed.front().moment_z_std, 2.0);
 
@@ -144,13 +144,13 @@ TEST_F(BoomFile, SectionsMayBeLeftOut) {
 }
 
 TEST_F(BoomFile, ALinkOfUnknownPartsIsAUniformBarWithANote) {
-  yaml_.erase(yaml_.find("arm_middle_section_mass_beyond_kg"));  // and what follows it
+  yaml_.erase(yaml_.find("arm_middle_section_mass_beyond_kg"));  // and all keys after it
   ASSERT_TRUE(problems("damping_ratio", "damping_ratio").empty());
   const Checked<Boom> made = test::loadBoom(urdf_, {file_.string()});
   ASSERT_EQ(made.notes.size(), 1U);
   EXPECT_EQ(made.notes[0],
             "arm_middle_section_mass_beyond_kg: not given, arm_link counts as a uniform bar between its joints");
-  // 230 kg over 1.70 m, cut at 0.80 m.
+  // The bar has 230 kg over 1.70 m and is cut at 0.80 m.
   const RigidBody& part = made.value->sections()[2].part();
   EXPECT_NEAR(part.mass, 230.0 * 0.9 / 1.7, 1e-12);
   EXPECT_NEAR(part.com.x(), 1.25, 1e-15);
@@ -171,7 +171,7 @@ TEST_F(BoomFile, ReportsUnknownAndMissingKeys) {
   expectOne("rigid_tolerance:", "spare_key: 1.0\nrigid_tolerance:", "spare_key: ");
   EXPECT_EQ(problems("damping_ratio: 0.05", "damping: 0.05").size(), 2U);  // one missing, one unknown
   const std::vector<std::string> found = problems("cylinders: [boom_cylinder,", "cylinders: [bom_cylinder,");
-  EXPECT_GT(found.size(), 12U);  // keys of the one missing, and those of the other unknown
+  EXPECT_GT(found.size(), 12U);  // missing keys of one, unknown keys of the other
 }
 
 TEST_F(BoomFile, FaultsOfFileAndDescriptionComeTogether) {
@@ -199,7 +199,7 @@ TEST_F(BoomFile, NeedsThreeKeysWithoutCylinders) {
   const Checked<Boom> made = test::loadBoom(urdf_, {file_.string()});
   ASSERT_TRUE(made.value);
   EXPECT_FALSE(made.value->parameters().supports);
-  // The torques are those of the whole file's boom held rigid: no cylinder counts in them.
+  // The torques equal those of the whole file's boom held rigid, where cylinders have no influence.
   Boom bare = *made.value, shipped = test::shippedBoom();
   const JointMotion motion{test::workingPosition(), test::kZero, test::kZero};
   const Wrench w_tip{{1000.0, 0.0, -30000.0}, {0.0, 500.0, 0.0}};
@@ -210,7 +210,7 @@ TEST_F(BoomFile, NeedsThreeKeysWithoutCylinders) {
   }
   EXPECT_EQ(a.total, b.total);
   EXPECT_GT(a.total.cwiseAbs().maxCoeff(), 1000.0);
-  // What is given is checked, and whole.
+  // Given keys are checked, also for completeness.
   EXPECT_EQ(problems("cylinders: []", "cylinders: []\nsupport_front_x_m: 0.1").size(), 3U);
   expectOne("cylinders: []",
             "cylinders: []\nbulk_modulus_Pa: -1\ndamping_ratio: 0.05\nmode_refresh_angle_rad: 0.001\n"

@@ -1,4 +1,4 @@
-// life.yaml: what is read, what is refused.
+// life.yaml: values read and values refused.
 #include <gtest/gtest.h>
 
 #include "hammer_loads/settings/load.h"
@@ -73,8 +73,8 @@ TEST(ReadLife, NamesEachFault) {
   EXPECT_EQ(problems("hull_x_channel: hull_wrench/force_z").size(), 1U);
   EXPECT_EQ(problems("life_ledger: m.sqlite"), Lines{"life_ledger: \"m.sqlite\", must be an absolute path, or none"});
   EXPECT_EQ(problems("life_classes: 1").size(), 1U);
-  EXPECT_EQ(problems("toe_full_scale_least_MPa: 0").size(), 1U);  // of no hot spot
-  EXPECT_EQ(problems("life_channels: []").size(), 9U);            // keys of no channel
+  EXPECT_EQ(problems("toe_full_scale_least_MPa: 0").size(), 1U);  // belongs to no hot spot
+  EXPECT_EQ(problems("life_channels: []").size(), 9U);            // keys that belong to no channel
 }
 
 }  // namespace

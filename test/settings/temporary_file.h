@@ -1,4 +1,4 @@
-/// Files that exist as long as a test needs them.
+/// Files that exist only as long as a test needs them.
 #pragma once
 
 #include <gtest/gtest.h>

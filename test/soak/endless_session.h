@@ -1,4 +1,4 @@
-/// A working machine for as long as one likes: some turns of its steady work, one behind the other for ever.
+/// A working machine of unlimited duration: some revolutions of steady work, repeated endlessly.
 #pragma once
 
 #include <cmath>
@@ -12,10 +12,10 @@
 
 namespace hammer_loads::soak {
 
-/// Without slow variations the machine's turns repeat themselves, so that the end of the piece fits its beginning.
+/// Returns a machine without slow variations. Its revolutions repeat, so that the piece's end fits its beginning.
 inline simulation::MachineSettings steadyMachine(double rate) {
   simulation::MachineSettings machine = simulation::workingMo100();
-  machine.drive.flow *= 1.15;  // 5 turns a second
+  machine.drive.flow *= 1.15;  // 5 revolutions a second
   machine.drive.relief_pressure *= 1.15;
   machine.drive.flow_variation = machine.drive.ripple = 0.0;
   machine.drive.stop_time = 1e9;
@@ -28,10 +28,10 @@ inline simulation::MachineSettings steadyMachine(double rate) {
 struct EndlessSample {
   StampNs stamp{};
   CrankSample crank;
-  std::size_t place{};  ///< in the repeated piece
+  std::size_t place{};  ///< index in the repeated piece
 };
 
-/// Crank angles go on winding; encoder counts, noise and jitter are the piece's.
+/// Crank angles keep increasing; encoder counts, noise and jitter repeat with the piece.
 class EndlessSession {
  public:
   explicit EndlessSession(double rate, std::size_t turns = 100) : machine_(steadyMachine(rate)) {
@@ -58,7 +58,7 @@ class EndlessSession {
     EndlessSample sample;
     sample.place = place_;
     sample.stamp = reading.stamp + round_ * period_;
-    // Whole counts times the count, as an encoder that winds on says it.
+    // The angle is a whole number of counts, as from a multi-turn encoder.
     const double count = 6.283185307179586232 / machine_.crank.counts;
     const double counts = std::nearbyint(reading.angle / count) +
                           static_cast<double>((turn_[place_] + round_ * turns_) * machine_.crank.counts);
@@ -67,7 +67,7 @@ class EndlessSession {
     return sample;
   }
 
-  /// What the machine really did at a sample.
+  /// Returns the true motion of the machine at a sample.
   const simulation::CrankTruth& truth(std::size_t place) const { return truth_[place]; }
   std::size_t pieceSize() const { return readings_.size(); }  ///< samples
   double turnsPerSecond() const { return 1e9 * static_cast<double>(turns_) / static_cast<double>(period_); }
@@ -84,7 +84,7 @@ class EndlessSession {
   simulation::MachineSettings machine_;
   std::vector<simulation::CrankReading> readings_;
   std::vector<simulation::CrankTruth> truth_;
-  std::vector<std::int64_t> turn_;  ///< since the piece began
+  std::vector<std::int64_t> turn_;  ///< since the beginning of the piece
   std::vector<double> joints_;
   std::int64_t turns_{}, period_{}, start_turn_{}, round_{};
   std::size_t place_{};

@@ -1,5 +1,5 @@
-// A month of one channel through counter, turn loads and ledger. Usage: life_soak DIRECTORY [SAMPLES]
-// Default: 30 days at 1 kHz, 2592000000 samples, some 12 million turns.
+// Runs a month of one channel through counter, revolution loads and ledger. Usage: life_soak DIRECTORY [SAMPLES]
+// Default: 30 days at 1 kHz, 2592000000 samples, some 12 million revolutions.
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -23,7 +23,7 @@ constexpr std::uint64_t kSamplesOfTurn = 216;
 constexpr std::uint64_t kMemorySamples = 400;
 const std::vector<std::string> kInputs{"hull_wrench/force_z"};
 
-/// A pulse a turn, each turn of its own height, with noise: 10 million values, repeated with another offset.
+/// Returns pulses of random height per revolution with noise: 10 million values, repeated with another offset.
 std::vector<double> loads() {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 1.0);

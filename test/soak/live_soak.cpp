@@ -1,4 +1,4 @@
-// Crank samples to the live node and every wrench of it back. Usage: live_soak SECONDS RATE_HZ NODE_PID
+// Sends crank samples to the live node and receives every wrench. Usage: live_soak SECONDS RATE_HZ NODE_PID
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kQueue = 1000000;
 
-/// Stamps must come back in the order of sending, each once.
+/// Checks that stamps return in the order of sending, each once.
 class LiveSoak {
  public:
   explicit LiveSoak(double rate) : session_(rate), rate_(rate) {
@@ -116,7 +116,7 @@ int run(double seconds, double rate, const std::string& node_process) {
   verdict.demand(soak.received() + soak.unsettled() == soak.sent() && soak.lost() == 0, "no wrench lost");
   verdict.demand(soak.unsettled() <= 10, "a wrench from the first samples on");
   verdict.demand(soak.doubled() == 0, "no wrench doubled");
-  // A stall of the machine fills the node's queues for a moment, and the heap keeps their size.
+  // A stall of the computer fills the node's queues for a moment, and the heap keeps their size.
   constexpr double kQueues = 4e6;  // [byte]: some 10000 messages
   verdict.demand(soak.memory.lastQuarter() - soak.memory.firstQuarter() <= kQueues,
                  "memory grows by the queues at most");

@@ -1,4 +1,4 @@
-// Machine time through the log: splits, and the oldest bags deleted. Usage: log_soak EMPTY_DIRECTORY [SECONDS]
+// Runs machine time through the log, with splits and deleted oldest bags. Usage: log_soak EMPTY_DIRECTORY [SECONDS]
 #include <geometry_msgs/WrenchStamped.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -42,7 +42,7 @@ ros::Time timeOf(StampNs stamp) {
   return time;
 }
 
-/// Bags left in the directory, in order, and whether they hold the end of the run without a gap.
+/// Bags left in the directory in order, and whether they contain the end of the run without a gap.
 struct Kept {
   std::uint64_t messages{}, files{};
   double size{};
@@ -118,7 +118,7 @@ Written write(const std::string& directory, std::uint64_t samples) {
     if (i % 1000 != 0) continue;
     while (log.health().queue_fill > 0.25) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (i % (samples / 400 / 1000 * 1000 + 1000) == 0) {
-      if (i > samples / 10) written.memory.add(test::residentMemory());  // by then every buffer has had its size
+      if (i > samples / 10) written.memory.add(test::residentMemory());  // by then every buffer has its full size
       written.most_on_disk = std::max(written.most_on_disk, sizeOf(directory));
     }
   }
@@ -164,7 +164,7 @@ int run(const std::string& directory, double machine_seconds) {
 }  // namespace hammer_loads::soak
 
 int main(int argc, char** argv) {
-  hammer_loads::keepMemorySteady();  // as the nodes
+  hammer_loads::keepMemorySteady();  // as in the nodes
   const double seconds = argc > 2 ? std::strtod(argv[2], nullptr) : 3600.0;
   if (argc < 2 || argc > 3 || !(seconds >= 600.0) || !std::filesystem::is_empty(argv[1])) {
     std::fprintf(stderr, "usage: log_soak EMPTY_DIRECTORY [SECONDS], at least 600\n");

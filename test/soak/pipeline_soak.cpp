@@ -1,4 +1,4 @@
-// Machine time through the pipeline without a pause. Usage: pipeline_soak [SAMPLES]    default: a day at 1 kHz
+// Runs machine time through the pipeline without pause. Usage: pipeline_soak [SAMPLES] default: a day at 1 kHz
 #include <chrono>
 #include <cstdlib>
 #include <numeric>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kDay = 86400000;
 constexpr std::uint64_t kMemorySamples = 400;
-constexpr std::uint64_t kSettled = 10;  // pieces until the filter's own parameters have come to rest: 200 s
+constexpr std::uint64_t kSettled = 10;  // pieces until the filter's own parameters have settled: 200 s
 
 struct Errors {
   double sum{}, worst{};
@@ -78,7 +78,7 @@ int run(std::uint64_t samples) {
   verdict.demand(turns + 2 >= expected_turns && turns <= expected_turns, "every turn told once");
   verdict.demand(pulses + 2 >= turns, "a pulse for every turn");
   verdict.demand(std::abs(memory.growth()) <= 0.01, "memory of the last quarter within 1 % of the first");
-  // Same readings but for the winding: what differs is the angle's rounding, 5e-10 rad after a day.
+  // The readings differ only by whole revolutions: rounding of the angle is 5e-10 rad after a day.
   verdict.demand(std::abs(last.rms() / first.rms() - 1.0) <= 0.01, "error of the last turns equals that of the first");
   return verdict.exitCode();
 }

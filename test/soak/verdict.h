@@ -1,4 +1,4 @@
-/// What a soak measured and what it demanded: `key: value` lines, and an exit code.
+/// Results and requirements of a soak test: `key: value` lines and an exit code.
 #pragma once
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Rows as they are written.
+// Rows as written to a table.
 #include "hammer_loads/tables/table_writer.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::vector<std::string> rowsOf(const std::string& file, const char* sql) {
   return texts;
 }
 
-/// What nothing measured is NULL, which is not zero.
+/// Values without a measurement are NULL, which is not zero.
 TEST(TableWriter, WritesNullForWhatIsNotKnown) {
   const test::TemporaryFile file("");
   const std::vector<TableColumn> columns{{"turn", true, "-", {}}, {"flags", true, "-", {}}, {"energy", false, "J", {}}};

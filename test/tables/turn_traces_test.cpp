@@ -1,4 +1,4 @@
-// Which turns are kept, in how much memory.
+// Which revolutions are kept, and the memory used.
 #include "hammer_loads/tables/turn_traces.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// Turns of `samples` samples 1 ms apart, each known 50 samples after its end; force_z names the turn.
+/// Plays revolutions of `samples` samples 1 ms apart, each known 50 samples after its end; force_z names each.
 void play(TurnTraces& traces, const std::vector<double>& amplitudes, int samples) {
   std::int64_t stamp = 0;
   std::size_t ended = 0;
@@ -38,7 +38,7 @@ void expectWhole(const TurnTrace& trace, int samples) {
   EXPECT_EQ(trace.samples.back().stamp - trace.start, samples * kMs);
 }
 
-/// However long the run: the typical turn lies near the median of all of them.
+/// For runs of any length, the typical revolution lies near the median of all.
 TEST(TurnTraces, TypicalIsNearTheMedian) {
   std::mt19937 random(1);
   std::lognormal_distribution<> amplitude(0.0, 0.5);
@@ -53,7 +53,7 @@ TEST(TurnTraces, TypicalIsNearTheMedian) {
     EXPECT_EQ(typical->amplitude, amplitudes[typical->turn - 1]);
     const auto below =
         std::count_if(amplitudes.begin(), amplitudes.end(), [&](double value) { return value <= typical->amplitude; });
-    // The rank of a median of at least 16 turns scatters by 0.5/sqrt(16) at most; three of these.
+    // The rank of a median of at least 16 revolutions scatters by 0.5/sqrt(16) at most; the bound is three of these.
     EXPECT_NEAR(static_cast<double>(below) / static_cast<double>(turns), 0.5, turns < 16 ? 0.5 : 0.38) << turns;
   }
 }
