@@ -13,8 +13,8 @@ namespace {
 constexpr double kMaxStep = 0.08;  // [rad]
 constexpr int kMostSteps = 64;     // from one node of the torque to the next
 
-/// The equations of motion on one side of a blow, with their derivatives: angle and sqrt(inertia) speed. Time runs away
-/// from the blow.
+/// Equations of motion on one side of a blow and their derivatives. The state is angle and sqrt(inertia) speed; time is
+/// counted from the blow.
 class ShotWay {
  public:
   using Path = Eigen::Vector2d;
@@ -58,7 +58,7 @@ class ShotWay {
     const double acceleration = (t.torque - t.load.half_inertia_slope * t.speed * t.speed) * t.inv_root * t.inv_root;
     return {path[0], t.speed, acceleration};
   }
-  /// d(offset, speed) from d(offset, sqrt(inertia) speed).
+  /// Converts derivatives of (offset, sqrt(inertia) speed) to those of (offset, speed).
   ShotSlopes ofPoint(const There& t, ShotSlopes slopes) const {
     const double square = t.inv_root * t.inv_root;
     slopes.row(1) = t.inv_root * slopes.row(1) - t.speed * t.load.half_inertia_slope * square * slopes.row(0);
@@ -75,19 +75,19 @@ class ShotWay {
   }
 
  private:
-  /// Between which nodes of the torque an instant lies.
+  /// Interval between two torque nodes and the fraction of it up to an instant.
   struct NodePlace {
     int node;
     double part;
   };
   NodePlace nodePlace(double time) const {
-    const double place = std::fmin(time / half_.node_step, static_cast<double>(kNodesBeside));  // NaN: the last one
+    const double place = std::fmin(time / half_.node_step, static_cast<double>(kNodesBeside));  // NaN: last node
     const int node = std::min(static_cast<int>(place), kNodesBeside - 1);
     return {node, place - node};
   }
   double sign() const { return half_.before ? -1.0 : 1.0; }
   Side side() const { return half_.before ? Side::kBeforeBlow : Side::kAfterBlow; }
-  /// Lead of the mean speed over the state at `offset`.
+  /// Returns the lead of a crank at the mean speed over the actual crank at `offset` [rad].
   double ahead(double time, double offset) const { return half_.law.mean_speed * sign() * time - offset; }
   double torqueAt(double time, double offset, double speed) const {
     const NodePlace place = nodePlace(time);
@@ -95,7 +95,7 @@ class ShotWay {
     return half_.torque[place.node] + place.part * (half_.torque[place.node + 1] - half_.torque[place.node]) +
            law.stiffness * ahead(time, offset) - law.drag * (speed - law.mean_speed);
   }
-  /// A row's rate by the torque is `gain`.
+  /// Adds the contribution of the torque's parameters to a row; `gain` is the row's derivative by the torque.
   template <class Row>
   void addTorqueSlopes(double gain, double time, double offset, double speed, Row rate) const {
     const NodePlace place = nodePlace(time);
@@ -139,8 +139,8 @@ void step(const ShotWay& way, double dt, ShotWay::Run& run) {
   run.there = way.at(end, run.path);
 }
 
-/// Motion within a step: the polynomial of degree 5 through offset, speed and acceleration at both ends, and that of
-/// degree 3 for the derivatives.
+/// Interpolation within a step. The motion is a polynomial of degree 5 through offset, speed and acceleration at both
+/// ends; the derivatives are a polynomial of degree 3.
 class Between {
  public:
   Between(double sign, const Node& from, const Node& to)
@@ -185,7 +185,7 @@ Node nodeOf(const ShotWay& way, const ShotWay::Run& run) {
   return node;
 }
 
-/// Steps end at the nodes of the torque. slopes: used with_slopes only.
+/// Integrates over all times in steps that end at the torque nodes; `slopes` is used only if with_slopes is true.
 template <bool with_slopes>
 void follow(const ShotWay& way, const HalfShot& half, const std::vector<double>& times, std::vector<ShotPoint>& points,
             std::vector<ShotSlopes>* slopes) {

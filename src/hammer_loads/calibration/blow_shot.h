@@ -1,4 +1,4 @@
-/// The crank's motion around one blow, by the shaft's equation of motion.
+/// Integrates the shaft's equation of motion to obtain the crank's motion around one blow.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@ namespace hammer_loads::calibration {
 
 constexpr int kNodesBeside = 4;  ///< nodes of the torque on either side of the blow
 
-/// Parameters of one blow alone: instant [s], the crank's speeds before and after [rad/s], net torque [N m] in nodes at
-/// the blow and at equal steps before (odd ones) and after it (even ones), linear in between.
+/// Local parameters of one blow: instant [s], crank speeds before and after [rad/s], net torque [N m] at the nodes. One
+/// node is at the blow, the others at equal steps before and after it. The torque is linear between nodes.
 enum LocalIndex : Eigen::Index {
   kInstant,
   kSpeedBefore,
@@ -22,36 +22,36 @@ enum LocalIndex : Eigen::Index {
 };
 using Locals = Eigen::Matrix<double, kLocals, 1>;
 
-/// Place of a node in Locals; node 0 is at the blow, 1.. further away.
+/// Returns the index of a torque node in Locals; node 0 is at the blow, higher nodes are further away.
 constexpr Eigen::Index torqueIndex(bool before, int node) {
   return node == 0 ? static_cast<Eigen::Index>(kTorqueAtBlow)
                    : static_cast<Eigen::Index>(kTorques) + (before ? 0 : kNodesBeside) + node - 1;
 }
 
-/// Law by which the drive's torque follows the crank, equal at every blow.
+/// Dependence of the drive torque on the crank's motion, common to all blows.
 struct DriveLaw {
   double mean_speed{};  ///< [rad/s]
-  double stiffness{};   ///< torque lost per angle that the crank is ahead of the mean speed: oil in the line [N m/rad]
-  double drag{};        ///< torque lost per speed above the mean: friction, a motor's slip [N m s/rad]
+  double stiffness{};   ///< torque loss per angle of lead over the mean speed: oil in the line [N m/rad]
+  double drag{};        ///< torque loss per speed above the mean: friction, motor slip [N m s/rad]
 };
 
-/// One side of the blow, as seen from it.
+/// Parameters of the motion on one side of the blow.
 struct HalfShot {
   bool before{};
   double speed{};                     ///< at the blow [rad/s]
-  double torque[kNodesBeside + 1]{};  ///< in the nodes [N m]
+  double torque[kNodesBeside + 1]{};  ///< at the nodes [N m]
   double node_step{};                 ///< [s], > 0
   double drive_inertia{};             ///< [kg m2]
   DriveLaw law;
 };
 
-/// Motion of the crank.
+/// Crank offset [rad], speed [rad/s] and acceleration [rad/s2].
 struct ShotPoint {
   double offset{}, speed{}, acceleration{};
 };
 
-/// Parameters of one side: speed at the blow, torques in the nodes, logarithm of the drive inertia, the law's two
-/// numbers.
+/// Parameters of one side: speed at the blow, torques at the nodes, logarithm of the drive inertia, stiffness and drag
+/// of the drive law.
 enum HalfIndex : Eigen::Index {
   kOwnSpeed,
   kOwnTorques,
@@ -61,12 +61,12 @@ enum HalfIndex : Eigen::Index {
   kHalfMoving
 };
 
-/// d(offset, speed)/d(each of HalfIndex).
+/// Derivatives of offset and speed with respect to the parameters of HalfIndex.
 using ShotSlopes = Eigen::Matrix<double, 2, kHalfMoving>;
 
-/// The crank at times away from the blow, ascending, >= 0 [s] (before it: how long before). Runge-Kutta of order 4 in
-/// angle and sqrt(inertia) speed, steps of at most 0.08 rad, polynomials within them. slopes: null, or their
-/// derivatives, integrated along with them.
+/// Computes the crank's motion at ascending times from the blow, >= 0 [s], counted backwards on the side before it.
+/// Integrates angle and sqrt(inertia) speed by Runge-Kutta of order 4 in steps of at most 0.08 rad, and interpolates by
+/// polynomials. If slopes is not null, the derivatives are integrated as well.
 void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
            std::vector<ShotPoint>& points, std::vector<ShotSlopes>* slopes = nullptr);
 

@@ -12,8 +12,8 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr std::size_t kLeastRows = 60;  // per cylinder: 12 s of motion, both ways
-constexpr std::size_t kMostPoses = 40;  // at which static torques are judged
+constexpr std::size_t kLeastRows = 60;  // per cylinder: 12 s of motion, in both directions
+constexpr std::size_t kMostPoses = 40;  // for the rms of static torques
 // Limit: kLeastRows
 // Numerical: kMostPoses
 
@@ -23,7 +23,7 @@ double rms(const std::vector<double>& values) {
   return values.empty() ? kNaN : std::sqrt(square / static_cast<double>(values.size()));
 }
 
-/// rms of the values of a cylinder's rows, in one recording or in all.
+/// Returns the rms of the values in a cylinder's rows, in one recording or in all.
 double rmsOf(const std::vector<BoomRow>& rows, const Eigen::VectorXd& values, std::size_t cylinder,
              std::optional<std::size_t> recording = {}) {
   std::vector<double> own;
@@ -38,8 +38,8 @@ std::size_t countOf(const std::vector<BoomRow>& rows, std::size_t cylinder) {
   return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), own));
 }
 
-/// First moment about a cylinder's joint of all that its link carries, in the axes of the link that stands for it; what
-/// is beyond the next joint counts as in that. x and z.
+/// Returns x and z of the first moment about a cylinder's joint of the bodies beyond it, in the axes of `link`. Bodies
+/// beyond the next joint count as concentrated in that joint.
 Eigen::Vector2d firstMoment(const Boom& boom, int joint, int link) {
   const Chain& chain = boom.chain();
   ChainPose pose;
@@ -126,7 +126,7 @@ class Finder {
     return true;
   }
 
-  /// The last quarter of each recording, or what is before it.
+  /// Returns the rows of the last quarter of each recording, or those before it.
   std::vector<BoomRow> part(const std::vector<BoomRow>& rows, bool last) const {
     std::vector<BoomRow> some;
     for (const BoomRow& row : rows) {
@@ -241,14 +241,14 @@ class Finder {
     addCorrelations(fit.covariance, names, result_);
   }
 
-  /// Estimates the weight on a boom that was weighed without it.
+  /// Estimates the weight on a boom that was identified without it.
   void checkWeight(const Progress& progress) {
     const auto hung = std::find_if(weights_.begin(), weights_.end(), [](const TipWeight& w) { return w.mass > 0.0; });
     const bool any_free =
         std::any_of(weights_.begin(), weights_.end(), [](const TipWeight& w) { return w.mass == 0.0; });
     if (hung == weights_.end() || !any_free) return;
     std::vector<TipWeight> asked = weights_;
-    constexpr double kAnything = 3.0;  // times what hangs there
+    constexpr double kAnything = 3.0;  // times the hung weight
     // Prior: kAnything
     for (TipWeight& w : asked)
       if (w.mass > 0.0) w.deviation = kAnything * w.mass;

@@ -1,4 +1,4 @@
-/// Weighing of a boom by its own cylinders: masses, friction and zeros from two minutes of free movement.
+/// Identification of a boom's masses, friction and zeros from its cylinders in two minutes of free movement.
 #pragma once
 
 #include <algorithm>
@@ -15,47 +15,47 @@ namespace hammer_loads::calibration {
 struct WeighedRecording {
   BoomRecording recording;
   TipWeight weight;
-  std::string name{};  ///< name of its bag, for texts
+  std::string name{};  ///< name of the bag, for messages
 };
 
-/// Uncertainty of the weight beyond a joint, over the poses of the recording.
+/// Uncertainty of the torque of weight about a joint, over the poses of the recording.
 struct JointWeight {
   std::string joint;
-  double torque{};     ///< static, rms over the poses [N m]
-  double deviation{};  ///< standard, rms as above [N m]
-  double before{};     ///< difference of the given boom from the identified one, rms [N m]
+  double torque{};     ///< static torque, rms over the poses [N m]
+  double deviation{};  ///< standard deviation, rms over the poses [N m]
+  double before{};     ///< difference between the given and the identified boom, rms [N m]
   double part() const { return torque > 0.0 ? deviation / torque : kInfinity; }
 };
 
-/// Residual of a cylinder's force.
+/// Residuals of a cylinder's force.
 struct CylinderFit {
   std::string name;
   std::size_t rows{};
-  double force{};               ///< rms [N]
-  double left{};                ///< rms, with the values found [N]
-  double before{};              ///< rms, with those given [N]
-  std::vector<double> left_in;  ///< left in each recording, where there are several [N]; NaN: no rows there
-  double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
-  double friction{};            ///< at that force [N]
-  double friction_std{};        ///< standard [N]
-  /// True if held-out rows fit far worse than fitted ones, so that the model is wrong and its deviations do not apply.
+  double force{};               ///< measured force, rms [N]
+  double left{};                ///< residual with the identified values, rms [N]
+  double before{};              ///< residual with the given values, rms [N]
+  std::vector<double> left_in;  ///< residual in each of several recordings, rms [N]; NaN: no rows there
+  double held_out{};      ///< residual of the last quarter with the values of the first three, rms [N]; NaN: no rows
+  double friction{};      ///< at the rms force [N]
+  double friction_std{};  ///< standard deviation [N]
+  /// Returns false if held-out rows fit far worse than fitted ones: the model is wrong, its deviations do not apply.
   bool holds() const { return !(held_out > std::max(kHeldOutOverLeft * left, kHeldOutOverForce * force)); }
 
   static constexpr double kHeldOutOverLeft = 2.0, kHeldOutOverForce = 0.04;
   // Limit: kHeldOutOverLeft, kHeldOutOverForce
 };
 
-/// One row as a picture shows it.
+/// Residual of one row for the picture.
 struct BoomResidual {
   std::size_t cylinder{};
-  double angle{};  ///< angle of its joint [rad]
+  double angle{};  ///< angle of the cylinder's joint [rad]
   bool extends{};
   double before{}, after{};  ///< [N]
 };
 
-/// Estimates are keys of the boom file; their limits are not used, see joints.
+/// Result of a boom identification. Estimates are keys of the boom file; their limits are not used, see joints.
 struct BoomCalibration : Findings {
-  /// Limit of the relative deviation of a joint's static torque. Above it the joint is undetermined and nothing is
+  /// Limit of the relative deviation of a joint's static torque. A joint above it is undetermined and no value is
   /// written, since the values belong together.
   static constexpr double kLimit = 0.03;
   // Limit: kLimit
@@ -66,8 +66,8 @@ struct BoomCalibration : Findings {
   std::vector<JointWeight> joints;
   std::vector<CylinderFit> cylinders;
   std::vector<BoomResidual> residuals;
-  std::optional<Estimate> weight_check;  ///< the weight on the tip by a boom that was weighed without it [kg]
-  BoomParameters found;                  ///< boom file with everything found and its deviations
+  std::optional<Estimate> weight_check;  ///< weight on the tip according to a boom identified without it [kg]
+  BoomParameters found;                  ///< boom file with all identified values and their deviations
 
   bool determined() const;
 };

@@ -10,15 +10,15 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kFullWeight = gate::kRare;  // standard deviations of what is left
+constexpr double kFullWeight = gate::kRare;  // [standard deviations of the residual]
 constexpr int kMostRounds = 40;
-constexpr double kSettled = 1e-3;  // in standard deviations
+constexpr double kSettled = 1e-3;  // [prior standard deviations]
 // Numerical: kMostRounds, kSettled
 constexpr std::size_t kNeighbouringRows = 100;  // range of rows that may have a common error: 20 s
 
-/// Variance of a sum of neighbours over that of as many strangers: 1 + 2 sum of the autocorrelation. Pairs of lags are
-/// added until their sum is lost in noise (initial positive sequence, Geyer 1992): residuals that alternate with a
-/// ripple of the pump have a negative first lag and are correlated further away.
+/// Returns the variance of a sum of successive residuals over that of independent ones: 1 + 2 sum of the
+/// autocorrelation. Pairs of lags are added until their sum is within noise (initial positive sequence, Geyer 1992).
+/// Residuals that alternate with pump ripple have a negative first lag and are correlated at larger lags.
 double alike(const std::vector<double>& left) {
   double square = 0.0;
   for (const double r : left) square += r * r;
@@ -36,18 +36,18 @@ double alike(const std::vector<double>& left) {
   return std::max(1.0, sum);
 }
 
-/// Half the two-sided 95.4 % quantile of Student's distribution; 1 for many degrees of freedom. The expansion about the
-/// normal distribution (Abramowitz and Stegun, 26.7.5) has an error below 1 % from two degrees of freedom on.
+/// Returns half the two-sided 95.4 % quantile of Student's distribution; 1 for many degrees of freedom. The expansion
+/// about the normal distribution (Abramowitz and Stegun, 26.7.5) has an error below 1 % from two degrees of freedom on.
 double studentFactor(double degrees) {
   const double d = 1.0 / degrees;
   return 1.0 + d * (1.25 + d * (1.531 + d * (1.430 + d * 0.922)));
 }
 
-/// Variance of the relative error of a cylinder's forces in a recording, by the method of moments (DerSimonian and
-/// Laird, 1986). The covariance of the scores is information + variance * information squared. Satterthwaite's degrees
-/// of freedom (1946) are the number of recordings less one if all have the same information. The prior counts as one
-/// more degree. Student's factor enlarges the variance that few recordings show: two standard deviations then contain
-/// 90 % or more even if the scatter is ten times the prior.
+/// Returns the variance of the relative error of a cylinder's forces in a recording, by the method of moments
+/// (DerSimonian and Laird, 1986). The covariance of the scores is information + variance * information squared.
+/// Satterthwaite's degrees of freedom (1946) are the number of recordings minus one if all have the same information.
+/// The prior adds one degree. Student's factor enlarges the variance found from few recordings. Two standard deviations
+/// then contain 90 % or more even if the scatter is ten times the prior.
 double scatterOf(const Eigen::VectorXd& scores, const Eigen::MatrixXd& information, double prior_std) {
   constexpr double kPriorDegrees = 1.0;  // Prior: kPriorDegrees
   const Eigen::MatrixXd square = information * information;
@@ -68,7 +68,7 @@ class Fitter {
     fit_.x = model.zero();
     const std::size_t cylinders = model.given().cylinders().size();
     fit_.noise.assign(cylinders, 0.0), fit_.together.assign(cylinders, 1.0);
-    for (std::size_t k = 0; k < cylinders; ++k) {  // at first: a part of the force itself
+    for (std::size_t k = 0; k < cylinders; ++k) {  // initially a part of the force itself
       double square = 0.0, count = 0.0;
       for (const BoomRow& row : rows)
         if (row.cylinder == k) square += row.measured * row.measured, count += 1.0;
@@ -76,8 +76,8 @@ class Fitter {
     }
   }
 
-  /// The correlation of neighbours is that of the residuals of a first fit, which has none. If it were updated in each
-  /// round, the errors of a poor first guess would count as correlated noise, and the fit would stay there.
+  /// Fits twice: first without correlation of neighbours, then with that of the first fit's residuals. Updates in each
+  /// round would count errors of a poor first guess as correlated noise, and the fit would stay there.
   BoomFit run(const Progress& progress) {
     settle(piece(progress, 0.0, 0.7));
     for (std::size_t k = 0; k < fit_.noise.size(); ++k) fit_.together[k] = alike(residualsOfCylinder(k));
@@ -98,14 +98,14 @@ class Fitter {
     }
   }
 
-  /// With the prior of the unknowns.
+  /// Returns the normal matrix including the prior of the unknowns.
   static Eigen::MatrixXd normalOf(const BoomSystem& s) {
     return s.information() + Eigen::MatrixXd::Identity(s.slopes.cols(), s.slopes.cols());
   }
 
-  /// Covariance of the fit and of what differs from recording to recording. The load on the tip, the temperature of
-  /// the oil and zeros are those of a day. A cylinder's forces therefore have a relative error of their own in each
-  /// recording, which few recordings show only roughly.
+  /// Adds differences between recordings to the fit's covariance. The load on the tip, the oil temperature and zeros
+  /// change from day to day. A cylinder's forces therefore have their own relative error in each recording. Few
+  /// recordings determine its variance only roughly.
   void findCovariance() {
     const BoomSystem s = systemOf(model_, rows_, fit_);
     fit_.covariance = inverseOf(normalOf(s));
@@ -120,7 +120,7 @@ class Fitter {
     }
   }
 
-  /// Measured forces of one cylinder [N]: one column for each recording, with zeros in the rows of others.
+  /// Returns the measured forces of one cylinder [N]: one column per recording, zeros in rows of others.
   Eigen::MatrixXd forcesOf(std::size_t cylinder) const {
     Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size()),
                                                    static_cast<Eigen::Index>(rows_.back().recording) + 1);
@@ -130,7 +130,7 @@ class Fitter {
     return forces;
   }
 
-  /// Friction that would be below zero is held at zero.
+  /// Takes one step; friction that would become negative is held at zero.
   void step() {
     const BoomSystem s = systemOf(model_, rows_, fit_);
     const Eigen::Index n = fit_.x.size();
@@ -151,20 +151,20 @@ class Fitter {
       if (!again) move(next);
     }
   }
-  /// The entry of an unknown whose value is zero.
+  /// Returns the entry at which an unknown's value is zero.
   double atZero(Eigen::Index i) const {
     const Unknown& u = model_.unknowns()[static_cast<std::size_t>(i)];
     return -u.given / u.deviation;
   }
 
-  /// Moves to the next values, or as far towards them as a boom with such values exists.
+  /// Moves to the next values, or as far towards them as the boom remains possible.
   void move(const Eigen::VectorXd& next) {
     double part = 1.0;
     while (part > 1e-3 && !model_.boomAt(fit_.x + part * (next - fit_.x), 0)) part *= 0.5;
     fit_.x += part * (next - fit_.x);
   }
 
-  /// Residuals of one cylinder, limited to what counts fully.
+  /// Returns the residuals of one cylinder, clipped at kFullWeight standard deviations.
   std::vector<double> residualsOfCylinder(std::size_t cylinder) const {
     const Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x);
     const double most = kFullWeight * fit_.noise[cylinder];

@@ -1,5 +1,5 @@
-/// Maximum a posteriori estimate of a boom's unknowns from its cylinders' forces in free movement: readings, the
-/// model's errors at them, and the fit.
+/// Maximum a posteriori estimate of a boom's unknowns from its cylinders' forces in free movement: readings, residuals
+/// of the model and fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,46 +11,45 @@
 
 namespace hammer_loads::calibration {
 
-/// Reading of one cylinder at one point with a rod speed of certain sign.
+/// Force of one cylinder at a point where the sign of the rod speed is certain.
 struct BoomRow {
   std::size_t recording{}, cylinder{};
   const BoomPoint* point{};
   double measured{};  ///< force [N]
 };
 
-/// Rows of the points of all recordings, in the order of recordings, cylinders, times. The points must outlive the
-/// rows.
+/// Returns the rows of all recordings, ordered by recording, cylinder and time. The points must outlive the rows.
 std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints>& recordings);
 
-/// Residuals: forces of the rows less those of the model with values x [N].
+/// Returns the residuals: measured forces of the rows minus the model's forces at x [N].
 Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
 
-/// Slopes of the model's forces by the unknowns at x [N].
+/// Returns the derivatives of the model's forces by the unknowns at x [N].
 Eigen::MatrixXd slopesOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
 
 struct BoomFit {
-  Eigen::VectorXd x;             ///< values in the order of BoomModel, in standard deviations before the recording
+  Eigen::VectorXd x;             ///< values in the order of BoomModel, in prior standard deviations
   Eigen::MatrixXd covariance;    ///< covariance of x
   std::vector<double> noise;     ///< per cylinder: standard deviation of a row's residual [N]
-  std::vector<double> together;  ///< per cylinder: number of successive rows that give the information of one, >= 1 [-]
+  std::vector<double> together;  ///< per cylinder: number of successive rows with the information of one, >= 1 [-]
   bool converged{};
 };
 
-/// Gauss-Newton on the squares of residuals and unknowns over their variances, with Huber weights beyond three
-/// deviations. The noise is that of the residuals, per cylinder. Residuals of neighbours may be correlated; their
-/// number is then reduced accordingly. Friction is not negative.
+/// Fits by Gauss-Newton the squared residuals and unknowns over their variances, with Huber weights beyond three
+/// deviations. The noise of each cylinder is that of its residuals. Correlation of neighbouring residuals reduces their
+/// effective number. Friction is not negative.
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
 
 /// Linear system of a fit about its values.
 struct BoomSystem {
   Eigen::VectorXd left;    ///< residuals [N]; zero where the model has no force
-  Eigen::VectorXd weight;  ///< the noise, the correlation of neighbours, Huber's weights [1/N2]
+  Eigen::VectorXd weight;  ///< from noise, correlation of neighbours and Huber weights [1/N2]
   Eigen::MatrixXd slopes;  ///< derivatives of the model's forces by the unknowns [N]
   Eigen::MatrixXd information() const { return slopes.transpose() * weight.asDiagonal() * slopes; }
 };
 BoomSystem systemOf(const BoomModel& model, const std::vector<BoomRow>& rows, const BoomFit& fit);
 
-/// Standard deviations of a function of the unknowns, by differences over a tenth of each unknown's deviation.
+/// Returns the standard deviations of a function of the unknowns, by differences of 0.1 prior deviations.
 Eigen::VectorXd stdsOf(const BoomFit& fit, const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& function);
 
 }  // namespace hammer_loads::calibration

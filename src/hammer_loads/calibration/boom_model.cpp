@@ -16,7 +16,7 @@ int heaviestBeyond(const Chain& chain, int joint) {
   return heaviest;
 }
 
-/// Body with a point mass added.
+/// Adds a point mass to a body.
 WeighedLink together(WeighedLink link, double mass, double x, double z) {
   const double all = link.mass + mass, dx = x - link.com_x, dz = z - link.com_z;
   link.com_x += mass / all * dx, link.com_z += mass / all * dz;
@@ -38,7 +38,7 @@ void replace(std::vector<WeighedLink>& links, const WeighedLink& link) {
 using Link = WeighedLink;
 using Holder = CylinderParameters;
 
-/// In the order of BoomUnknown.
+/// Kinds in the order of BoomUnknown.
 constexpr UnknownKind kKinds[]{
     {"_mass_kg", "kg", "", &Link::mass, true},
     {"_com_x_m", "m", "", &Link::com_x},
@@ -180,7 +180,7 @@ double BoomModel::rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoi
   return boom.cylinderPosition(cylinder).arm * point.motion.velocity[boom.cylinders()[cylinder].joint()];
 }
 
-/// The rod pushes with the oil's force less what rubs against its motion.
+/// Friction acts against the rod's motion: the rod's push is the oil's force minus friction.
 double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder, std::size_t recording,
                              const BoomPoint& point) const {
   const auto unknown = [&](BoomUnknown kind, double otherwise) { return valueOf(x, kind, cylinder, otherwise); };

@@ -10,13 +10,13 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kLeastHalfWidth = 0.20;  // [s]: an operator's motion is a parabola over it; the oil's modes average
-constexpr std::ptrdiff_t kLeastReadings = 7;  // the noise shows from the fifth one on
+constexpr double kLeastHalfWidth = 0.20;  // [s]; an operator's motion is parabolic over it, oil vibration averages out
+constexpr std::ptrdiff_t kLeastReadings = 7;  // the noise can be estimated from the fifth one on
 
-/// A parabola through the readings around an instant.
+/// Parabola through the readings around an instant.
 struct LocalFit {
   double value{}, rate{}, acceleration{};
-  double rate_std{};  ///< standard, from the residuals
+  double rate_std{};  ///< standard deviation from the residuals
 };
 
 std::optional<LocalFit> fitAround(const Trace& trace, double time, double half_width) {

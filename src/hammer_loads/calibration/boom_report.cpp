@@ -14,7 +14,7 @@ namespace {
 
 double percent(double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; }
 
-/// Keys with values, in the order of a file.
+/// Keys and values in the order of the file.
 using KeyLines = std::vector<std::pair<std::string, std::string>>;
 
 KeyLines linesOf(const std::string& yaml) {
@@ -31,7 +31,7 @@ void put(KeyLines& lines, const std::string& key, const std::string& value) {
   (same == lines.end() ? lines.emplace_back(key, "") : *same).second = " " + value;
 }
 
-/// Numbers of a cylinder, a link or a section, whose name is in front of the keys.
+/// Puts the numbers of a cylinder, a link or a section, whose name precedes each key.
 void put(KeyLines& lines, const std::string& name, const std::vector<std::pair<const char*, double>>& numbers) {
   for (const auto& [key, number] : numbers) put(lines, name + key, numberText(number));
 }
@@ -80,7 +80,7 @@ std::string cylinderLine(const CylinderFit& f) {
       percent(f.friction, f.force));
 }
 
-/// Residuals of each recording; nothing where there is one recording.
+/// Returns the residuals of each recording; empty if there is only one recording.
 std::string recordingLine(const CylinderFit& f, const std::vector<std::string>& names) {
   std::vector<std::string> texts;
   for (std::size_t r = 0; r < f.left_in.size(); ++r)

@@ -7,11 +7,11 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
-constexpr double kStep = 0.05;           // step of differences, in standard deviations before the recording
+constexpr double kLeastRodSpeed = 0.01;  // [m/s]; below it, seals stick and slip with more friction (Stribeck)
+constexpr double kStep = 0.05;           // step of differences [prior standard deviations]
 // Numerical: kStep
 
-/// True if the rod moves in one direction throughout the readings of the point.
+/// Returns true if the rod moves in one direction throughout the readings of the point.
 bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point) {
   const int joint = boom.cylinders()[cylinder].joint();
   const double arm = std::abs(boom.cylinderPosition(cylinder).arm);
@@ -20,19 +20,18 @@ bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point)
   return arm * least > kLeastRodSpeed && rate > gate::kRare * point.rate_std[joint];
 }
 
-/// The forces of all cylinders depend on it.
+/// Returns true for an unknown of a link, on which the forces of all cylinders depend.
 bool isOfLinks(const Unknown& unknown) { return kindOf(unknown.kind).of_link != nullptr; }
 
-/// Returns false if the force of the row does not depend on the unknown, which belongs to another cylinder or
-/// recording.
+/// Returns false if the unknown belongs to another cylinder or recording and does not affect the force of the row.
 bool concerns(const Unknown& unknown, const BoomRow& row) {
   if (unknown.kind == BoomUnknown::kTipWeight) return unknown.of == row.recording;
   if (unknown.kind == BoomUnknown::kRecording && unknown.recording != row.recording) return false;
   return isOfLinks(unknown) || unknown.kind == BoomUnknown::kZero || unknown.of == row.cylinder;
 }
 
-/// Booms of the recordings with values x. Making a boom takes as long as evaluating a hundred rows. Recordings with the
-/// same weight therefore share one, and steps of unknowns on which no boom depends use the booms at x.
+/// Booms of the recordings at x. Making a boom takes as long as evaluating a hundred rows. Recordings with the same
+/// weight therefore share one. Steps of unknowns on which no boom depends use the booms at x.
 class BoomsAt {
  public:
   BoomsAt(const BoomModel& model, const Eigen::VectorXd& x, std::size_t recordings) : booms_(recordings) {

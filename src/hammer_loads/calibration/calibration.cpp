@@ -23,7 +23,7 @@ constexpr int kCurveParts = 72;
 constexpr double kUnknownAngleNoise = 5e-4;  // first guess for a sensor without counts [rad]
 // Prior: kUnknownAngleNoise
 
-/// Reading at the blow, within some 3 deg [rad]; empty if none shows.
+/// Returns the reading at the blow, within some 3 deg [rad]; empty if no blow is found.
 std::optional<double> placeOfBlow(const CrankTrack& track, const SegmentModel& model, double drive_inertia) {
   ZeroSearch search(model.shaft, drive_inertia);
   std::optional<double> place;
@@ -38,7 +38,7 @@ std::optional<double> placeOfBlow(const CrankTrack& track, const SegmentModel& m
   return place;
 }
 
-/// At most `most` of the blows, evenly spread over the recording.
+/// Returns at most `most` of the blows, evenly spread over the recording.
 std::vector<BlowSegment> spread(const std::vector<BlowSegment>& segments, std::size_t most) {
   std::vector<BlowSegment> some;
   const std::size_t count = std::min(most, segments.size());
@@ -66,7 +66,7 @@ ResidualCurve curveOf(const std::vector<SegmentFit>& fits, const SegmentModel& m
   return curve;
 }
 
-/// Mean over the turn of the curve's square over its variance: 1 for noise.
+/// Returns the mean over the revolution of the curve's square over its variance: 1 for noise.
 double systematic(const ResidualCurve& curve) {
   double sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < curve.mean.size(); ++i) {
@@ -77,7 +77,7 @@ double systematic(const ResidualCurve& curve) {
   return n > 0.0 ? sum / n : 1.0;
 }
 
-/// Zero and eccentricities of the parameters in force.
+/// Returns the zero and eccentricities of the current parameters.
 Globals inForce(const CrankSensor& sensor) {
   const CrankSensorPlace& p = sensor.place();
   Globals g = Globals::Zero();
@@ -89,7 +89,7 @@ Globals inForce(const CrankSensor& sensor) {
   return g;
 }
 
-/// Reports that the fit does not settle, with the cause as far as the readings show it with the sensor as it was given.
+/// Reports that the fit does not converge, with the cause as far as readings at the given sensor parameters show it.
 void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double log_inertia, JointFit fit,
                   Calibration& result) {
   result.problem =
@@ -103,7 +103,7 @@ void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double
   if (rod.showsElasticRod()) result.more_blows = kInfinity;
 }
 
-/// Without the gaps.
+/// Returns the duration without the gaps [s].
 double secondsOf(const CrankTrack& track) {
   double seconds = 0.0;
   for (std::size_t i = 1; i < track.points.size(); ++i)
@@ -111,7 +111,7 @@ double secondsOf(const CrankTrack& track) {
   return seconds;
 }
 
-/// More blows lessen their own part of a deviation alone.
+/// Computes the blows needed; more blows reduce only the part by_blows of a deviation.
 void countNeeds(Calibration& result) {
   double most = 1.0;
   for (const Estimate& e : result.estimates) {
@@ -162,7 +162,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   noise.speed = 0.3;
   noise.torque_walk = basis.filter.torque_walk;
   noise.torque = basis.filter.initial_torque_std;
-  // A fit of some blows with the encoder on its centre finds where to cut.
+  // A first fit of some blows, with a centred encoder, finds where to cut.
   const JointFit rough =
       fitJointly(spread(segments, kRoughBlows), model, start, noise, true, piece(progress, 0.05, 0.15));
   segments = cutAtBlows(track, rough.globals[kZero]);

@@ -13,32 +13,32 @@ namespace hammer_loads::calibration {
 struct CalibrationBasis {
   const Mechanism& mechanism;
   Level level;
-  CrankFilterSettings filter;  ///< settings of the filter by the parameters in force, with the encoder's ratio
+  CrankFilterSettings filter;  ///< filter settings with the current parameters, including the encoder's ratio
   // Prior: rocker_inertia_std
-  double rocker_inertia_std{0.02};  ///< relative, of the given rocker inertia [-]
+  double rocker_inertia_std{0.02};  ///< relative standard deviation of the given rocker inertia [-]
 
-  double ratio() const { return filter.sensor.place().ratio; }  ///< encoder turns per crank turn [-]
+  double ratio() const { return filter.sensor.place().ratio; }  ///< encoder revolutions per crank revolution [-]
 };
 
-/// Mean residual over the crank angle, in equal parts of the turn from -pi to pi.
+/// Mean residual over the crank angle, in equal parts of the revolution from -pi to pi.
 struct ResidualCurve {
-  std::vector<double> mean, deviation;  ///< [rad]; deviation of the mean, NaN where there is none
+  std::vector<double> mean, deviation;  ///< [rad]; standard deviation of the mean, NaN with too few readings
 };
 
-/// With a problem, only `facts`, seconds and blows hold.
+/// Result of a calibration. With a problem, only `facts`, seconds and blows are valid.
 struct Calibration : Findings {
   SensorFacts facts;
   double seconds{};
   std::size_t blows{}, left_out{};
   bool rod_gives{};             ///< the connecting rod or its pins are elastic
   double mean_square{};         ///< mean square of the residuals over their variance, per degree of freedom
-  ResidualCurve before, after;  ///< with the parameters in force, with those found
-  double more_blows{};          ///< needed for every key that is not determined; infinity: more do not help
+  ResidualCurve before, after;  ///< with the current parameters, with the identified ones
+  double more_blows{};          ///< blows needed to determine every key; infinity: more do not help
 
-  /// Largest ratio of by_blows to limit of a key; infinity with a problem.
+  /// Returns the largest ratio of by_blows to limit of a key; infinity with a problem.
   double worstByBlows() const;
-  /// True if more of the recording would not help: the deviation by the number of blows is at most half of each key's
-  /// limit. It then adds 12 % to an error that is at the limit for another reason.
+  /// Returns true if more of the recording would not help: by_blows is at most half of each key's limit. It then adds
+  /// 12 % to an error that is at the limit for another reason.
   bool isSettled() const { return worstByBlows() <= 0.5; }
 };
 

@@ -10,18 +10,18 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kRounding = 2e-6;   // rounding of a step between readings in single precision [rad]
-constexpr double kGap = 4.5;         // periods without a sample: what lies between is not known
-constexpr double kDisorder = 0.005;  // part of the stamps that repeat or change places, from which on they are re-timed
-constexpr std::size_t kRetimeHalfWidth = 200;   // samples on either side that show a sample's own time
+constexpr double kRounding = 2e-6;              // rounding of a step between readings in single precision [rad]
+constexpr double kGap = 4.5;                    // periods without a sample; the motion in a gap is unknown
+constexpr double kDisorder = 0.005;             // part of repeated or swapped stamps above which all are re-timed
+constexpr std::size_t kRetimeHalfWidth = 200;   // samples on either side that determine a sample's time
 constexpr double kHalfSegment = 3.05;           // [rad] on either side of the blow
-constexpr double kLeastSpeed = 3.0;             // [rad/s] at the blow: a slower one is no working turn
+constexpr double kLeastSpeed = 3.0;             // [rad/s] at the blow; slower revolutions are not at work
 constexpr std::size_t kLeastPoints = 5;         // on either side of the blow
 constexpr double kLargestStep = 0.35 * kTwoPi;  // [rad] between samples
 // Numerical: kRounding
 // Limit: kLeastSpeed, kLeastPoints, kLargestStep
 
-/// Largest number of which both are multiples (Euclid, with nearest remainders).
+/// Returns the greatest common divisor (Euclid's algorithm with nearest remainders).
 double commonPart(double a, double b) {
   double large = std::max(a, b), small = std::min(a, b);
   while (small > 0.0) {
@@ -32,10 +32,10 @@ double commonPart(double a, double b) {
   return large;
 }
 
-/// Number of counts per revolution by the common divisor of all steps between readings; 0 when there is none above the
-/// finest.
+/// Returns the angle of one count from the common divisor of all steps between readings [rad]; 0 if there is none above
+/// the finest.
 double commonCount(const std::vector<RecordedSample>& samples) {
-  double common = 0.0, most = 1.0;  // multiples: the more of them a step has, the better it shows the count
+  double common = 0.0, most = 1.0;  // multiples: a step with more of them determines the count better
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step = std::abs(CrankAngle::wrapToPi(samples[i].reading - samples[i - 1].reading));
     if (step < 0.1 * kFinestCount) continue;
@@ -51,7 +51,7 @@ double commonCount(const std::vector<RecordedSample>& samples) {
   return common > 0.0 && common < 0.25 * kTwoPi ? kTwoPi / std::nearbyint(kTwoPi / common) : 0.0;
 }
 
-/// Without samples that are no numbers, and duplicates.
+/// Returns the samples without duplicates and those that are not finite.
 std::vector<RecordedSample> usefulOf(const std::vector<RecordedSample>& samples) {
   std::vector<RecordedSample> good;
   for (const RecordedSample& s : samples) {
@@ -63,7 +63,7 @@ std::vector<RecordedSample> usefulOf(const std::vector<RecordedSample>& samples)
   return good;
 }
 
-/// Mean step of a recording whose single steps give no information.
+/// Returns the mean step of a recording whose single steps give no information.
 double meanPeriod(const std::vector<RecordedSample>& samples) {
   std::vector<double> means;
   constexpr std::size_t kStride = 40;
@@ -73,7 +73,7 @@ double meanPeriod(const std::vector<RecordedSample>& samples) {
   return medianOf(means);
 }
 
-/// Line through the neighbours' stamps over their place in the sequence, between gaps.
+/// Replaces the stamps between gaps by a line through the neighbours' stamps over their place in the sequence.
 void retimeRun(std::vector<RecordedSample>& samples, std::size_t begin, std::size_t end) {
   std::vector<double> times;
   for (std::size_t i = begin; i < end; ++i) {
@@ -104,8 +104,8 @@ std::vector<std::size_t> startsOf(const std::vector<RecordedSample>& samples, do
   return starts;
 }
 
-/// The stamps' own times where they are in order, else equal intervals by sequence. Returns the first samples after
-/// gaps, 0 included.
+/// Keeps the stamps if they are in order, and replaces them by equal intervals in sequence otherwise. Returns the first
+/// samples after gaps, 0 included.
 std::vector<std::size_t> orderTimes(std::vector<RecordedSample>& samples, SensorFacts& facts) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < samples.size(); ++i) steps.push_back(samples[i].time - samples[i - 1].time);
@@ -113,7 +113,7 @@ std::vector<std::size_t> orderTimes(std::vector<RecordedSample>& samples, Sensor
   facts.period = facts.retimed ? meanPeriod(samples) : medianOf(steps);
   if (facts.retimed) {
     std::sort(steps.begin(), steps.end());
-    const double usual = steps[steps.size() - 1 - steps.size() / 100];  // a burst's own step is no gap
+    const double usual = steps[steps.size() - 1 - steps.size() / 100];  // steps between bursts are no gaps
     const std::vector<std::size_t> starts = startsOf(samples, std::max(kGap * facts.period, 1.5 * usual));
     for (std::size_t i = 0; i < starts.size(); ++i)
       retimeRun(samples, starts[i], i + 1 < starts.size() ? starts[i + 1] : samples.size());
@@ -121,7 +121,7 @@ std::vector<std::size_t> orderTimes(std::vector<RecordedSample>& samples, Sensor
       samples[i].time = std::max(samples[i].time, samples[i - 1].time + 1e-9);
     return starts;
   }
-  std::vector<RecordedSample> in_order;  // single stamps that went back
+  std::vector<RecordedSample> in_order;  // without single stamps that go back
   for (const RecordedSample& s : samples) {
     if (in_order.empty() || s.time > in_order.back().time) in_order.push_back(s);
   }
@@ -129,7 +129,7 @@ std::vector<std::size_t> orderTimes(std::vector<RecordedSample>& samples, Sensor
   return startsOf(samples, kGap * facts.period);
 }
 
-/// The crank went forward all the way, over a blow at the speed of work.
+/// Returns true if the crank turned forward throughout, with a blow at working speed.
 bool isWorkingTurn(const std::vector<CrankPoint>& p, double zero) {
   const auto is_before = [&](const CrankPoint& at) { return at.seen < zero; };
   const auto before = static_cast<std::size_t>(std::count_if(p.begin(), p.end(), is_before));

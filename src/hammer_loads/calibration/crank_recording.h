@@ -11,21 +11,21 @@ namespace hammer_loads::calibration {
 
 /// One message on the crank's topic, in the order of arrival.
 struct RecordedSample {
-  double time{};                ///< header stamp since any instant [s]
-  double reading{};             ///< any winding [rad]
+  double time{};                ///< header stamp from an arbitrary instant [s]
+  double reading{};             ///< any number of revolutions [rad]
   std::optional<double> speed;  ///< measured speed [rad/s]
   Gravity gravity;              ///< in hull axes [m/s2]
 };
 
 /// Properties of the readings and stamps.
 struct SensorFacts {
-  double count{};    ///< largest whole part of a turn that all readings are multiples of [rad]; 0: none
-  double period{};   ///< median of the stamps' steps [s]
-  bool retimed{};    ///< stamps repeated or changed places: taken at equal intervals instead
-  int direction{1};  ///< -1: the readings fall as the crank goes forward
+  double count{};    ///< largest whole fraction of a revolution that divides all readings [rad]; 0: none
+  double period{};   ///< median step of the stamps [s]
+  bool retimed{};    ///< stamps repeat or are out of order and are replaced by equal intervals
+  int direction{1};  ///< -1: readings decrease while the crank goes forward
 };
 
-/// A sample in the encoder's own turn, which grows while the hammer works.
+/// Sample of the encoder, with an angle that increases while the hammer works.
 struct CrankPoint {
   double time{};                ///< [s]
   double seen{};                ///< reading at mid-count, unwrapped and divided by direction and ratio [rad]
@@ -39,16 +39,16 @@ struct CrankTrack {
   SensorFacts facts;
 };
 
-/// Time in order, readings unwrapped. ratio: encoder turns per crank turn [-].
+/// Puts the times in order and unwraps the readings. ratio: encoder revolutions per crank revolution [-].
 CrankTrack trackOf(const std::vector<RecordedSample>& recorded, double ratio);
 
-/// From the middle of a turn over its blow to the middle of the next: where the crank went forward all the way.
+/// Forward motion of the crank from the middle of one revolution, over the blow, to the middle of the next.
 struct BlowSegment {
-  std::vector<CrankPoint> points;  ///< `seen` less the whole turns: near `zero` at the blow
+  std::vector<CrankPoint> points;  ///< `seen` minus whole revolutions: near `zero` at the blow
   Gravity gravity;                 ///< mean
 };
 
-/// zero: where the blow is by first guess, in `seen` [rad].
+/// Cuts the track into segments around the blows. zero: first guess of the blow's position in `seen` [rad].
 std::vector<BlowSegment> cutAtBlows(const CrankTrack& track, double zero);
 
 }  // namespace hammer_loads::calibration

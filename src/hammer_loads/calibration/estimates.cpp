@@ -15,21 +15,21 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kHides = 3.0;  // times the deviation without the hammer's constants: worth a word
+constexpr double kHides = 3.0;  // times the deviation without the hammer's constants; reported above it
 // Warning: kHides
-constexpr double kSeen = 0.7;    // part of a constant's deviation that is left, below which it is written
-constexpr double kUnsaid = 1.2;  // ratio of a variance to that by separate deviations: two of them cover 93 % then
+constexpr double kSeen = 0.7;    // ratio of posterior to prior deviation below which a constant is written
+constexpr double kUnsaid = 1.2;  // ratio of a variance to that by separate deviations: two of them contain 93 % then
 
-/// A constant that a hammer file should have from here: one number and its deviation, with the other constants as the
-/// file has them.
+/// Constant for the hammer file that the recording improves: its value and deviation, with the other constants as in
+/// the file.
 struct Improved {
   std::size_t column;       ///< index in HammerPart::names
   std::size_t constant;     ///< index in kHammerConstants
-  double error, deviation;  ///< [its standard deviations in the file]
+  double error, deviation;  ///< [standard deviations in the file]
 };
 
-/// Constants that the recording improves. One whose error is correlated with that of an unimproved constant is left
-/// out, as a file cannot state correlations.
+/// Returns the constants that the recording improves. A constant is left out if its error is correlated with that of an
+/// unimproved one, as a file cannot state correlations.
 std::vector<Improved> improved(const HammerPart& hammer) {
   const auto count = static_cast<Eigen::Index>(hammer.names.size());
   const Eigen::MatrixXd P = hammer.covariance.bottomRightCorner(count, count);
@@ -39,9 +39,9 @@ std::vector<Improved> improved(const HammerPart& hammer) {
     if (constant && hammer.left(i) < kSeen)
       found.push_back({i, *constant, hammer.errors[static_cast<Eigen::Index>(i)], hammer.left(i)});
   }
-  // The others keep errors of their prior's variance, 1, that go with these errors as P has it. Deviations d say
-  // 1/kUnsaid of the variance of any sum of errors, or more, where kUnsaid diag(d^2) - M has no negative eigenvalue;
-  // sums of M's rows see to that.
+  // Errors of the other constants keep their prior variance, 1, and are correlated with these errors as in P.
+  // Deviations d state at least 1/kUnsaid of the variance of any sum of errors if kUnsaid diag(d^2) - M has no negative
+  // eigenvalue. The row sums of M ensure that.
   while (!found.empty()) {
     const auto size = static_cast<Eigen::Index>(found.size());
     Eigen::MatrixXd rows(size, count), own(size, size);
@@ -58,8 +58,8 @@ std::vector<Improved> improved(const HammerPart& hammer) {
   return found;
 }
 
-// Limits, by what a wrong value does to the wrench (rms of Fz over the peak): 2.8 % per degree of zero, 1.6 % per
-// degree once a turn, some 3 % per degree twice a turn, 1.5 % for 20 % of drive inertia.
+// Limits from the effect of a wrong value on the wrench (rms of Fz over the peak): 2.8 % per degree of zero, 1.6 % per
+// degree once per revolution, some 3 % per degree twice per revolution, 1.5 % for 20 % of drive inertia.
 constexpr double kZeroLimit = 0.3 * kDegree;  // an encoder is usually mounted half a degree off
 constexpr double kEccentricity1Limit = 0.4 * kDegree;
 constexpr double kEccentricity2Limit = 0.2 * kDegree;
@@ -67,7 +67,7 @@ constexpr double kInertiaLimit = 0.08;  // relative
 constexpr double kTimingLimit = 0.2;    // relative
 // Limit: kZeroLimit, kEccentricity1Limit, kEccentricity2Limit, kInertiaLimit, kTimingLimit
 
-/// Constant, or level, whose uncertainty makes most of that of a shared parameter; empty: the noise does.
+/// Returns the constant or level that causes most of a shared parameter's uncertainty; empty if noise causes it.
 std::string hiddenBy(const Found& found, Eigen::Index parameter) {
   const HammerPart& hammer = found.hammer;
   const auto count = static_cast<Eigen::Index>(hammer.names.size());
@@ -83,7 +83,7 @@ std::string hiddenBy(const Found& found, Eigen::Index parameter) {
   return hammer.nameOf(kGlobals + most);
 }
 
-/// An eccentricity's amount and phase from its two parts.
+/// Adds an eccentricity's amount and phase from its two parts.
 void addEccentricity(const Found& found, int n, double limit, Calibration& result) {
   const Eigen::Index k = n == 1 ? kSine1 : kSine2;
   const Eigen::Vector2d parts = found.hammer.globals.segment<2>(k);
@@ -93,10 +93,10 @@ void addEccentricity(const Found& found, int n, double limit, Calibration& resul
   const Eigen::Vector2d across(-along[1], along[0]);
   const double by_amount = std::sqrt(along.dot(covariance * along)),
                by_phase = std::sqrt(across.dot(covariance * across));
-  // Either both keys or none: an amount at a wrong phase is worse than none. Each therefore has the larger deviation.
+  // Both keys are written or none, since a wrong phase is worse than no amount. Each has the larger deviation.
   const double larger = std::max(by_amount, by_phase), scale = std::max(amount, 1e-9);
   const double by_blows = std::sqrt(found.fit.covariance.diagonal().segment<2>(k).maxCoeff());
-  const bool seen = amount > gate::kUsual * larger;  // else none is as likely, and does no harm
+  const bool seen = amount > gate::kUsual * larger;  // otherwise zero is as likely, and harmless
   const std::string key = format("crank_eccentricity_%d", n), hidden_by = hiddenBy(found, k);
   result.estimates.push_back(
       {key + "_rad", "rad", seen ? amount : 0.0, larger, limit,
@@ -113,7 +113,7 @@ void addEccentricity(const Found& found, int n, double limit, Calibration& resul
   }
 }
 
-/// Sensor's place and drive.
+/// Adds the sensor's place and the drive.
 void addSensor(const Found& found, Calibration& result) {
   const JointFit& fit = found.fit;
   const Globals& globals = found.hammer.globals;
@@ -137,7 +137,7 @@ void addSensor(const Found& found, Calibration& result) {
   }
   double samples = 0.0;
   for (const SegmentFit& one : fit.fits) samples += static_cast<double>(one.size());
-  // Noise hidden by the counts: its square is known to the square of theirs over the square root of the samples.
+  // Noise below the counts: its variance is known to that of the counts over the square root of the samples.
   const double counts_hide = fit.noise.angle / 30.0, timing = fit.noise.timing;
   const double timing_std =
       std::sqrt(2.0 / samples) * (timing > 0.0 ? timing + 0.5 * counts_hide * counts_hide / timing : counts_hide);
@@ -147,8 +147,8 @@ void addSensor(const Found& found, Calibration& result) {
                               timing_std});
   const double inertia = std::exp(globals[kLogInertia]);
   const double rocker = basis.mechanism.parameters().rocker_inertia_about_pivot;
-  // The readings show only the ratio to the rocker's inertia. A deviation of that in the hammer file is included
-  // already.
+  // The readings show only the ratio to the rocker's inertia. If the hammer file has a deviation of that inertia, it is
+  // included already.
   const bool rocker_in_it = found.hammer.has("rocker_inertia_about_pivot_kg_m2");
   const double by_rocker = rocker_in_it ? 0.0 : basis.rocker_inertia_std;
   const double relative = std::hypot(deviation(kLogInertia), by_rocker);
@@ -171,8 +171,8 @@ void addCorrelations(const HammerPart& hammer, Calibration& result) {
   }
 }
 
-/// Constants that are better known than by their file, each with the key of its deviation, and the rod that closes the
-/// linkage with them.
+/// Adds the constants that are better known than by their file, each with the key of its deviation, and the rod length
+/// that closes the linkage with them.
 void addHammer(const std::vector<Improved>& improvements, const HammerParameters& file, Calibration& result) {
   HammerParameters found = file;
   bool closes = false;
@@ -193,7 +193,7 @@ void addHammer(const std::vector<Improved>& improvements, const HammerParameters
                                 "it follows: with it the linkage passes its dead centre at the blow", 0.0});
 }
 
-/// Shared parameters that the constants hide, and constants that show only in combination with others.
+/// Adds remarks on shared parameters that constants hide, and on constants known only in combination with others.
 void addHiding(const Found& found, const std::vector<Improved>& written, Calibration& result) {
   const HammerPart& hammer = found.hammer;
   const HammerParameters& file = found.basis.mechanism.parameters();
@@ -257,13 +257,13 @@ void addRemarks(double curve_square, Calibration& result) {
     say.push_back(format("%zu blows are not like the others (no tool, a stop) and are left out", result.left_out));
 }
 
-/// Largest effect of rods of 2e8 to 1e10 N/m with joint clearance up to 0.5 mm on the zero, the eccentricity and the
-/// drive's inertia (relative).
+/// Largest effect of elastic rods of 2e8 to 1e10 N/m with joint clearance up to 0.5 mm on the zero, the eccentricity
+/// and the drive inertia (relative).
 constexpr double kOfZero = 3.0 * kDegree, kOfEccentricity = 1.5 * kDegree, kOfInertia = 0.3;
 // Prior: kOfZero, kOfEccentricity, kOfInertia
 
-/// Marks the keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
-/// ratio: encoder turns per crank turn.
+/// Marks keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
+/// ratio: encoder revolutions per crank revolution.
 void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
   result.rod_gives = rod.showsElasticRod();
   if (!rod.showsElasticRod()) return;

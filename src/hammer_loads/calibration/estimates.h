@@ -13,11 +13,11 @@ struct Found {
   const HammerPart& hammer;
   const CalibrationBasis& basis;
   const RodEvidence& rod;
-  double curve_square{};  ///< mean over the turn of the residuals' curve over its deviation, squared; 1 for noise
+  double curve_square{};  ///< mean square over a revolution of the residual curve over its deviation; 1 for noise
 };
 
-/// Adds keys of sensor, drive and hammer, correlations and notes. A constant of the hammer is among the keys, with that
-/// of its deviation, if it is better known than by its file; with lengths follows the rod that closes the linkage.
+/// Adds the keys of sensor, drive and hammer, correlations and notes. A hammer constant and its deviation are added if
+/// it is better known than by its file. If lengths are among them, the rod that closes the linkage is added.
 void addResults(const Found& found, Calibration& result);
 
 }  // namespace hammer_loads::calibration

@@ -50,7 +50,7 @@ inline void addCorrelations(const Eigen::MatrixXd& covariance, const std::vector
   }
 }
 
-/// Lines of the report: what cannot be separated, and the remarks.
+/// Returns the lines of the report on parameters that cannot be separated, and the remarks.
 inline std::string notesOf(const Findings& findings) {
   std::string text;
   for (const Correlation& r : findings.correlations)

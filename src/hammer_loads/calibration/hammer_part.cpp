@@ -14,8 +14,8 @@ namespace {
 
 // Numerical: kReplicas, kSteps
 constexpr int kReplicas = 4;            // replicas of the recording, in pairs whose errors have opposite signs
-constexpr double kMostUncertain = 5.0;  // variance over that before the recording
-constexpr double kBiasDoubt = 0.5;      // part of the bias that is left after its removal
+constexpr double kMostUncertain = 5.0;  // variance over the prior variance
+constexpr double kBiasDoubt = 0.5;      // standard deviation of the remaining bias over the removed bias
 // Prior: kBiasDoubt
 constexpr double kMounting = 0.0175;  // standard deviation of each part of an encoder's eccentricity [rad]: 1 deg
 // Prior: kMounting
@@ -29,7 +29,7 @@ constexpr const char* kNames[kGlobals] = {"zero",
                                           "stiffness of the oil",
                                           "drag of the drive"};
 
-/// A blow's information on shared parameters and constants, its own parameters eliminated.
+/// Information of a blow on shared parameters and constants, with its local parameters eliminated.
 struct Information {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd score;
@@ -86,7 +86,7 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model) {
   for (const MachineColumn& column : columns->columns()) part.names.push_back(column.name);
   const auto count = static_cast<Eigen::Index>(part.names.size()), size = kGlobals + count;
   part.errors = Eigen::VectorXd::Zero(count);
-  Globals centre = joint.globals;  // of the priors; that of an eccentricity is about 0, the others are wide
+  Globals centre = joint.globals;  // centre of the priors: 0 for eccentricities; the others are wide
   centre.segment<4>(kSine1).setZero();
   prior.conservativeResize(size);
   prior.tail(count).setOnes();
@@ -94,7 +94,7 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model) {
   for (int i = 0; i < kSteps && hammer; ++i) {
     const SegmentModel here{*hammer, model.level};
     const MachineColumns beside(*hammer, model.level);
-    if (beside.columns().size() != part.names.size()) break;  // at the edge of what a hammer can be
+    if (beside.columns().size() != part.names.size()) break;  // the constants are at the limit of a possible hammer
     std::vector<SegmentModel> others;
     for (const MachineColumn& column : beside.columns()) others.emplace_back(column.mechanism, column.level);
     Information all{prior.asDiagonal(), Eigen::VectorXd(size)};
@@ -126,7 +126,7 @@ void HammerPart::widen(const JointFit& fit) {
   }
 }
 
-/// The removal of bias would undo this prior within the fits.
+/// The prior is applied after the removal of bias, which would undo it within the fits.
 void HammerPart::weighByMounting() {
   const Eigen::Index count = errors.size();
   for (Eigen::Index k = kSine1; k <= kCosine2; ++k) {

@@ -17,14 +17,14 @@ constexpr double kNotExplained = 6.0;  // times the median mean square of the bl
 constexpr int kMostIterations = 40;
 constexpr int kLeastIterations = 8;
 constexpr int kNearIterations = 3;
-constexpr double kConverged = 0.01;  // change of every parameter, in deviations
-constexpr int kNeighbours = 3;       // blows on either side with which one may have errors in common
+constexpr double kConverged = 0.01;  // change of every parameter, in standard deviations
+constexpr int kNeighbours = 3;       // blows on either side whose errors may be correlated
 // Prior: kMostTiming, kMostAngleNoise, kMostSpeedNoise
 constexpr double kMostTiming = 0.01;      // [s]
 constexpr double kMostAngleNoise = 0.1;   // [rad]
 constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
 
-/// The steps, shortened to what the model's curvature bears.
+/// Limits the steps to the range in which the linearised model holds.
 Globals limitedGlobals(const Globals& step) {
   static const Globals most = (Globals() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.3, 1e9, 1e9).finished();
   return std::min(1.0, most.cwiseQuotient(step.cwiseAbs()).minCoeff()) * step;
@@ -36,13 +36,13 @@ Locals limitedLocals(const Locals& step, const Locals& at) {
          step;
 }
 
-/// Information of a blow on the shared parameters once its own are eliminated.
+/// Information of a blow on the shared parameters, with its own parameters eliminated.
 struct Reduced {
   GlobalMatrix matrix;
   Globals score;
   Eigen::Matrix<double, kLocals, kGlobals> by_global;  ///< -(change of locals per change of globals)
-  Locals own;                                          ///< change of locals with globals as they are
-  double angle_freedom, speed_freedom;                 ///< locals that the angles, that the speeds decide
+  Locals own;                                          ///< change of locals with unchanged globals
+  double angle_freedom, speed_freedom;                 ///< number of locals that angles and speeds determine
 };
 
 Reduced reduce(const NormalEquations& e) {
@@ -57,22 +57,22 @@ Reduced reduce(const NormalEquations& e) {
   return r;
 }
 
-/// Number of free residuals among `given` ones, of which the locals determine `decided`.
+/// Returns the degrees of freedom of `given` residuals, of which the locals determine `decided`.
 double freeOf(double given, double decided) { return std::max(given - decided, 0.3 * given); }
 
-/// Mean square of the angles' residuals over their deviations.
+/// Returns the mean square of the angle residuals over their deviations.
 double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
   double sum = 0.0;
   for (const ResidualAt& r : fit.residuals(model, globals, noise)) sum += square(r.angle / r.deviation.angle);
   return sum / static_cast<double>(fit.size());
 }
 
-/// A residual of which one kind of noise is asked: its variance is known + lever^2 noise^2.
+/// Residual for the estimate of one kind of noise; its variance is known + lever^2 noise^2.
 struct Leftover {
   double residual, known, lever;
 };
 
-/// Root of sum(min(r^2/variance, 9)) = freedom, decreasing in the noise; 0 when already below.
+/// Solves sum(min(r^2/variance, 9)) = freedom, decreasing in the noise; returns 0 if it is already below.
 double noiseOf(const std::vector<Leftover>& leftovers, double freedom, double most) {
   const auto excess = [&](double noise) {
     double sum = 0.0;
@@ -88,7 +88,7 @@ double noiseOf(const std::vector<Leftover>& leftovers, double freedom, double mo
   return 0.5 * (low + high);
 }
 
-/// Blows far off all others are not of this model.
+/// Removes blows with residuals far above those of the others, which the model does not explain.
 void leaveOut(JointFit& joint, const SegmentModel& model) {
   std::vector<double> squares;
   for (const SegmentFit& fit : joint.fits) squares.push_back(meanSquare(fit, model, joint.globals, joint.noise));
@@ -117,7 +117,7 @@ void learnNoise(JointFit& joint, const SegmentModel& model, const std::vector<Re
   }
   if (noise.angle_known) {
     noise.timing = noiseOf(angles, angle_freedom, kMostTiming);
-  } else {  // jitter and noise of the angle in one
+  } else {  // jitter and angle noise combined
     noise.timing = 0.0;
     noise.angle = std::max(noiseOf(angles, angle_freedom, kMostAngleNoise), 1e-7);
   }
@@ -149,7 +149,7 @@ double costOf(const JointFit& joint, const SegmentModel& model) {
   return cost;
 }
 
-/// One step with backtracking; the largest change in deviations.
+/// Makes one step with backtracking and returns the largest change in standard deviations.
 double improve(JointFit& joint, const SegmentModel& model, System s) {
   if (joint.centred) holdEccentricity(s.matrix, s.score);
   const GlobalMatrix inverse = inverseOf(s.matrix);
@@ -170,7 +170,7 @@ double improve(JointFit& joint, const SegmentModel& model, System s) {
   return 0.0;
 }
 
-/// Sandwich over the blows, with the neighbours' common errors falling off in a triangle.
+/// Returns the sandwich covariance over the blows; weights of neighbouring blows decrease linearly with distance.
 GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, bool centred) {
   GlobalMatrix middle = GlobalMatrix::Zero();
   const std::size_t n = s.reduced.size();
@@ -183,7 +183,7 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, bool cen
   }
   const double few = static_cast<double>(n) / std::max(static_cast<double>(n) - kGlobals, 1.0);
   GlobalMatrix covariance = few * inverse * middle * inverse;
-  // Neighbours that cancel, or too few blows, must not make it better than the noise alone allows.
+  // The covariance is at least that of the noise alone, even if neighbours cancel or blows are few.
   for (Eigen::Index k = 0; k < kGlobals; ++k) {
     const double grow = std::sqrt(std::max(1.0, inverse(k, k) / std::max(covariance(k, k), 1e-300)));
     covariance.row(k) *= grow;
@@ -193,7 +193,7 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, bool cen
   return covariance;
 }
 
-/// Until nothing changes any more, at least this many times.
+/// Iterates until the fit converges, at least `least` times.
 void settle(JointFit& joint, const SegmentModel& model, int least, const Progress& progress) {
   for (int i = 0; i < kMostIterations && !joint.fits.empty(); ++i) {
     report(progress, std::min(1.0, static_cast<double>(i) / least));
@@ -205,7 +205,7 @@ void settle(JointFit& joint, const SegmentModel& model, int least, const Progres
   }
 }
 
-/// Covariances and the mean square of the residuals.
+/// Computes the covariances and the mean square of the residuals.
 void judge(JointFit& joint, const SegmentModel& model) {
   if (joint.fits.empty()) return;
   System s = linearised(joint, model);

@@ -1,5 +1,5 @@
-/// All blows of a recording together: the fit of each blow's own parameters, and of those that the blows share, with an
-/// honest covariance.
+/// Joint fit of all blows of a recording: each blow's own parameters and the shared ones, with a covariance that
+/// includes differences between the blows.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,10 +10,10 @@
 
 namespace hammer_loads::calibration {
 
-/// Levenberg-Marquardt over the blow's own parameters.
+/// Fits the blow's own parameters by Levenberg-Marquardt.
 void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise);
 
-/// Clears the rows and columns of the eccentricities; a matrix's first rows are the shared parameters'.
+/// Clears the rows and columns of the eccentricities; the shared parameters must be first in the matrix.
 template <typename Matrix>
 void clearEccentricity(Matrix& covariance) {
   covariance.template middleRows<4>(kSine1).setZero();
@@ -31,26 +31,26 @@ void holdEccentricity(Matrix& matrix, Vector& score) {
 struct JointFit {
   Globals globals;
   Globals centre;                 ///< centre of the prior of globals
-  GlobalMatrix covariance;        ///< covariance of globals, by the differences between the blows
-  GlobalMatrix plain_covariance;  ///< covariance by the noise alone
+  GlobalMatrix covariance;        ///< covariance of globals, from the differences between the blows
+  GlobalMatrix plain_covariance;  ///< covariance from the noise alone
   Noise noise;                    ///< estimated noise
-  bool centred{};                 ///< eccentricities stay as they are
+  bool centred{};                 ///< eccentricities are held fixed
   std::vector<SegmentFit> fits;   ///< fits of the blows in use
   std::size_t left_out{};         ///< blows that the model does not explain (no tool, a stop)
-  double mean_square{};           ///< residuals over their deviations, squared, per degree of freedom
+  double mean_square{};           ///< squared residuals over their variances, per degree of freedom
   bool converged{};
 };
 
-/// Before anything is known of them: deviations of zero [rad], both eccentricities' parts [rad], logarithm of inertia,
-/// ...
+/// Returns the prior standard deviations of the shared parameters: zero [rad], both eccentricities' parts [rad],
+/// logarithm of inertia, ...
 Globals priorDeviations();
 
-/// Continues from a nearby solution, which is the prior's centre, by some steps.
+/// Continues by some steps from a nearby solution, which becomes the centre of the prior.
 void settleNear(JointFit& joint, const SegmentModel& model, const Progress& progress);
 
-/// Gauss-Newton over the shared parameters, those of each blow eliminated (Schur); timing and speed noise from the
-/// residuals meanwhile. The prior is wide, about `start`. centred: as in JointFit. The covariance is the
-/// sandwich over blows with what neighbours have in common (Newey-West), at least the plain one.
+/// Fits the shared parameters by Gauss-Newton, with those of each blow eliminated (Schur), and estimates timing and
+/// speed noise from the residuals. The prior is wide, about `start`. centred: as in JointFit. The covariance is the
+/// sandwich over blows with correlated neighbours (Newey-West), at least the plain one.
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, bool centred, const Progress& progress = {});
 

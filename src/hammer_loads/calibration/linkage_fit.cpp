@@ -18,14 +18,14 @@ namespace {
 using Unknowns = LinkageUnknowns;
 using Vector = LinkageUnknowns::Vector;
 
-constexpr std::size_t kLeastTableRows = 12;  // nine unknowns and what they leave
-constexpr std::size_t kMostRows = 400;       // rows in use of a longer table
-constexpr int kPieces = 40;                  // differences are over this part of the table
-constexpr double kDifferences = 6.0;         // weight of differences: the lengths serve the lever
+constexpr std::size_t kLeastTableRows = 12;  // nine unknowns and some degrees of freedom
+constexpr std::size_t kMostRows = 400;       // rows used of a longer table
+constexpr int kPieces = 40;                  // parts of the table; each difference spans one part
+constexpr double kDifferences = 6.0;         // weight of differences: the lengths serve the lever arm
 constexpr int kStarts = 300;
-constexpr int kBest = 16;            // number of starts that are fitted to the end
-constexpr double kLeastLink = 0.05;  // a shorter link, or lever of the driven pin, is none of a machine [m]
-constexpr double kAnyPlace = 1.0;    // standard deviation of a pin that was not measured, about the joint [m]
+constexpr int kBest = 16;            // number of starts whose fit is completed
+constexpr double kLeastLink = 0.05;  // least length of a link, and lever of the driven pin, on a machine [m]
+constexpr double kAnyPlace = 1.0;    // standard deviation of the position of an unmeasured pin, about the joint [m]
 constexpr double kAnyLink = 0.4;     // mean and standard deviation of a link's length [m]
 constexpr double kReading = 1e-4;    // least residual of a stroke [m]
 // Numerical: kLeastTableRows, kMostRows, kPieces, kDifferences, kStarts, kBest, kLeastLink, kAnyPlace, kAnyLink,
@@ -37,7 +37,7 @@ BucketLinkage linkageOf(const Vector& x, double branch, double sense) {
            branch}};
 }
 
-/// Residuals over their deviations, of rows and of what is known before.
+/// Residuals of rows and of the prior over their standard deviations.
 class Problem {
  public:
   using Scalar = double;
@@ -64,7 +64,7 @@ class Problem {
 
   int inputs() const { return Unknowns::kCount; }
   int values() const { return 2 * static_cast<int>(rows_.size()) - apart() + Unknowns::kCount; }
-  /// Rows between the two of a difference.
+  /// Returns the number of rows between the two of a difference.
   int apart() const { return std::max(1, static_cast<int>(rows_.size()) / kPieces); }
 
   int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& f) const {
@@ -111,7 +111,7 @@ class Problem {
     return std::all_of(rows_.begin(), rows_.end(),
                        [&](const Row& row) { return linkage.at(row.cosine, row.sine).closed; });
   }
-  /// Residuals of the rows alone, rms and largest [m].
+  /// Returns the residuals of the rows alone, rms and largest [m].
   std::array<double, 2> left(const Vector& x) const {
     const BucketLinkage linkage = linkageOf(x, branch, sense_);
     double sum = 0.0, worst = 0.0;
@@ -133,7 +133,7 @@ class Problem {
   struct Row {
     double cosine, sine, stroke;
   };
-  /// Links that do not reach each other are off by what they lack, times ten.
+  /// Returns the stroke's residual; for links that do not reach each other, ten times the missing length is added.
   static double residual(const BucketLinkage& linkage, const Eigen::VectorXd& x, const Row& row) {
     const BucketLinkagePosition at = linkage.at(row.cosine, row.sine);
     double off = at.length - x[Unknowns::kClosed] - row.stroke;
@@ -177,7 +177,7 @@ std::vector<Candidate> candidates(Problem& problem, const Progress& progress) {
   return all;
 }
 
-/// With the noise that is left, which decides how much what was known before says.
+/// Fits with the remaining noise, which decides the weight of the prior.
 void refine(Problem& problem, Candidate& candidate) {
   problem.branch = candidate.branch;
   for (int round = 0; round < 4; ++round) {

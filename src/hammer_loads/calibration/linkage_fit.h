@@ -15,7 +15,7 @@ namespace hammer_loads::calibration {
 
 /// Strokes and angles of one joint, in any order.
 struct StrokeTable {
-  std::vector<double> stroke;  ///< way of the rod from its closed end [m]
+  std::vector<double> stroke;  ///< travel of the rod from its closed end [m]
   std::vector<double> angle;   ///< angle of the joint [rad]
 };
 
@@ -27,7 +27,7 @@ std::optional<StrokeTable> readStrokeTable(const std::string& csv, std::string& 
 struct LinkageUnknowns {
   enum Index { kBaseX, kBaseZ, kGuideX, kGuideZ, kGuide, kCoupler, kRodX, kRodZ, kClosed, kCount };
   using Vector = Eigen::Matrix<double, kCount, 1>;
-  /// Key of the boom file behind the cylinder's name.
+  /// Suffixes to the cylinder's name that make the keys of the boom file.
   static constexpr std::array<const char*, kCount> kKeys{"base_x_m",
                                                          "base_z_m",
                                                          "rocker_link_base_x_m",
@@ -41,10 +41,10 @@ struct LinkageUnknowns {
 
 /// Prior knowledge of the linkage. sense: 1 where the joint turns about +y, -1 about -y.
 struct LinkageBasis {
-  /// Measured with a tape [m]; nothing: not known.
+  /// Values measured with a tape [m]; empty: not measured.
   std::array<std::optional<double>, LinkageUnknowns::kCount> measured;
   // Prior: tape_std
-  double tape_std{0.01};  ///< standard, of each of them [m]
+  double tape_std{0.01};  ///< standard deviation of each of them [m]
   double sense{1.0};
 };
 
@@ -53,14 +53,14 @@ struct LinkageFit : Findings {
   double branch{};                ///< BucketLinkageParameters::branch
   std::size_t rows{};
   double left{}, worst{};   ///< rms and largest of the strokes' residuals [m]
-  double arm{}, arm_std{};  ///< rms of the lever over the table; standard deviation, rms [m/rad]
+  double arm{}, arm_std{};  ///< rms of the lever arm over the table; rms of its standard deviation [m/rad]
 
   BucketLinkage linkage(double sense) const;
-  /// True if the lever is known to 1 % of its rms.
+  /// Returns true if the lever arm is known to 1 % of its rms.
   bool determined() const { return problem.empty() && arm_std <= 0.01 * arm; }
 };
 
-/// Least squares over all starts that a linkage may have; cylinder: name in front of the keys.
+/// Fits the linkage by least squares from many random starts. cylinder: prefix of the keys.
 LinkageFit fitLinkage(const StrokeTable& table, const LinkageBasis& basis, const std::string& cylinder,
                       const Progress& progress = {});
 

@@ -1,12 +1,12 @@
-/// Linear systems whose matrix is symmetric and positive, of any size.
+/// Linear systems of any size with a symmetric, positive matrix.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace hammer_loads::calibration {
 
-/// The x of matrix x = right, for each column of it. Compiled once: a solver of its own for each size is slow to build
-/// and no faster here.
+/// Solves matrix x = right for each column of right. It is compiled once: a separate solver for each size is slow to
+/// build and no faster here.
 Eigen::MatrixXd solved(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& matrix);
 

@@ -15,27 +15,27 @@ namespace {
 
 constexpr double kContradicts = gate::kVeryRare;
 constexpr double kSuspectNoise = 8.0;           // ratio of a sensor's noise to that in the other recordings
-constexpr double kSuspectIsOff = gate::kUsual;  // where the sensor's noise is suspect
-constexpr double kLeastAngle = 0.01;            // [rad]: twice the deviation of a zero; less is no fault
-constexpr double kLeastReach = 0.05;            // [rad]: the scale of a joint that rests does not show
-constexpr double kMostAngle = 0.2;              // [rad]: what seems larger is the model's own error
-constexpr double kFlawStd = 0.1;      // [rad]: standard, of a flaw before the recording; a larger one meets limits
-constexpr double kFrictionStd = 0.3;  // standard, of a recording's friction, relative to that of all: warmth of the oil
-constexpr double kAngleStep = 1e-3;   // [rad]: step of differences
+constexpr double kSuspectIsOff = gate::kUsual;  // limit if the sensor's noise is suspect
+constexpr double kLeastAngle = 0.01;            // [rad]; twice the standard deviation of a zero, less is no fault
+constexpr double kLeastReach = 0.05;            // [rad]; the scale of a joint at rest cannot be observed
+constexpr double kMostAngle = 0.2;              // [rad]; larger apparent errors are errors of the model
+constexpr double kFlawStd = 0.1;                // [rad]; prior standard deviation of a flaw, larger ones exceed limits
+constexpr double kFrictionStd = 0.3;  // standard deviation of a recording's friction, relative: oil temperature
+constexpr double kAngleStep = 1e-3;   // [rad]; step of differences
 // Prior: kFlawStd, kFrictionStd
 // Numerical: kAngleStep
-constexpr std::size_t kFewestRows = 5;  // of a cylinder in a recording
+constexpr std::size_t kFewestRows = 5;  // per cylinder and recording
 // Warning: kSuspectNoise, kLeastAngle, kLeastReach, kMostAngle, kFewestRows
 
-/// Spread of all values but one about their median, as a standard deviation: a faulty recording shifts all others
-/// alike.
+/// Returns the spread of all values but one about their median, as a standard deviation. A faulty recording shifts all
+/// others alike.
 double spreadWithout(const std::vector<double>& values, std::size_t one) {
   std::vector<double> others(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(one));
   others.insert(others.end(), values.begin() + static_cast<std::ptrdiff_t>(one) + 1, values.end());
   return stdByMedian(others, medianOf(others));
 }
 
-/// Rows of one recording, which follow one another, in the linear system of a fit.
+/// Consecutive rows of one recording in the linear system of a fit.
 struct Part {
   std::size_t first{}, count{};
   BoomSystem system;
@@ -69,7 +69,7 @@ class Comparison {
   }
 
  private:
-  /// size: over its limit.
+  /// Keeps the text of the largest contradiction. size: deviation over its limit.
   void note(double size, const std::string& text) {
     if (size > largest_) largest_ = size, text_ = text + ", leave that recording out";
   }
@@ -80,7 +80,7 @@ class Comparison {
     return model_.given().cylinders()[cylinder].parameters().joint;
   }
 
-  /// A recording's mean force, as the others predict it.
+  /// Compares the mean force of each recording with the prediction from the others.
   void checkForces(std::size_t cylinder) {
     const std::vector<double> noise = noiseRatios(recordings_, model_.given().cylinders()[cylinder].joint());
     for (std::size_t r = 0; r < parts_.size(); ++r) {
@@ -111,7 +111,7 @@ class Comparison {
     }
   }
 
-  /// Change of the model's forces by the reading of a joint [N/rad], in the rows of a recording.
+  /// Returns the derivatives of the model's forces by the reading of a joint [N/rad], in the rows of a recording.
   Eigen::VectorXd slopesByAngle(std::size_t recording, int joint) const {
     std::vector<BoomPoint> points;
     std::vector<BoomRow> up, down;
@@ -129,7 +129,7 @@ class Comparison {
     return (residualsOf(model_, down, fit_.x) - residualsOf(model_, up, fit_.x)) / (2.0 * kAngleStep);
   }
 
-  /// Slopes of a recording's rows by the unknowns and by friction of its own, one for each cylinder.
+  /// Returns the derivatives of a recording's rows by the unknowns and by its own friction, one for each cylinder.
   Eigen::MatrixXd withFriction(const Part& part) const {
     const std::size_t cylinders = model_.given().cylinders().size();
     const Eigen::Index n = part.system.slopes.cols();
@@ -152,8 +152,8 @@ class Comparison {
     double value{}, deviation{}, reach{};
   };
 
-  /// A sensor that differs in one recording from itself in the others, by a constant or in proportion to the angle, as
-  /// one more unknown of the fit.
+  /// Estimates the difference of a sensor in one recording from the others as one more unknown of the fit. The
+  /// difference is constant or in proportion to the angle.
   Size sizeOf(std::size_t recording, int joint, bool is_scale) const {
     const Part& part = parts_[recording];
     if (part.count == 0) return {};

@@ -16,7 +16,7 @@
 namespace hammer_loads::calibration {
 namespace {
 
-/// With the same in degrees where it is an angle.
+/// Returns a value with its unit; angles are also given in degrees.
 std::string shown(double value, const std::string& unit) {
   std::string text = format("%.6g", value);
   if (!unit.empty()) text += " " + unit;
@@ -28,7 +28,7 @@ std::string needOf(const Calibration& c) {
   return format("some %.0f blows, %.0f s of such work", std::ceil(c.more_blows), std::ceil(seconds));
 }
 
-/// Key and value to the second digit of the deviation.
+/// Returns key and value to the second digit of the deviation.
 std::string briefly(const Estimate& e) {
   const bool sure = !(e.deviation > 0.0);
   const int decimals = sure ? 0 : std::clamp(1 - static_cast<int>(std::floor(std::log10(e.deviation))), 0, 9);
@@ -39,7 +39,7 @@ std::string briefly(const Estimate& e) {
   return sure ? text : text + format(" +- %.2g", e.deviation);
 }
 
-/// Nothing that is zero or belongs to another key: a standard deviation, a phase.
+/// Returns the determined keys, without those that are zero or belong to another key (standard deviation, phase).
 std::string foundOf(const Calibration& c) {
   std::vector<std::string> texts;
   for (const Estimate& e : c.estimates) {
@@ -55,7 +55,7 @@ std::string whyNotFound(const Calibration& c, const Estimate& e) {
   return std::isfinite(c.more_blows) ? "too few blows" : "this work does not show it";
 }
 
-/// Keys by the reason, in their order.
+/// Returns the undetermined keys by reason, in their order.
 std::vector<std::pair<std::string, std::string>> notFoundOf(const Calibration& c) {
   std::vector<std::pair<std::string, std::string>> found;
   for (const Estimate& e : c.estimates) {
@@ -73,7 +73,7 @@ std::vector<std::pair<std::string, std::string>> notFoundOf(const Calibration& c
   return found;
 }
 
-/// Advice for the keys that were not found, else the use of the file.
+/// Returns advice for the keys that were not found, otherwise the use of the file.
 std::string nextStepOf(const Calibration& c) {
   constexpr double kLargeResidual = 1.3;  // limit stated in doc/your_machine.md
   // Warning: kLargeResidual
@@ -102,8 +102,8 @@ std::string nextStepOf(const Calibration& c) {
   return joined(steps, "; ") + "; then calibrate again (--verbose shows every figure)";
 }
 
-/// In lines of some 110 characters, the second and later ones indented. A line ends behind a comma, colon or semicolon,
-/// so that a key stays beside its value.
+/// Wraps a text to lines of some 110 characters, the second and later ones indented. A line ends behind a comma, colon
+/// or semicolon, so that a key stays beside its value.
 std::string wrapped(const std::string& text) {
   constexpr std::size_t kLongestLine = 110;  // Numerical: kLongestLine
   std::string lines, line;
@@ -116,14 +116,14 @@ std::string wrapped(const std::string& text) {
   return lines + line + "\n";
 }
 
-/// Direction, counts and jitter any turning crank shows: they alone are no calibration.
+/// Returns true if a key is determined other than direction, counts and jitter, which any turning crank shows.
 bool anyDetermined(const Calibration& c) {
   return std::any_of(c.estimates.begin(), c.estimates.end(), [](const Estimate& e) {
     return e.determined() && e.deviation > 0.0 && e.key != "crank_timing_noise_s";
   });
 }
 
-/// The least of 1, 2 and 5 times a power of ten that is not below.
+/// Returns the smallest of 1, 2 and 5 times a power of ten that is not below `least`.
 double tickStep(double least) {
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   for (const double factor : {1.0, 2.0, 5.0})
@@ -131,7 +131,7 @@ double tickStep(double least) {
   return 10.0 * power;
 }
 
-/// A curve on a scale of its own, in degrees.
+/// Panel with one curve on its own scale, in degrees.
 struct ResidualPanel {
   static constexpr double kLeft = 80.0, kRight = 740.0, kHeight = 180.0;  // Numerical: kLeft, kRight, kHeight
   double top;
@@ -139,7 +139,7 @@ struct ResidualPanel {
   const char *title, *colour;
 
   static double x(double part) { return kLeft + (kRight - kLeft) * part; }
-  /// Largest value of the curve with its bars, 0.01 deg or more.
+  /// Returns the largest value of the curve with its bars, at least 0.01 deg.
   double largest() const {
     double value = 0.01;
     for (std::size_t i = 0; i < curve.mean.size(); ++i)

@@ -8,11 +8,11 @@
 
 namespace hammer_loads::calibration {
 
-/// Evidence of the crank's filter, run with the sensor and the drive of a fit.
+/// Returns the evidence of the crank filter, run with the sensor and the drive of a fit.
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
 
-/// Ratio of the residuals to their expectation, just after the blow and later; with an elastic rod, its effect and the
-/// action as well. settled: the fit with the links of the hammer file converged; otherwise the links may be wrong.
+/// Returns the ratio of residuals to their expectation, just after the blow and later; with an elastic rod also its
+/// effect and the action. settled: the fit with the hammer file's links converged; otherwise they may be wrong.
 std::string textOf(const RodEvidence& rod, bool settled);
 
 }  // namespace hammer_loads::calibration

@@ -10,7 +10,7 @@
 namespace hammer_loads::calibration {
 namespace {
 
-/// The reading at an offset, with its derivatives.
+/// Reading at an offset, with its derivatives.
 struct Seen {
   Seen(const Globals& g, double offset)
       : s1(std::sin(offset)), c1(std::cos(offset)), s2(2.0 * s1 * c1), c2(1.0 - 2.0 * s1 * s1) {
@@ -22,14 +22,14 @@ struct Seen {
   double value, slope, bend;  ///< reading [rad], its first and second derivative by the offset
 };
 
-/// Residual beyond which a sample counts less (Huber) [deviations].
+/// Residual beyond which a sample has less weight (Huber) [standard deviations].
 constexpr double kHuber = gate::kRare;
 
-/// Huber's weight of a residual in deviations, and its cost.
+/// Huber's weight of a residual in standard deviations, and its cost.
 double weightOf(double r) { return std::abs(r) <= kHuber ? 1.0 : kHuber / std::abs(r); }
 double costOf(double r) { return std::abs(r) <= kHuber ? 0.5 * r * r : kHuber * (std::abs(r) - 0.5 * kHuber); }
 
-/// Standard normal, the same with every standard library (Box-Muller).
+/// Returns a standard normal number, equal with every standard library (Box-Muller).
 double normal(std::mt19937_64& random) {
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   const double u = 1.0 - uniform(), v = uniform();
@@ -124,8 +124,8 @@ std::vector<ShotPoint> SegmentFit::motion(const SegmentModel& model, const Globa
   return points;
 }
 
-/// A stamp off by d shows an angle off by w d and a speed off by w' d; next to the blow it may lie on the other side of
-/// it, where the crank's speed is another one.
+/// A timing error d changes the angle by w d and the speed by w' d. Near the blow, the measurement may lie on its other
+/// side, where the crank has another speed.
 Weighing SegmentFit::weighing(const Noise& noise, double time, const ShotPoint& at) const {
   const double variance = square(noise.timing), angle = square(noise.angle) + square(at.speed) * variance;
   const double both = at.speed * at.acceleration * variance, share = both / angle;
@@ -224,7 +224,7 @@ BlowSegment SegmentFit::replica(const SegmentModel& model, const Globals& global
   for (std::size_t i = 0; i < size(); ++i) instants.points[i].time = taken[i].time;
   const std::vector<ShotPoint> points = onto(instants).motion(model, globals);
   BlowSegment replica = *segment_;
-  const double centre = segment_->points.front().seen;  // of some count
+  const double centre = segment_->points.front().seen;  // centre of a count
   for (std::size_t i = 0; i < size(); ++i) {
     const Seen seen(globals, points[i].offset);
     CrankPoint& point = replica.points[taken[i].place];

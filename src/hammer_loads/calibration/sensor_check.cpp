@@ -13,18 +13,18 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kQuietNoise = 8.0;  // ratio to the others, where a recording is quietest
-constexpr double kLoudNoise = 40.0;  // ratio to the others, rms: an error that comes and goes
-constexpr double kLeap = 0.005;      // [rad]: 0.3 deg, the deviation of a zero
+constexpr double kQuietNoise = 8.0;  // ratio to the other recordings at the quietest instants
+constexpr double kLoudNoise = 40.0;  // ratio to the other recordings, rms: intermittent errors
+constexpr double kLeap = 0.005;      // [rad]; 0.3 deg, the standard deviation of a zero
 constexpr double kLeapOverNoise = 10.0;
-constexpr double kLeapStays = 0.6;   // part of a leap by which the readings before and after differ
+constexpr double kLeapStays = 0.6;   // least part of a leap that remains between the readings before and after
 constexpr double kBesideLeap = 0.3;  // [s]
 constexpr std::ptrdiff_t kLeastBeside = 5;
 constexpr double kStays = 0.5;          // [s]
 constexpr double kNoiseOverStep = 2.0;  // ratio of noise to the step of the readings above which they never repeat
 // Warning: kQuietNoise, kLoudNoise, kLeap, kLeapOverNoise, kLeapStays, kBesideLeap, kStays, kNoiseOverStep
 
-/// Standard deviation of a joint's rate where it is quietest: of the sensor's noise, motion adds to it elsewhere.
+/// Returns the standard deviation of a joint's rate when quietest: sensor noise, to which motion adds elsewhere.
 double quietNoise(const BoomPoints& recording, int joint) {
   std::vector<double> all;
   for (const BoomPoint& point : recording.points) all.push_back(point.rate_std[joint]);
@@ -40,7 +40,7 @@ double rmsNoise(const BoomPoints& recording, int joint) {
   return std::sqrt(square / std::max<double>(1.0, static_cast<double>(recording.points.size())));
 }
 
-/// Each value over the median of the others.
+/// Returns each value over the median of the others.
 std::vector<double> overOthers(const std::vector<double>& values) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -52,7 +52,7 @@ std::vector<double> overOthers(const std::vector<double>& values) {
   return ratios;
 }
 
-/// Value of a line through the readings first to last, at a time.
+/// Returns the value at `time` of a line through the readings from first up to last.
 double lineAt(const Trace& trace, std::size_t first, std::size_t last, double time) {
   double t = 0.0, x = 0.0, tt = 0.0, tx = 0.0;
   const auto count = static_cast<double>(last - first);
@@ -65,7 +65,7 @@ double lineAt(const Trace& trace, std::size_t first, std::size_t last, double ti
   return tt > 0.0 ? x - t * tx / tt : x;
 }
 
-/// Size of a leap between reading i and the next [rad]; zero: none.
+/// Returns the size of a leap between reading i and the next [rad]; zero if there is none.
 double leapAfter(const Trace& trace, std::size_t i) {
   const double middle = 0.5 * (trace.time[i] + trace.time[i + 1]);
   const auto at = [&](double time) {
@@ -95,7 +95,7 @@ std::optional<Event> firstLeap(const Trace& trace) {
   return {};
 }
 
-/// The longest time without any change.
+/// Returns the longest time without any change.
 Event longestStay(const Trace& trace) {
   Event longest;
   std::size_t since = 0;
@@ -107,7 +107,7 @@ Event longestStay(const Trace& trace) {
   return longest;
 }
 
-/// Noise of the readings that change, over the step of the readings [-]; zero: none change.
+/// Returns the noise of the changing readings over their step [-]; zero if none change.
 double noiseOverStep(const Trace& trace) {
   std::vector<double> bends;
   double step = kInfinity;
@@ -120,16 +120,16 @@ double noiseOverStep(const Trace& trace) {
   return bends.empty() ? 0.0 : stdByMedian(bends, 0.0) / std::sqrt(6.0) / step;
 }
 
-constexpr double kFits = 0.5;    // part of the force, rms: errors of nominal masses, friction and zeros are below it
-constexpr double kBetter = 0.5;  // another reading of it is off by less than this part
+constexpr double kFits = 0.5;    // part of the force, rms: errors of nominal masses, friction and zeros are smaller
+constexpr double kBetter = 0.5;  // another interpretation must reduce the error to less than this part
 constexpr double kBeyondLimit = 0.3;  // [rad]
 // Warning: kFits, kBetter, kBeyondLimit
 
 constexpr std::pair<const char*, double> kUnits[]{
     {"Pa", 1.0}, {"bar", 1e5}, {"psi", 6894.757}, {"kPa", 1e3}, {"MPa", 1e6}};
 
-/// rms of measured less expected force, over that expected. The pressures are read as those of the cylinder `of`, in
-/// units of so many Pa.
+/// Returns the rms of measured minus expected force over that of the expected. The pressures are those of cylinder
+/// `of`, in units of so many Pa.
 double misfit(const BoomModel& model, const std::vector<double>& expected, const BoomPoints& recording,
               std::size_t cylinder, std::size_t of, bool exchanged, double unit) {
   const Cylinder& c = model.given().cylinders()[cylinder];

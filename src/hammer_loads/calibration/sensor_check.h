@@ -11,21 +11,21 @@
 
 namespace hammer_loads::calibration {
 
-/// Noise of a joint's sensor in each recording, rms over all instants, over the median of the others [-].
+/// Returns the noise of a joint sensor in each recording, rms over all instants, over the median of the others [-].
 std::vector<double> noiseRatios(const std::vector<BoomPoints>& recordings, int joint);
 
-/// One line per joint's sensor whose noise in one recording is far above that in the others; names: of the recordings.
+/// Returns one line per joint sensor whose noise in one recording is far above the others; names: of the recordings.
 std::vector<std::string> noisySensors(const Chain& chain, const std::vector<BoomPoints>& recordings,
                                       const std::vector<std::string>& names);
 
-/// One line per joint's sensor that leaps from one reading to the next and stays there, or whose reading stays exactly
-/// equal although it is noisy elsewhere. No joint moves like that. Recordings and their names.
+/// Returns one line per joint sensor that jumps between two readings and stays there, or whose reading stays exactly
+/// equal although it is noisy elsewhere. No joint moves like that. names: of the recordings.
 std::vector<std::string> brokenSensors(const Chain& chain, const std::vector<const BoomRecording*>& recordings,
                                        const std::vector<std::string>& names);
 
-/// One line per cylinder whose pressures agree with the given boom only under another interpretation, or not at all,
-/// and per joint beyond its limits. The forces of the given boom must be right within a half, as those of a drawing
-/// are. Empty without a finding.
+/// Returns one line per cylinder whose pressures agree with the given boom only under another interpretation, or not at
+/// all, and per joint beyond its limits. The forces of the given boom must be right within a half, as those of nominal
+/// parameters are. Empty without a finding.
 std::vector<std::string> misreadings(const BoomModel& model, const BoomPoints& recording);
 
 }  // namespace hammer_loads::calibration
