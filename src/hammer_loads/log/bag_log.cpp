@@ -71,7 +71,7 @@ std::vector<std::string> BagLog::start() {
   return {};
 }
 
-/// Throws LogFault where a log with valid settings cannot begin now, for disk or memory.
+/// Begins a bag in the directory. Throws LogFault if disk or memory prevent this although the settings are valid.
 void BagLog::beginIn(const std::string& directory, std::uint64_t session) {
   const std::uint64_t free = disk_.free_space(directory);
   if (free < settings_.min_free_space) {
@@ -94,7 +94,7 @@ void BagLog::beginIn(const std::string& directory, std::uint64_t session) {
 }
 
 bool BagLog::hasRoomAgain() const {
-  // Minimum of new room, so that a disk at its limit does not begin a bag every second.
+  // Required additional free space. Without it, a disk at its limit would begin a bag every second.
   constexpr std::uint64_t kMoreRoom = 16'000'000;  // [byte]
   if (!is_wanted_ || isRecording() || writer_.status().state != LogState::kDiskFull) return false;
   const Checked<std::string> directory = findLogDirectory(settings_.directory);
@@ -127,8 +127,8 @@ void BagLog::lose(LogTopic& topic, const ros::Time& time) {
   gap_time_ = time;
 }
 
-/// Writes the losses since the last report, if there are any, behind what was queued. Returns false if too many orders
-/// wait.
+/// Writes the losses since the last report, if there are any, after the messages queued so far. Returns false if too
+/// many orders wait.
 bool BagLog::reportGap(const ros::Time& time, bool always) {
   using Gap = diagnostic_msgs::DiagnosticStatus;
   if (gap_.empty()) return true;
@@ -167,7 +167,7 @@ LogHealth BagLog::health() const {
     const std::uint64_t written = topic.written.load(std::memory_order_relaxed);
     const std::uint64_t dropped =
         topic.refused.load(std::memory_order_relaxed) + topic.unsaved.load(std::memory_order_relaxed);
-    if (topic.connection.topic == gap_name_) continue;  // the log's own
+    if (topic.connection.topic == gap_name_) continue;  // topic of the log itself
     health.topics.push_back(
         {topic.connection.topic, written, dropped, topic.too_large.load(std::memory_order_relaxed)});
     health.messages_written += written;

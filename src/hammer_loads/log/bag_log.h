@@ -1,5 +1,5 @@
-/// Bag writer of a node: takes messages without waiting for the disk, and recovers from faults of the disk; and the
-/// record times of the node's inputs.
+/// Log of a node in bags, and the record times of the node's inputs. The log takes messages without waiting for the
+/// disk and recovers from disk faults.
 #pragma once
 
 #include <ros/message_traits.h>
@@ -22,20 +22,20 @@
 
 namespace hammer_loads {
 
-/// Log of a node in bags; doc/log.md states the guarantees. health() may be called from any thread; all else from one
-/// at a time.
+/// Log of a node in bags; doc/log.md states the guarantees. health() may be called from any thread. All other functions
+/// must be called from one thread at a time.
 class BagLog {
  public:
-  /// Prepares a log; the caller obeys LogSettings::enabled.
+  /// Prepares a log. The caller must check LogSettings::enabled.
   explicit BagLog(const LogSettings& settings, const LogDisk& disk = {});
   /// Writes the queued messages and closes the bag; waits for the disk.
   ~BagLog() { stop(); }
 
-  /// Reasons why these settings can never work, one line each (key, value, rule); the node must not start with them.
-  /// Creates the directory where findLogDirectory may.
+  /// Returns the reasons why these settings can never work, one line each (key, value, rule). The node must not start
+  /// with them. Creates a missing directory under the conditions of findLogDirectory().
   std::vector<std::string> settingProblems() const;
-  /// Begins a bag. Returns nothing, or one line per reason against it: a problem of the settings, or the state of disk
-  /// and memory, which health() then reports as well. The node may start all the same.
+  /// Begins a bag. Returns one line per reason against it: faulty settings, or the state of disk and memory. health()
+  /// also reports the latter. The result is empty on success. The node may start in any case.
   std::vector<std::string> start();
   /// Closes the bag after the last message. It returns at once; health() reports when the bag is closed and whether
   /// that succeeded.
@@ -43,27 +43,27 @@ class BagLog {
   /// Continues in a new bag; returns false if there is none to split.
   bool split();
 
-  /// Queues a copy for the disk if the log is recording. A message that finds no room is dropped and counted.
-  /// topic: resolved name. time: of RecordClock; an output gets that of the input that caused it.
+  /// Queues a copy for the disk if the log is recording. A message without room in the queue is dropped and counted.
+  /// topic: resolved name. time: record time of RecordClock; an output gets the time of the input that caused it.
   template <typename Message>
   void write(const std::string& topic, const ros::Time& time, const Message& message);
 
-  /// Writes like write(), and keeps the message, recording or not, to repeat it at the start of every bag. caller: node
-  /// that published it, where several latch on one topic (/tf_static): one message of each is kept.
+  /// Writes a message like write() and repeats it at the start of every later bag, even if the log is not recording
+  /// now. caller: publishing node, if several nodes latch on one topic (/tf_static); one message of each node is kept.
   template <typename Message>
   void writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
                     const std::string& caller = {});
-  /// Forgets the messages latched there: later bags begin without them.
+  /// Forgets the message latched on that topic by that caller; later bags begin without it.
   void forgetLatched(const std::string& topic, const std::string& caller = {});
 
-  /// Returns true if a log that a full disk stopped, or kept from starting, may start() again: some room is there
-  /// beyond log_min_free_mb. False after stop().
+  /// Returns true if a full disk stopped the log, or prevented its start, and it may start() again. This needs 16 MB of
+  /// free space beyond log_min_free_mb. Returns false after stop().
   bool hasRoomAgain() const;
 
-  /// Unclosed bags of earlier runs with this prefix: for each of them one line with the command that recovers it.
+  /// Returns one line for each unclosed bag of earlier runs with this prefix, with the command that recovers it.
   std::vector<std::string> unfinishedBags() const;
 
-  /// Returns true if the settings log the outputs of that class, or the inputs. The caller obeys.
+  /// Returns true if the settings include this class of outputs, or the inputs, in the log. The caller must check this.
   bool logs(LoggedOutputs outputs) const noexcept { return outputs <= settings_.outputs; }
   bool logsInputs() const noexcept { return settings_.inputs; }
 
@@ -95,21 +95,21 @@ class BagLog {
   const LogSettings settings_;
   const std::string gap_name_;
   const LogDisk disk_;
-  std::uint64_t session_{};  // number of the current recording; 0: none is wanted
+  std::uint64_t session_{};  // number of the current recording; 0: none was started
   std::uint64_t last_session_{};
-  bool is_wanted_{};                 // by the last of start() and stop()
-  mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads
+  bool is_wanted_{};                 // true after start(), false after stop()
+  mutable std::mutex topics_mutex_;  // guards additions, and reads by other threads
   std::deque<LogTopic> topics_;
-  std::unordered_map<std::string, LogTopic*> by_key_;  // by name, or by latchedKey()
-  std::map<std::string, std::uint64_t> gap_;           // messages lost that no bag reports yet, by topic
-  ros::Time gap_time_;                                 // record time of the last of them
+  std::unordered_map<std::string, LogTopic*> by_key_;  // topics by name, or by latchedKey()
+  std::map<std::string, std::uint64_t> gap_;           // lost messages that no bag reports yet, by topic
+  ros::Time gap_time_;                                 // record time of the last lost message
   LogQueue queue_;
-  LogWriter writer_;  // last: its thread uses the others
+  LogWriter writer_;  // declared last: its thread uses the other members
 };
 
 template <typename Message>
 void BagLog::write(const std::string& topic, const ros::Time& time, const Message& message) {
-  constexpr double kMuchRoom = 0.5;  // else the next message would be lost as well
+  constexpr double kMuchRoom = 0.5;  // largest fill for a report; above it, the next message would be lost as well
   if (!isRecording()) return;
   if (!gap_.empty() && queue_.fill() <= kMuchRoom) reportGap(time, false);
   LogTopic& entry = topicOf(topic, topic, message);
@@ -131,17 +131,17 @@ void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const
   LogTopic& entry = topicOf(latchedKey(topic, caller), topic, message, true, caller);
   if (writer_.latch({&entry, time, bytesOf(message)})) return;
   lose(entry, time);
-  writer_.forget(entry);  // earlier latched messages hold no longer
+  writer_.forget(entry);  // earlier latched messages are no longer valid
 }
 
-/// Arrival times, made strictly increasing so that a log in time order is in the order of arrival. If simulated time
-/// runs back (a looped bag, a restarted simulation), the clock restarts. A wall clock that is set back has no effect,
-/// as only header stamps are used in computations.
+/// Clock of record times. They are arrival times made strictly increasing, so that a log in time order is in the order
+/// of arrival. If simulated time runs back (a looped bag, a restarted simulation), the clock restarts. A wall clock
+/// that is set back has no effect, because computations use only header stamps.
 class RecordClock {
  public:
   struct Tick {
-    ros::Time time;   ///< record time of the input: its arrival, but at least 1 ns after the input before
-    bool ran_back{};  ///< a state by time must be forgotten
+    ros::Time time;   ///< record time of the input: its arrival, but at least 1 ns after the previous input
+    bool ran_back{};  ///< simulated time ran back: all state that depends on time must be discarded
   };
 
   Tick next(const ros::Time& arrival) {
@@ -151,7 +151,7 @@ class RecordClock {
     last_.fromNSec(std::min(std::max(arrival.toNSec(), earliest), ros::TIME_MAX.toNSec()));
     return {last_, ran_back};
   }
-  /// Time of the last input.
+  /// Returns the record time of the last input.
   const ros::Time& last() const { return last_; }
 
  private:

@@ -11,9 +11,9 @@
 
 namespace hammer_loads {
 
-constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";  ///< a bag begins with it
+constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";  ///< first bytes of a bag
 
-/// Number in the bytes' first places, little end first as every machine that ROS runs on.
+/// Returns the number in the first bytes. Bags are little-endian, as is every machine on which ROS runs.
 template <typename T>
 T numberIn(std::string_view bytes) {
   if (bytes.size() < sizeof(T)) throw std::runtime_error("a field or record is cut short");
@@ -29,12 +29,12 @@ std::string bytesOf(T number) {
 
 inline std::string bytesOf(const ros::Time& time) { return bytesOf(time.sec) + bytesOf(time.nsec); }
 
-/// A length and as many bytes.
+/// Returns the number of bytes followed by the bytes.
 inline std::string pieceOf(const std::string& bytes) {
   return bytesOf(static_cast<std::uint32_t>(bytes.size())) + bytes;
 }
 
-/// Takes a length and as many bytes from the beginning of `bytes`.
+/// Removes a length and that many bytes from the beginning of `bytes`; returns the latter.
 inline std::string_view takePiece(std::string_view& bytes) {
   const auto size = numberIn<std::uint32_t>(bytes);
   bytes.remove_prefix(sizeof size);
@@ -44,7 +44,7 @@ inline std::string_view takePiece(std::string_view& bytes) {
   return piece;
 }
 
-/// Value of a field; empty where there is none.
+/// Returns the value of a field; empty if there is none.
 inline std::string_view fieldOf(std::string_view header, std::string_view name) {
   while (!header.empty()) {
     const std::string_view field = takePiece(header);
@@ -70,7 +70,7 @@ struct BagRecord {
   std::string_view header, data;
 
   Kind kind() const { return static_cast<Kind>(numberOf<std::uint8_t>(header, "op")); }
-  /// Takes one from the beginning of `bytes`.
+  /// Removes a record from the beginning of `bytes` and returns it.
   static BagRecord take(std::string_view& bytes) {
     const std::string_view header = takePiece(bytes);
     return {header, takePiece(bytes)};

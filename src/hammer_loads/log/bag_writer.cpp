@@ -13,10 +13,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint32_t kBagHeader = 4096;  // padded, so that it can be written again at the end
-constexpr int kBlock = 6;                   // of LZ4, as rosbag's: 1 MB
-constexpr std::uint64_t kRecord = 128;      // largest header of a record without texts
-constexpr std::uint64_t kIndexEntry = 12;   // time and offset of one message
+constexpr std::uint32_t kBagHeader = 4096;  // header and padding, so that the header can be rewritten at the end [byte]
+constexpr int kBlock = 6;                   // code of the LZ4 block size, as in rosbag: 1 MB
+constexpr std::uint64_t kRecord = 128;      // largest header of a record without texts [byte]
+constexpr std::uint64_t kIndexEntry = 12;   // time and offset of one message [byte]
 
 [[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
 
@@ -30,7 +30,7 @@ std::string headerOf(BagRecord::Kind kind) {
   return header;
 }
 
-/// Largest size of so many bytes after compression.
+/// Returns the largest possible size of `size` bytes after compression.
 std::size_t packedBound(std::size_t size) { return size + size / 64 + 4096; }
 
 }  // namespace
@@ -59,7 +59,7 @@ void BagWriter::writeBytes(const std::string& bytes) {
   position_ += bytes.size();
 }
 
-/// 0: the index is not written yet.
+/// Writes the header of the bag. index_position: 0 if the index is not written yet.
 void BagWriter::writeBagHeader(std::uint64_t index_position) {
   std::string header = headerOf(BagRecord::kBag);
   addField(header, "index_pos", bytesOf(index_position));
@@ -92,7 +92,7 @@ std::string BagWriter::recordOf(std::uint32_t number) const {
   return pieceOf(header) + pieceOf(data);
 }
 
-/// The header of a message has always the same length.
+/// Appends a message's header, which always has the same length, and returns the place for the message.
 std::uint8_t* BagWriter::beginMessage(std::uint32_t connection, const ros::Time& time, std::uint32_t size) {
   ChunkInfo& chunk = chunks_.back();
   if (chunk.counts.empty()) chunk.first = chunk.last = time;

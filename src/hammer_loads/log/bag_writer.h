@@ -1,5 +1,5 @@
 /// Writer of bags of format 2.0. rosbag::Bag asks the system for the end of the file with each message, which takes
-/// most of its time, and its destructor terminates the process if the disk is full.
+/// most of its time. Its destructor terminates the process if the disk is full.
 #pragma once
 
 #include <ros/message_traits.h>
@@ -18,18 +18,18 @@
 
 namespace hammer_loads {
 
-/// A bag that is being written. `rosbag reindex` recovers the chunks of one that was not closed. Every function throws
-/// std::system_error where the file cannot be written.
+/// Bag that is being written. If it is not closed, `rosbag reindex` recovers its chunks. Every function throws
+/// std::system_error if the file cannot be written.
 class BagWriter {
  public:
-  static constexpr std::size_t kChunk = 768 * 1024;  ///< size of a chunk, that of rosbag [byte]
+  static constexpr std::size_t kChunk = 768 * 1024;  ///< size of a chunk, as in rosbag [byte]
 
   struct Connection {
     std::string topic, type, md5sum, definition;
     bool latched{};
-    std::string caller;  ///< node that published it; empty: none is written
+    std::string caller;  ///< publishing node; empty: not written to the bag
   };
-  /// Connection of a topic for messages of this one's type.
+  /// Returns the connection of a topic for messages of the type of `message`.
   template <typename Message>
   static Connection connectionOf(const std::string& topic, const Message& message, bool latched,
                                  const std::string& caller = {}) {
@@ -44,7 +44,7 @@ class BagWriter {
   BagWriter& operator=(const BagWriter&) = delete;
   ~BagWriter();
 
-  /// latched: as a latched publisher's message, which rosbag play keeps for late subscribers.
+  /// Writes a message. latched: mark it as latched; rosbag play keeps such a message for late subscribers.
   template <typename Message>
   void write(const std::string& topic, const ros::Time& time, const Message& message, bool latched = false) {
     const std::uint32_t size = ros::serialization::serializationLength(message);
@@ -56,20 +56,20 @@ class BagWriter {
     ros::serialization::serialize(stream, message);
     endMessage();
   }
-  /// Number of a connection for the function below; one for each topic.
+  /// Adds a connection and returns its number for the function below. Each topic needs at least one.
   std::uint32_t addConnection(Connection connection);
-  /// A message that is serialised already.
+  /// Writes a message that is already serialised.
   void write(std::uint32_t connection, const ros::Time& time, const std::uint8_t* bytes, std::uint32_t size) {
     std::memcpy(beginMessage(connection, time, size), bytes, size);
     endMessage();
   }
   /// Writes the open chunk, if it holds anything.
   void closeChunk();
-  /// Writes the rest and the index.
+  /// Writes the open chunk and the index and closes the file.
   void close();
 
   std::uint64_t size() const noexcept { return position_; }  ///< on disk, without the open chunk [byte]
-  /// Largest possible size after close(), if no more message is written [byte].
+  /// Returns the largest possible size after close() if no further message is written [byte].
   std::uint64_t sizeBound() const noexcept;
 
  private:
@@ -89,13 +89,13 @@ class BagWriter {
   std::size_t chunk_size_;
   LogCompression compression_;
   int descriptor_;
-  std::uint64_t position_{};  ///< end of the file
+  std::uint64_t position_{};  ///< end of the file [byte]
   std::vector<Connection> connections_;
   std::map<std::string, std::uint32_t> numbers_;  ///< numbers of the connections, by topic
   std::vector<ChunkInfo> chunks_;                 ///< the last one is being filled
-  std::string chunk_, packed_;                    ///< bytes of that one
-  std::map<std::uint32_t, Places> index_;         ///< places by connection
-  std::uint64_t messages_{};                      ///< number of messages in that one
+  std::string chunk_, packed_;                    ///< data of the open chunk, before and after compression
+  std::map<std::uint32_t, Places> index_;         ///< places in the open chunk, by connection
+  std::uint64_t messages_{};                      ///< number of messages in the open chunk
   std::uint64_t index_size_{};                    ///< largest possible size of the file's index [byte]
 };
 

@@ -24,7 +24,7 @@ std::string homeDirectory() {
   return user != nullptr ? user->pw_dir : "";
 }
 
-/// With links and .. resolved as far as the path exists.
+/// Returns true if the path lies below `home`. Links and .. are resolved as far as the path exists.
 bool isBelow(const fs::path& path, const fs::path& home) {
   std::error_code error;
   if (!fs::exists(home, error)) return false;
@@ -32,10 +32,10 @@ bool isBelow(const fs::path& path, const fs::path& home) {
   return !error && inside != "." && *inside.begin() != "..";
 }
 
-/// Some process holds the lock of this file (LogFile::create).
+/// Returns true if a process holds the lock of this file (LogFile::create) or if the file cannot be opened.
 bool isBeingWritten(const std::string& path) {
   const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return true;  // not ours to judge
+  if (descriptor < 0) return true;  // cannot be determined: left alone
   const bool is_locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0;
   close(descriptor);
   return is_locked;
@@ -50,7 +50,7 @@ Checked<std::string> findLogDirectory(const std::string& given) {
     const std::string home = homeDirectory();
     path = home + given.substr(1);
     std::error_code error;
-    if (isBelow(path, home)) fs::create_directories(path, error);  // a failure shows below
+    if (isBelow(path, home)) fs::create_directories(path, error);  // a failure is reported below
   }
   struct stat found {};
   if (stat(path.c_str(), &found) != 0) {

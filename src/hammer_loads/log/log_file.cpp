@@ -17,7 +17,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint64_t kMessageOverhead = 160;  // headers and index entry of one message, incompressible
+constexpr std::uint64_t kMessageOverhead = 160;  // headers and index entry of one message, incompressible [byte]
 constexpr unsigned kMostTries = 10000;
 
 bool isFull(int error) { return error == ENOSPC || error == EDQUOT || error == EFBIG; }
@@ -44,7 +44,7 @@ std::shared_ptr<LogFile> LogFile::create(const LogSettings& settings, const std:
     if (faccessat(AT_FDCWD, file->final_.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) continue;
     file->descriptor_ = ::open(file->active_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (file->descriptor_ >= 0) {
-      flock(file->descriptor_, LOCK_EX | LOCK_NB);  // a sign to others; without it nothing else changes
+      flock(file->descriptor_, LOCK_EX | LOCK_NB);  // tells others that the file is in use; failure is harmless
       return file;
     }
     error = errno;
@@ -66,7 +66,7 @@ bool LogFile::isDeleted() const noexcept {
   return fstat(descriptor_, &found) == 0 && found.st_nlink == 0;
 }
 
-/// An error of the action gives the bag up.
+/// Carries out an action. After an error, gives the bag up and throws LogFault.
 template <typename Action>
 void LogFile::guarded(const Action& action) {
   const auto give_up = [this](LogState state, const char* reason) {
@@ -109,7 +109,7 @@ void LogFile::reserve(std::uint64_t more) {
   } else if (isFull(errno)) {
     throw LogFault(LogState::kDiskFull, "no space for log file " + active_ + ": " + std::strerror(errno));
   } else {
-    allocated_ = std::numeric_limits<std::uint64_t>::max();  // not offered by this file system: do without
+    allocated_ = std::numeric_limits<std::uint64_t>::max();  // not supported by this file system: continue without it
   }
 }
 
@@ -131,7 +131,7 @@ void LogFile::close() {
   guarded([this] { bag_->close(); });
   size_ = bag_->size();
   bag_.reset();
-  // Space taken ahead is given back.
+  // Releases the disk space allocated ahead of the data.
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) allocated_ = 0;
   const std::string stem = final_.substr(0, final_.size() - std::strlen(".bag"));
   int error = renameToNew(active_, final_);

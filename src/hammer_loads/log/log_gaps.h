@@ -1,4 +1,4 @@
-/// Messages that a log lost, as its bag reports.
+/// Report of a bag on the messages that its log lost.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
@@ -9,9 +9,9 @@
 
 namespace hammer_loads {
 
-/// A bag with a message on this topic lacks some inputs; results computed from it may differ from those published live.
-/// Type: diagnostic_msgs/DiagnosticStatus, one value for each topic with the number of its messages lost since the last
-/// such message.
+/// Topic of reports on lost messages. A bag with such a report lacks some messages; results computed from it may differ
+/// from those published live. Type: diagnostic_msgs/DiagnosticStatus, one value for each topic with the number of its
+/// messages lost since the last report.
 inline constexpr char kGapTopic[] = "/log/gaps";  // below the node's name
 
 inline bool isGapTopic(const std::string& topic) {
@@ -19,7 +19,7 @@ inline bool isGapTopic(const std::string& topic) {
   return topic.size() >= end.size() && topic.compare(topic.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Messages of all topics together.
+/// Returns the number of lost messages on all topics.
 inline std::uint64_t lostMessages(const diagnostic_msgs::DiagnosticStatus& gap) {
   std::uint64_t sum = 0;
   for (const diagnostic_msgs::KeyValue& topic : gap.values) sum += std::strtoull(topic.value.c_str(), nullptr, 10);

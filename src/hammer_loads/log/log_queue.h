@@ -1,4 +1,4 @@
-/// Bounded queue of serialised messages from one thread to one other: no lock, no allocation, no system call.
+/// Bounded queue of serialised messages from one thread to one other, without locks, allocations or system calls.
 #pragma once
 
 #include <ros/time.h>
@@ -14,15 +14,15 @@ namespace hammer_loads {
 
 struct LogTopic;
 
-/// Ring of bytes. Positions count all bytes that ever passed, so they only grow and order events among records.
+/// Ring buffer of bytes. Positions count all bytes ever queued; they only grow and thus order events among records.
 ///
-/// The producing thread calls reserve(), fills in the bytes and calls commit(); the consuming thread calls front() and
-/// pop(). A record is contiguous: where it would run over the end of the ring, the rest of the ring is skipped.
+/// The producing thread calls reserve(), fills in the bytes and calls commit(). The consuming thread calls front() and
+/// pop(). A record is contiguous: if it would cross the end of the buffer, the rest of the buffer is skipped.
 class LogQueue {
  public:
-  /// One message as it lies in the ring.
+  /// Message as stored in the buffer.
   struct Record {
-    LogTopic* topic;     ///< null: skip to the start of the ring
+    LogTopic* topic;     ///< null: skip to the start of the buffer
     ros::Time time;      ///< record time
     std::uint64_t step;  ///< bytes to the next record
     std::uint32_t size;  ///< size of the message [bytes]
@@ -30,18 +30,18 @@ class LogQueue {
     std::uint8_t* bytes() noexcept { return reinterpret_cast<std::uint8_t*>(this) + sizeof(Record); }
   };
 
-  /// `bytes` is rounded down to whole units. Has no memory until take().
+  /// Prepares a queue of `bytes`, rounded down to whole units, at least 8. It has no memory before take().
   explicit LogQueue(std::size_t bytes) : unit_count_(std::max<std::size_t>(bytes / sizeof(Unit), 8)) {}
 
-  /// Allocates and touches all memory; throws std::bad_alloc. Call in the producing thread before it reserves.
+  /// Allocates and touches all memory; throws std::bad_alloc. The producing thread calls it before reserve().
   void take() {
     if (!units_) units_ = std::make_unique<Unit[]>(unit_count_);
   }
 
-  /// A message larger than half the ring never fits.
+  /// Returns false for a message larger than half the buffer, which never fits.
   bool canEverHold(std::uint32_t size) const noexcept { return roundUp(sizeof(Record) + size) <= capacity() / 2; }
 
-  /// Room for a message of `size` bytes, or null if there is none now.
+  /// Returns room for a message of `size` bytes, or null if there is none now.
   std::uint8_t* reserve(std::uint32_t size) noexcept {
     if (!canEverHold(size)) return nullptr;
     const std::uint64_t step = roundUp(sizeof(Record) + size);
@@ -54,7 +54,7 @@ class LogQueue {
     return put(reserved_, Record{nullptr, {}, step, size})->bytes();
   }
 
-  /// Hands over what was last reserved.
+  /// Hands the record reserved last over to the consuming thread.
   void commit(LogTopic& topic, const ros::Time& time) noexcept {
     Record* record = at(reserved_);
     record->topic = &topic;
@@ -62,31 +62,31 @@ class LogQueue {
     end_.store(reserved_ + record->step, std::memory_order_release);
   }
 
-  /// Oldest record, or null. Valid until pop().
+  /// Returns the oldest record, or null. It is valid until pop().
   Record* front() noexcept {
     const std::uint64_t end = end_.load(std::memory_order_acquire);
     std::uint64_t begin = begin_.load(std::memory_order_relaxed);
     if (begin == end) return nullptr;
-    if (at(begin)->topic == nullptr) {  // never the last one: it is handed over together with the record behind it
+    if (at(begin)->topic == nullptr) {  // a skip is never the last record: it is handed over with the record after it
       begin += at(begin)->step;
       begin_.store(begin, std::memory_order_release);
     }
     return at(begin);
   }
 
-  /// Frees what front() gave.
+  /// Frees the record that front() returned.
   void pop() noexcept {
     const std::uint64_t begin = begin_.load(std::memory_order_relaxed);
     begin_.store(begin + at(begin)->step, std::memory_order_release);
   }
 
-  std::uint64_t begin() const noexcept { return begin_.load(std::memory_order_acquire); }  ///< position of the oldest
-  std::uint64_t end() const noexcept { return end_.load(std::memory_order_acquire); }      ///< behind the newest
+  std::uint64_t begin() const noexcept { return begin_.load(std::memory_order_acquire); }  ///< start of oldest record
+  std::uint64_t end() const noexcept { return end_.load(std::memory_order_acquire); }      ///< end of newest record
   std::uint64_t capacity() const noexcept { return unit_count_ * sizeof(Unit); }           ///< [bytes]
 
-  /// Share in use [0..1]. From any thread.
+  /// Returns the share in use [0..1]. It may be called from any thread.
   double fill() const noexcept {
-    const std::uint64_t begin = this->begin();  // first: end never lies before it then
+    const std::uint64_t begin = this->begin();  // read first, so that end() never lies before it
     return std::min(1.0, static_cast<double>(end() - begin) / static_cast<double>(capacity()));
   }
 
@@ -108,7 +108,7 @@ class LogQueue {
 
   const std::size_t unit_count_;
   std::unique_ptr<Unit[]> units_;
-  std::uint64_t reserved_{};  // producing thread only
+  std::uint64_t reserved_{};  // used by the producing thread only
   alignas(64) std::atomic<std::uint64_t> begin_{};
   alignas(64) std::atomic<std::uint64_t> end_{};
 };

@@ -7,7 +7,7 @@
 
 namespace hammer_loads {
 
-/// Outputs of a node in its log: the value of log_outputs, and of an output the least value that logs it.
+/// Value of log_outputs: the outputs of a node in its log. For a single output, the lowest value that logs it.
 enum class LoggedOutputs { kNone, kPerTurn, kWrench, kAll };
 
 enum class LogCompression { kNone, kLz4 };
@@ -18,17 +18,17 @@ struct LogSettings {
   bool inputs{true};                           ///< the node's inputs are logged
   LoggedOutputs outputs{LoggedOutputs::kAll};  ///< run_info is logged with any value
   LogCompression compression{LogCompression::kLz4};
-  std::string directory;       ///< directory as given; a leading ~/ means the home directory of the node's user
-  std::string prefix;          ///< file names begin with it; without /; empty: name of the node
-  std::string node;            ///< resolved name of the node that logs, not from a file, e.g. /left/hammer_loads
-  std::uint64_t split_size{};  ///< a bag larger than this is closed and a new one begun [byte], > 0
-  std::uint64_t total_size{};  ///< size of all bags of this process; the oldest is deleted above it [byte]; 0: no limit
-  std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
-  /// Messages waiting for the disk; beyond it they are dropped and counted [byte], > 0.
+  std::string directory;           ///< directory as given; a leading ~/ means the home directory of the node's user
+  std::string prefix;              ///< beginning of file names, without /; empty: name of the node
+  std::string node;                ///< resolved name of the node that logs, not from a file, e.g. /left/hammer_loads
+  std::uint64_t split_size{};      ///< size above which a bag is closed and a new one begins [byte], > 0
+  std::uint64_t total_size{};      ///< of all bags of this process; above it the oldest is deleted [byte]; 0: no limit
+  std::uint64_t min_free_space{};  ///< free disk space below which logging stops [byte]
+  /// Size of the queue for the disk; beyond it, messages are dropped and counted [byte], > 0.
   std::uint64_t queue_size{};
 };
 
-/// The beginning of file names: the prefix, or the node's name with _ for /, so that two nodes have names of their own.
+/// Returns the beginning of file names: the prefix, or the node's name with _ for /, which is unique to the node.
 inline std::string filePrefix(const LogSettings& settings) {
   if (!settings.prefix.empty()) return settings.prefix;
   std::string name = settings.node.substr(std::min(settings.node.find_first_not_of('/'), settings.node.size()));

@@ -7,7 +7,7 @@
 
 namespace hammer_loads {
 
-/// States of a log, by whether messages reach a file.
+/// State of a log: whether messages reach a file.
 enum class LogState {
   kOff,        ///< not started, or stopped on request
   kRecording,  ///< messages are written
@@ -21,7 +21,7 @@ struct LogStatus {
   std::string reason;             ///< cause if the log stopped by itself or could not start; empty otherwise
   std::string file;               ///< current or last bag
   std::uint64_t file_size{};      ///< size of the file, without the open chunk [byte]
-  std::uint64_t bytes_written{};  ///< all bags of this process together, deleted ones too [byte]
+  std::uint64_t bytes_written{};  ///< size of all bags of this process, including deleted ones [byte]
   std::uint64_t files_closed{};   ///< complete bags under their final names
   std::uint64_t files_deleted{};  ///< oldest bags of this process, deleted for log_total_mb
 };
@@ -31,7 +31,7 @@ struct LogTopicCounts {
   std::string topic;
   std::uint64_t written{};    ///< in a bag
   std::uint64_t dropped{};    ///< not in a bag: queue full, or still queued when the log stopped by itself
-  std::uint64_t too_large{};  ///< part of the dropped ones that never fit into the queue: log_queue_mb is too small
+  std::uint64_t too_large{};  ///< dropped messages that can never fit into the queue: log_queue_mb is too small
 };
 
 /// State of the log with its counters.

@@ -25,7 +25,7 @@ LogWriter::~LogWriter() {
 }
 
 bool LogWriter::start(std::uint64_t session, std::shared_ptr<LogFile> file) {
-  announce(session, LogState::kRecording, "", file->path());  // known at once, not only when the thread gets there
+  announce(session, LogState::kRecording, "", file->path());  // reported at once, before the thread begins
   return post(false, [this, session, file = std::move(file)] {
     session_ = session;
     begin(file);
@@ -53,7 +53,7 @@ bool LogWriter::latch(LogMessage message) {
     latched_[message.topic->index] = message;
     if (!file_) return;
     message.topic->written.fetch_add(1, std::memory_order_relaxed);
-    if (!repeat_) write(message, message.time);  // else it comes with the others
+    if (!repeat_) write(message, message.time);  // else repeatLatched() writes it
   });
 }
 
@@ -100,7 +100,7 @@ void LogWriter::report(LogState state, const std::string& reason) {
 
 void LogWriter::run() {
   while (!quit_) {
-    const std::uint64_t end = queue_.end();  // before looking for orders: none that belongs ahead of it is missed
+    const std::uint64_t end = queue_.end();  // read before the orders, so that no order ahead of it is missed
     const std::optional<Order> order = nextOrder();
     drain(order ? order->position : end);
     if (order) {
@@ -157,7 +157,7 @@ void LogWriter::write(LogQueue::Record& record, Clock::time_point now) {
     if (repeat_) repeatLatched(&record.time);
     file_->write(topic, record.time, record.bytes(), record.size, now);
   } catch (const LogFault&) {
-    count(topic.unsaved);  // before the state shows the fault
+    count(topic.unsaved);  // before the state reports the fault
     throw;
   }
   count(topic.written);
@@ -168,7 +168,7 @@ void LogWriter::write(const LogMessage& message, const ros::Time& time) {
                Clock::now());
 }
 
-/// Checks age of the chunk, space on the disk and size of the file, each at its interval.
+/// Checks the age of the chunk, the space on the disk and the size of the file, each at its interval.
 void LogWriter::keepHouse(Clock::time_point now) {
   if (!file_) return;
   if (repeat_ && now - opened_ > LogFile::kChunkPeriod) repeatLatched(nullptr);
@@ -203,7 +203,7 @@ void LogWriter::begin(std::shared_ptr<LogFile> file) {
   report(LogState::kRecording, "");
 }
 
-/// Latched messages are written to the file in any case.
+/// Closes the file. Latched messages that it still lacks are written first.
 void LogWriter::closeFile() {
   if (repeat_) repeatLatched(nullptr);
   file_->close();
@@ -213,7 +213,7 @@ void LogWriter::closeFile() {
   ++totals_.files_closed;
 }
 
-/// Stops on request.
+/// Ends the recording on request.
 void LogWriter::end() {
   if (!file_) return;
   closeFile();
@@ -227,7 +227,7 @@ void LogWriter::beginNext() {
   begin(file_->next());
 }
 
-/// Stops after a fault: the file is closed properly if possible.
+/// Ends the recording after a fault. The file is closed properly if possible.
 void LogWriter::stopFor(const LogFault& fault) {
   std::string reason = fault.what();
   repeat_ = false;
@@ -251,7 +251,7 @@ void LogWriter::makeRoom() {
   }
 }
 
-/// time: of the file's first message, so that the file does not begin with a gap; null: there is none yet.
+/// Writes the latched messages. time: that of the file's first message, to avoid a gap after them; null: their own.
 void LogWriter::repeatLatched(const ros::Time* time) {
   repeat_ = false;
   for (const auto& [index, message] : latched_) write(message, time != nullptr ? *time : message.time);

@@ -13,9 +13,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30U;  // unpacked [byte]; rosbag writes some 1e6
-// Unpacked over packed bytes, beside a chunk as rosbag writes it: lz4 packs to 1/255 at most, messages with stamps
-// less.
+constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30U;  // largest unpacked chunk [byte]; rosbag writes about 1e6
+// Largest ratio of unpacked to packed bytes, for the part of a chunk beyond rosbag's usual size. LZ4 packs to 1/255 at
+// most; messages with stamps are packed less.
 constexpr std::uint64_t kMostPacked = 255, kUsualChunk = 1U << 20U;
 
 rosbag::CompressionType packingOf(std::string_view name) {
@@ -83,7 +83,7 @@ void BagFile::readInto(std::uint64_t position, std::uint8_t* to, std::size_t siz
 }
 
 std::string BagFile::bytesAt(std::uint64_t position, std::uint64_t size) const {
-  if (size > size_) throw std::runtime_error("a record reaches beyond the file's end");  // before there is room for it
+  if (size > size_) throw std::runtime_error("a record reaches beyond the file's end");  // before memory is allocated
   std::string bytes(size, '\0');
   readInto(position, reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size());
   return bytes;
@@ -137,7 +137,7 @@ void BagFile::unpack(rosbag::CompressionType packing, ReadChunk& read) const {
   try {
     streams_.getStream(packing)->decompress(read.bytes.data(), size(read.bytes), read.packed.data(), size(read.packed));
   } catch (const rosbag::BagException& error) {
-    throw std::runtime_error(error.what());  // callers take that class for an error of an output
+    throw std::runtime_error(error.what());  // BagException would mean an error of an output
   }
 }
 

@@ -17,7 +17,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint32_t kLongest = 10000000;  // [s]: no recording lasts as long
+constexpr std::uint32_t kLongest = 10000000;  // [s]; no recording is longer
 
 bool beginsAsBag(const std::string& file) {
   std::string begin(9, '\0');
@@ -25,7 +25,7 @@ bool beginsAsBag(const std::string& file) {
   return begin == "#ROSBAG V";
 }
 
-/// Opens a bag. Returns the reason why it cannot be opened; empty if it was.
+/// Opens a bag. Returns the reason why it cannot be opened; empty on success.
 std::string openProblem(std::unique_ptr<BagFile>& bag, const std::string& file) {
   struct stat found {};
   if (stat(file.c_str(), &found) != 0) return file + ": cannot be read: " + std::strerror(errno);
@@ -41,7 +41,7 @@ std::string openProblem(std::unique_ptr<BagFile>& bag, const std::string& file) 
   }
 }
 
-/// Returns true if a file was opened before, by whatever name.
+/// Returns true if the file is among the first `count` files, under any name.
 bool isAmong(const std::vector<std::string>& files, std::size_t count, const std::string& file) {
   std::error_code error;
   return std::any_of(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(count),
@@ -52,7 +52,7 @@ bool beginsWith(const std::string& text, const std::string& beginning) {
   return text.compare(0, beginning.size(), beginning) == 0;
 }
 
-/// Outputs are messages of this package, loads and motion of geometry_msgs, and the mechanism's joints.
+/// Returns true for an output: a message of this package, loads or motion (geometry_msgs), or the mechanism's joints.
 bool isOutput(const std::string& topic, const BagTopic& found, const std::string& prefix) {
   if (!beginsWith(topic, prefix)) return false;
   return std::all_of(found.types.begin(), found.types.end(), [&](const std::string& type) {

@@ -17,7 +17,7 @@ namespace {
 /// Topics to read, and their types.
 using Wanted = std::map<std::string, std::string>;
 
-/// The hammer's bridge through the runs of a recording.
+/// Processing of a recording by the hammer's bridge, run by run.
 class HammerRuns {
  public:
   HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, BagReport& report)
@@ -59,7 +59,7 @@ class HammerRuns {
     if (tables_) tables_->end(*flow_, inputs_->crank.count);
   }
 
-  /// After the last run.
+  /// Completes the tables and the bag after the last run.
   void finish() {
     if (tables_) tables_->finish(report_.warnings);
     if (bag_) bag_->close();
@@ -84,7 +84,7 @@ class HammerRuns {
   std::size_t next_{}, next_load_{};
   std::optional<HammerBridge> flow_;
   std::optional<HammerInputs> inputs_;                       ///< inputs of this run
-  std::vector<std::function<void(HammerBridge&)>> latched_;  ///< messages that are the same in every run
+  std::vector<std::function<void(HammerBridge&)>> latched_;  ///< latched messages, which are repeated in every run
 };
 
 Wanted wantedTopics(const std::vector<BagRun>& runs) {
@@ -98,7 +98,7 @@ Wanted wantedTopics(const std::vector<BagRun>& runs) {
   return wanted;
 }
 
-/// Reason why a wanted topic cannot be read, or cannot be the one meant; empty: none.
+/// Returns a wanted topic whose messages have another type than required, in one line; empty if there is none.
 std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   for (const auto& [name, type] : wanted) {
     const auto found = inputs.topics().find(name);
@@ -110,7 +110,7 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   return {};
 }
 
-/// Writes the bag and the tables that are wanted. Returns a problem in one line; empty if there is none.
+/// Writes the requested bag and tables. Returns a problem in one line; empty if there is none.
 std::string write(const BagInputs& inputs, const BagJob& job, const std::vector<BagRun>& runs,
                   const std::function<void(double)>& progress, BagReport& report) {
   std::set<std::string> topics, heard;
@@ -118,7 +118,7 @@ std::string write(const BagInputs& inputs, const BagJob& job, const std::vector<
   try {
     HammerRuns hammer(runs, job, report);
     BagMessages messages = inputs.messagesOn(topics);
-    std::set<const BagConnection*> connections;  // saves to look up each message's topic
+    std::set<const BagConnection*> connections;  // known ones, so that each topic is looked up once only
     const auto count = static_cast<double>(messages.size());
     double done = 0.0;
     while (hammer.tablesProblem().empty()) {

@@ -18,7 +18,7 @@
 namespace hammer_loads {
 namespace {
 
-/// MD5 sum of the type of each output in this version. A run_info of another one states it itself.
+/// Returns the MD5 sum of each output's type in this version. run_info is left out: its reader reports differences.
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> known = [] {
     std::map<std::string, std::string> of_type;
@@ -33,7 +33,7 @@ const std::map<std::string, std::string>& definitions() {
   return known;
 }
 
-/// Names in the crank's messages, in one line.
+/// Returns the joint names in the crank's messages in one line.
 std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
   constexpr std::size_t kMost = 20;
   std::set<std::string> names;
@@ -52,7 +52,7 @@ void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topi
   for (const std::string& name : topics) {
     const auto found = inputs.topics().find(name);
     if (found == inputs.topics().end() || found->second.publishers.size() < 2) continue;
-    if (found->second.types.count(typeOf<tf2_msgs::TFMessage>()) != 0) continue;  // as usual there
+    if (found->second.types.count(typeOf<tf2_msgs::TFMessage>()) != 0) continue;  // as usual for transforms
     addOnce(warnings, {"publishers", name + ": several publishers: " + joined(found->second.publishers)});
   }
 }
@@ -163,7 +163,7 @@ void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, s
     const bool of_joints = std::strcmp(warning.key, "pitch joints") == 0;
     const std::string& topic = bridge.settings().input_topics.joint_states;
     if (!of_joints) addOnce(warnings, {warning.key, warning.text, run});
-    if (of_joints && joints_came)  // else warnOfMissing
+    if (of_joints && joints_came)  // otherwise warnOfMissing() adds a warning
       addOnce(warnings, {warning.key, topic + ": " + warning.text, run});
   }
   for (const Warning& warning : bridge.life().warnings()) addOnce(warnings, {warning.key, warning.text, run});

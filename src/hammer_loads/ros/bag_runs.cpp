@@ -30,7 +30,7 @@ bool isOfHammer(const RunInfo& info) {
   return parameters && hasHammerKey(*parameters);
 }
 
-/// Removes repetitions: each bag of a recording repeats the run_info in force.
+/// Returns true for a repetition. Each bag of a recording repeats the run_info in force.
 bool isRepeated(const std::vector<RecordedRun>& runs, const RunInfo& info) {
   return !runs.empty() && runs.back().info.header.stamp == info.header.stamp &&
          runs.back().info.parameters_yaml == info.parameters_yaml &&
@@ -58,7 +58,7 @@ RunInfos readRunInfos(const BagInputs& inputs, std::vector<BagWarning>& warnings
   return found;
 }
 
-/// Topics of the job, of the parameters or of the recording, in this order of priority.
+/// Returns the settings with the topics of the job, of the parameters or of the recording, in this order of priority.
 Settings withTopics(Settings settings, const InputTopics& given, const InputTopics& recorded = {}) {
   const InputTopics topics = inputTopics([&](const InputName& input) -> std::string {
     for (const InputTopics& known : {given, settings.input_topics, recorded})
@@ -95,7 +95,7 @@ Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, 
   return result;
 }
 
-/// First record time of an input of the run; nothing if there is none.
+/// Returns the first record time of an input of the run; nothing if there is none.
 std::optional<ros::Time> firstInput(const BagInputs& inputs, const Settings& settings) {
   std::set<std::string> names;
   HammerInputs(settings).forEachSensor([&names](const auto& input) { names.insert(input.topic); });
@@ -131,7 +131,7 @@ Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob&
   return result;
 }
 
-/// Runs that a bag begins and ends with; empty: not known.
+/// Runs with which a bag begins and ends; empty: unknown.
 struct SplitRuns {
   std::size_t file{};
   std::string first, last;
@@ -167,7 +167,7 @@ std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string
   std::stable_sort(splits.begin(), splits.end(),
                    [](const SplitRuns& a, const SplitRuns& b) { return a.begin < b.begin; });
   std::vector<std::vector<std::size_t>> recordings;
-  // Orders bags by the run with which they end. Two recordings of one run at the same time are no splits.
+  // Recording and end time of the last bag, by the run that ends it. Simultaneous recordings of one run are no splits.
   std::map<std::string, std::pair<std::size_t, ros::Time>> ended;
   const ros::Duration overlap(1.0);  // latched messages may be repeated with an earlier time
   for (const SplitRuns& split : splits) {

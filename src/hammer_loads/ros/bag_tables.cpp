@@ -44,7 +44,7 @@ const std::map<std::string, Kind>& kinds() {
   return kinds;
 }
 
-/// Removes paths, since the places of a node's log and ledger are no property of the machine. yaml: one key per line.
+/// Removes the log's parameters and the ledger's path, which are no property of the machine. yaml: one key per line.
 std::string withoutPaths(const std::string& yaml) {
   std::istringstream lines(yaml);
   std::string kept;
@@ -150,7 +150,7 @@ void BagTables::addParameters(const Settings& settings, const std::string& yaml)
     given.insert(parameter.key);
     writer_.add("parameters", run_, parameter.key, parameter.value, parameter.shipped);
   }
-  // A test report states the uncertainty of every input, also the deviations that no file gives.
+  // A test report states the uncertainty of every input, including standard deviations that no file gives.
   for (const auto& [key, deviation] : deviationsInForce(settings.mechanism.parameters())) {
     const std::string value = format("%.3g", deviation);
     if (deviation > 0.0 && given.count(key) == 0) writer_.add("parameters", run_, key, value, value);

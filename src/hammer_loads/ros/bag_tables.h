@@ -26,7 +26,7 @@ class LifeTables {
   /// The writer must outlive it.
   explicit LifeTables(TableWriter& writer) : writer_(&writer) {}
 
-  /// A run of this number begins; the bridge must outlive it.
+  /// Begins the run of this number. The bridge must outlive the run.
   void begin(HammerBridge& bridge, std::int64_t run);
   /// Writes the end of a run.
   void end(const HammerBridge& bridge);
@@ -41,26 +41,26 @@ class LifeTables {
 
   struct RaisedAlarm {
     Alarm alarm;
-    ros::Time until;        ///< stamp of the last turn of this level
-    std::uint64_t turns{};  ///< judged turns of this level
+    ros::Time until;        ///< stamp of the last revolution at this level
+    std::uint64_t turns{};  ///< judged revolutions at this level
   };
 
   TableWriter* writer_;
   std::int64_t run_{};
   std::optional<BudgetRecorder> budget_;
   std::vector<RaisedAlarm> alarms_;
-  LoadCycles cycles_;  ///< the last message: all of the run so far
+  LoadCycles cycles_;  ///< last message, which covers the run so far
 };
 
-/// The numbers of a message that consists of a header and single numbers, by the names in its definition, so that a new
-/// field of the message becomes a new column.
+/// Numbers of a message that consists of a header and scalar fields. Their names come from the message's definition, so
+/// that a new field becomes a new column.
 class NumberFields {
  public:
-  /// definition: of the message. Throws std::invalid_argument for another kind of message.
+  /// definition: text of the message's definition. Throws std::invalid_argument if a field is no number.
   explicit NumberFields(const std::string& definition);
 
   std::vector<TableColumn> columns() const;
-  /// In the order of the columns; integers are exact up to 2^53. Valid until the next call.
+  /// Returns the numbers in the order of the columns, valid until the next call. Integers are exact up to 2^53.
   template <typename Message>
   const std::vector<double>& valuesOf(const Message& message) {
     bytes_.resize(ros::serialization::serializationLength(message));
@@ -90,21 +90,21 @@ NumberFields numberFieldsOf() {
 
 class BagTables {
  public:
-  /// file: empty. inputs: the recording's bags, hashed here. Throws std::runtime_error where one cannot be read.
+  /// file: an empty file. inputs: the recording's bags, hashed here. Throws std::runtime_error if one cannot be read.
   BagTables(const std::string& file, const std::vector<std::string>& inputs);
 
-  /// A run begins; the bridge must outlive it.
+  /// Begins a run. The bridge must outlive the run.
   void begin(HammerBridge& bridge);
-  /// Ends a run after this many messages with crank samples.
+  /// Ends a run. samples: number of its messages with crank samples.
   void end(const HammerBridge& bridge, std::uint64_t samples);
-  /// After the last run; warnings: of all runs and of the recording.
+  /// Completes the tables after the last run. warnings: those of all runs and of the recording.
   void finish(const std::vector<BagWarning>& warnings);
 
-  /// Reason why the file cannot be written, one line without its name; empty without a problem.
+  /// Returns the reason why the file cannot be written, one line without its name; empty without a problem.
   const std::string& problem() const { return writer_.problem(); }
 
  private:
-  /// Stamps of published samples [ns], and the time between them, gaps left out [s].
+  /// Stamps of the first and last published sample [ns], and the time between samples without gaps [s].
   struct Published {
     std::optional<StampNs> first, last;
     double duration{};
@@ -120,10 +120,10 @@ class BagTables {
   NumberFields pulse_, blow_;
   TableWriter writer_;
   LifeTables life_{writer_};
-  std::int64_t run_{};  ///< number of the run at work, from 1
+  std::int64_t run_{};  ///< number of the current run, from 1
   Published published_;
   TurnTraces traces_;
-  double longest_step_{};  ///< between samples of one piece [s]
+  double longest_step_{};  ///< largest interval of samples that is no gap [s]
 };
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// Publisher of diagnostic_updater's tasks on /diagnostics and in the log, without its arithmetic on ROS time.
+/// Publisher of diagnostic_updater's tasks on /diagnostics and in the log, without arithmetic on ROS time.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -14,19 +14,19 @@
 
 namespace hammer_loads {
 
-/// Reports at `~diagnostic_period` (1 s) of wall time, since a stopped /clock is one of the things to report. Replaces
-/// diagnostic_updater::Updater, which adds its period to the time now. The sum throws within the last second before
-/// 2^32 s, in the constructor as well, and a /clock may have any value.
+/// Publisher with the period `~diagnostic_period` (1 s) in wall time, because it must also report a stopped /clock. It
+/// replaces diagnostic_updater::Updater, which adds its period to the current time. That sum throws within the last
+/// second before 2^32 s, also in the constructor, and a /clock may have any value.
 class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
  public:
-  /// clock: of the node's inputs; a logged report has the record time of the last one. Both must outlive this. before:
-  /// called before each report.
+  /// clock: of the node's inputs; a logged report has the record time of the last input. log and clock must outlive
+  /// this. before: called before each report.
   DiagnosticsPublisher(ros::NodeHandle node, const ros::NodeHandle& private_node, BagLog& log, const RecordClock& clock,
                        const std::function<void()>& before)
       : log_(log),
         clock_(clock),
         publisher_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),
-        // The name space is the node's own, a nodelet's in a manager as well.
+        // The namespace is the node's own, also for a nodelet in a manager.
         name_(private_node.getNamespace().substr(1)),
         timer_(node.createWallTimer(ros::WallDuration(private_node.param("diagnostic_period", 1.0)),
                                     [this, before](const ros::WallTimerEvent&) {
@@ -57,7 +57,7 @@ class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
   ros::WallTimer timer_;
 };
 
-/// [s]
+/// Returns the time between two instants [s].
 inline double secondsBetween(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }

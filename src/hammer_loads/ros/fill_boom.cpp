@@ -7,7 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::size_t kLongestLimit = 256;  // more than a cylinder's name has
+constexpr std::size_t kLongestLimit = 256;  // reserved characters, more than a cylinder's name has
 
 // Vectors of Eigen 3.3 have no begin() and end().
 void assign(const JointVector& from, std::vector<double>& to) { to.assign(from.data(), from.data() + from.size()); }

@@ -46,7 +46,7 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
   Eigen::Map<Eigen::Vector3d>(message.correlation.data()) = deviation.correlation();
   Eigen::Map<Eigen::Vector3d>(message.systematic_correlation.data()) = deviation.commonCorrelation();
   message.interval = output.interval;
-  message.level = nameOf(result.level);  // short enough for no allocation
+  message.level = nameOf(result.level);  // short enough to need no allocation
   message.consistency = result.consistency;
   message.flags = 0;
   if (output.interval > 0.0) message.flags |= HullLoads::FLAG_MEAN;

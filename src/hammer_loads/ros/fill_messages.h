@@ -1,5 +1,5 @@
-/// Messages of the hammer and of the boom from the result of a sample. Headers' frames, names and array sizes are set
-/// once by prepare...(); nothing is allocated per sample.
+/// Functions that fill messages of the hammer and of the boom from the result of a sample. prepare...() sets frames,
+/// names and array sizes once; nothing is allocated per sample.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -26,7 +26,7 @@
 
 namespace hammer_loads {
 
-/// Once: names and room of the mechanism's joints.
+/// Sets the names and array sizes of the mechanism's joints; called once.
 void prepareMechanism(const std::string& crank_joint, sensor_msgs::JointState& message);
 
 void fillWrench(StampNs stamp, const HullWrench& wrench, geometry_msgs::WrenchStamped& message);
@@ -34,20 +34,20 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
 void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message);
 void fillPinForces(const SampleResult& result, PinForces& message);
 void fillBlow(const TurnEnd& end, Blow& message);
-/// end.pulse is required.
+/// Requires end.pulse.
 void fillPulse(const TurnEnd& end, Pulse& message);
-/// end: the turn that was just judged.
+/// end: the revolution judged last.
 void fillAlarms(const TurnEnd& end, const LimitWatch& watch, Alarms& message);
 
 void prepareJointLoads(const Boom& boom, JointLoads& message);
 void prepareSections(const Boom& boom, SectionLoads& message);
 void prepareReactions(const Boom& boom, JointReactions& message);
-/// Joints of cylinders and their linkages, the last ones of a message with the mechanism's (CylinderDrawing).
+/// Joints of cylinders and their linkages (CylinderDrawing), which follow the mechanism's joints in one message.
 class CylinderJoints {
  public:
-  /// Adds their names and room to the message.
+  /// Adds the names and array elements of these joints to the message.
   CylinderJoints(const Boom& boom, sensor_msgs::JointState& message);
-  /// Positions and velocities of the boom's present pose [rad], [m] and per second.
+  /// Fills in positions [rad] or [m] and velocities per second for the boom's current pose.
   void fill(const Boom& boom, sensor_msgs::JointState& message) const;
 
  private:

@@ -13,12 +13,12 @@ namespace {
 Pose pose(const geometry_msgs::Transform& transform) {
   const geometry_msgs::Vector3& p = transform.translation;
   const geometry_msgs::Quaternion& q = transform.rotation;
-  // TF takes quaternions whose length is wrong by 1e-6.
+  // TF accepts quaternions whose norm differs slightly from 1.
   const Eigen::Quaterniond rotation = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
   return Eigen::Translation3d(p.x, p.y, p.z) * rotation;
 }
 
-/// Bounds of transforms: tf2 adds its ten seconds to stamps, multiplies chained transforms, and throws on overflow.
+/// Checks a transform's bounds: tf2 adds ten seconds to stamps, multiplies chained transforms, and throws on overflow.
 bool isSound(const geometry_msgs::TransformStamped& transform) {
   constexpr std::uint32_t kLatest = std::numeric_limits<std::uint32_t>::max() - 3600;  // [s]
   constexpr double kFurthest = 1e6;                                                    // [m]
@@ -51,7 +51,7 @@ void FrameWrenches::transforms(const tf2_msgs::TFMessage& message, bool is_stati
   for (std::size_t i = 0; i < frames_.size(); ++i) guarded([&] { release(i, record_time); });
 }
 
-/// Clears the buffer after such a jump of time: tf2 subtracts stamps and throws if they differ by more than 2^31 s.
+/// Carries out an action and resets after an exception: tf2 throws if stamps differ by more than 2^31 s.
 template <typename Action>
 void FrameWrenches::guarded(const Action& action) {
   try {
@@ -79,7 +79,7 @@ bool FrameWrenches::known(std::size_t frame, const ros::Time& stamp) const {
   return transforms_.canTransform(frames_[frame], hull_, stamp);
 }
 
-/// True if TF is connected and later than that time, so that no further transform can serve it.
+/// Returns true if TF is connected and later than the stamp, so that no further transform can serve it.
 bool FrameWrenches::past(std::size_t frame, const ros::Time& stamp) const {
   return known(frame, ros::Time()) &&
          transforms_.lookupTransform(frames_[frame], hull_, ros::Time()).header.stamp >= stamp;
@@ -100,7 +100,7 @@ void FrameWrenches::release(std::size_t frame, const ros::Time& record_time) {
     } else if (record_time.toSec() - oldest.arrival.toSec() > max_wait_ || past(frame, oldest.stamp)) {
       queue.dropOldest();
     } else {
-      return;  // nor can the younger ones be known
+      return;  // later ones have no transform either
     }
   }
 }

@@ -1,4 +1,4 @@
-/// The hull's load at TF frames that are no link of the boom's chain, such as that of a strain gauge.
+/// Load of the hull in TF frames that are no link of the boom's chain, such as the frame of a strain gauge.
 #pragma once
 
 #include <tf2/buffer_core.h>
@@ -30,20 +30,20 @@ class FrameWrenches {
   using Publish =
       std::function<void(std::size_t frame, const ros::Time& stamp, const Wrench& load, const ros::Time& record_time)>;
 
-  /// hull: the wrenches' frame. max_wait: between record times of a wrench and of what releases it [s].
+  /// hull: frame of the wrenches. max_wait: longest record time between a wrench and the input that releases it [s].
   FrameWrenches(std::vector<std::string> frames, std::string hull, double max_wait, Publish publish);
 
-  /// A message of /tf, or of /tf_static. A transform that tf2 cannot hold (not finite, beyond 1e6 m, no rotation, no
+  /// Takes a message of /tf or /tf_static. A transform that tf2 cannot hold (not finite, beyond 1e6 m, no rotation, no
   /// name, a stamp near the end of time) is ignored.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
-  /// A load on the hull about its origin, axes of the hull; stamps grow.
+  /// Takes a load on the hull about its origin, in axes of the hull. Stamps must increase.
   void wrench(const ros::Time& stamp, const HullWrench& load, const ros::Time& record_time);
   /// Resets after a jump of time: discards waiting wrenches and all transforms but the static ones.
   void reset();
 
   const std::vector<std::string>& frames() const { return frames_; }
   FrameWrenchCounts counts(std::size_t frame) const;
-  /// Reason why the last dropped wrench of a frame was not published, in one line; empty if one was published since.
+  /// Returns why the last dropped wrench of a frame was not published, in one line; empty if one was published since.
   std::string complaint(std::size_t frame) const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kMechanismPeriod =
     10'000'000;  // for display: robot_state_publisher sends 50 poses per second [ns]
 
-/// Tip of the boom's chain.
+/// Returns the frame of the hull: the tip of the boom's chain, or hull_frame without a boom.
 std::string hullFrame(const Settings& settings) {
   return settings.boom ? settings.boom->parameters().chain.tip : settings.pipeline.hull_frame;
 }

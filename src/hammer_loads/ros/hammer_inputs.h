@@ -20,15 +20,15 @@
 
 namespace hammer_loads {
 
-/// Gaps in header.seq, which each publisher counts up by itself: what a full queue on either side or a connection has
-/// dropped. roscpp does not say how many its own queue drops.
+/// Counter of gaps in header.seq, which each publisher increments. A gap is a loss in a full queue on either side or in
+/// a connection. roscpp does not report how many messages its own queue drops.
 class MissingMessages {
  public:
   void take(const std::string& publisher, std::uint32_t sequence) {
-    if (last_.size() > kMostPublishers) last_.clear();  // restarted again and again under new names
+    if (last_.size() > kMostPublishers) last_.clear();  // publishers that restart under ever new names
     const auto [known, is_new] = last_.try_emplace(publisher, sequence);
     if (!is_new && sequence > known->second) count_ += sequence - known->second - 1;
-    known->second = sequence;  // a lower one is of a publisher that restarted
+    known->second = sequence;  // a lower number means that the publisher restarted
   }
   std::uint64_t count() const { return count_; }
 
@@ -41,19 +41,19 @@ class MissingMessages {
 template <typename MessageType>
 struct Input {
   using Message = MessageType;
-  /// record_time: of the message, passed on to the outputs that it causes.
+  /// record_time: that of the message, passed on to the outputs that it causes.
   using Take = std::function<void(HammerBridge&, const Message&, const ros::Time& record_time)>;
 
   std::string topic;  ///< topic name in the settings
   Take take;
-  bool wanted{true};  ///< the settings make use of it
-  bool latched{};     ///< sent once: every run and every file of a log begins with it
+  bool wanted{true};  ///< the settings use it
+  bool latched{};     ///< sent once; every run and every file of a log begins with it
 
-  Message message{};                                ///< memory of a reader of bags
+  Message message{};                                ///< memory for a reader of bags
   std::uint64_t count{};                            ///< messages that a reader has taken
   ros::Subscriber subscriber{};                     ///< subscriber of a node
-  MissingMessages missing{};                        ///< at a node
-  std::chrono::steady_clock::time_point arrived{};  ///< the last one, at a node
+  MissingMessages missing{};                        ///< lost messages, at a node
+  std::chrono::steady_clock::time_point arrived{};  ///< arrival of the last message, at a node
 };
 
 struct HammerInputs {

@@ -24,11 +24,11 @@
 namespace hammer_loads {
 namespace {
 
-/// Topics as in the contract. By default one wrench per accepted crank sample, with its stamp. Services `~log/...` and
-/// dynamic_reconfigure change what may safely change; each change begins a new run.
+/// Live node with the topics of the contract. By default, it sends one wrench per accepted crank sample, with its
+/// stamp. Services `~log/...` and dynamic_reconfigure change what may safely change; each change begins a new run.
 class HammerLoadsNode final : public LiveNode {
  public:
-  /// log: started already where settings.log.enabled. ledger: null where none is kept.
+  /// log: already started if settings.log.enabled. ledger: null if none is kept.
   HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
                   std::unique_ptr<BagLog> log, std::unique_ptr<life::LiveLedger> ledger)
       : log_(std::move(log)),
@@ -58,7 +58,7 @@ class HammerLoadsNode final : public LiveNode {
     const std::string text =
         *problem + "; " + std::to_string(ledger_->state().waiting) + " pieces of the count are not in it";
     if (ros::ok()) ROS_ERROR("%s", text.c_str());
-    if (!ros::ok()) std::cerr << text << std::endl;  // the console is down
+    if (!ros::ok()) std::cerr << text << std::endl;  // the ROS console is shut down
   }
 
  private:
@@ -77,12 +77,12 @@ class HammerLoadsNode final : public LiveNode {
   }
   template <typename Message>
   void take(Input<Message>& input, const Event<Message>& event) {
-    // A message on the topic of both has come as joint states already.
+    // If both have the same topic, the message has already arrived as joint states.
     const bool again = static_cast<const void*>(&input) == &inputs_.crank && input.topic == inputs_.joint_states.topic;
     const ros::Time record_time = again ? clock_.last() : recordTime(event.getReceiptTime());
     const Message& message = *event.getConstMessage();
     input.arrived = std::chrono::steady_clock::now();
-    // With simulated time a bag may be played, whose topics can be of several publishers.
+    // With simulated time, a bag may be played, whose topics can have several publishers.
     if constexpr (ros::message_traits::HasHeader<Message>::value)
       if (!again && !ros::Time::isSimTime()) input.missing.take(event.getPublisherName(), message.header.seq);
     if (log_->logsInputs()) {
@@ -104,18 +104,18 @@ class HammerLoadsNode final : public LiveNode {
     ROS_INFO("waits for %s with joint %s, %s%s", inputs_.crank.topic.c_str(), settings.pipeline.crank_joint.c_str(),
              inputs_.joint_states.topic.c_str(), imu.c_str());
   }
-  /// Late subscribers get the latched message; the log gets its own with the first input.
+  /// Publishes run_info for late subscribers. The log gets its own one with the first input.
   void announceRun() {
     RunInfo info = bridge_.outputs().run_info.message;
     info.header.stamp = ros::Time::now();
     run_info_.publish(info);
   }
-  /// The next input begins a run, and its run_info replaces that of the run before.
+  /// Begins a run with the next input. Its run_info replaces that of the previous run.
   void beginRun() {
     bridge_.reset();
     log_->forgetLatched(run_info_.getTopic());
   }
-  /// The answer contains the configuration in force.
+  /// Applies a requested configuration. The answer contains the configuration in force.
   void onReconfigure(HammerLoadsConfig& config) {
     const bool switched = config.log_enabled != config_.log_enabled;
     if (switched) switchLog(config.log_enabled);
@@ -148,12 +148,12 @@ class HammerLoadsNode final : public LiveNode {
     }
     config_.log_enabled = on;
   }
-  /// By a service.
+  /// Updates the configuration after a service has switched the log.
   void logSwitched() {
     config_.log_enabled = log_->isRecording();
     reconfigure_.updateConfig(config_);
   }
-  /// The configuration in force, for the server: it does not know the shipped parameter files.
+  /// Returns the configuration in force for the server, which does not know the shipped parameter files.
   HammerLoadsConfig configInForce(bool log_enabled) const {
     const PipelineSettings& now = bridge_.settings().pipeline;
     HammerLoadsConfig config = HammerLoadsConfig::__getDefault__();
@@ -172,7 +172,7 @@ class HammerLoadsNode final : public LiveNode {
     return tick.time;
   }
 
-  // A member stands before those that use it: the last members are destroyed first.
+  // Each member is declared before those that use it, because the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
   std::unique_ptr<life::LiveLedger> ledger_;  ///< null: none is kept
   HammerBridge bridge_;

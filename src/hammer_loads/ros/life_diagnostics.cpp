@@ -16,7 +16,7 @@ std::optional<Warning> NodeDiagnostics::ledgerWarning() const {
   return Warning{"ledger", "life_ledger: " + problem, true};
 }
 
-/// Since when, how often, saturation, state of the ledger.
+/// Describes the start of the count, its samples, their saturation and the state of the ledger.
 void NodeDiagnostics::describeLife(Status& status) {
   const LifeFlow& life = bridge_.life();
   const LifeFollower& follower = life.follower();
@@ -38,7 +38,7 @@ void NodeDiagnostics::describeLife(Status& status) {
   if (ledger_ != nullptr) status.add("pieces not in the ledger yet", ledger_->state().waiting);
 }
 
-/// Each limit with value, standard deviation and bounds; WARN or ERROR where one is exceeded.
+/// Describes each limit with value, standard deviation and bounds; WARN or ERROR if one is exceeded.
 void NodeDiagnostics::describeLimits(Status& status) {
   const LimitWatch& watch = *bridge_.limits();
   status.summary(DiagnosticStatus::OK, "no limit is exceeded");
@@ -59,7 +59,7 @@ void NodeDiagnostics::describeLimits(Status& status) {
   }
 }
 
-/// Agreement of the computed loads with the measured ones.
+/// Describes the agreement of the computed loads with the measured ones.
 void NodeDiagnostics::describeReference(Status& status) {
   const ReferenceComparison& reference = bridge_.comparison();
   status.summary(DiagnosticStatus::OK, reference.received() > 0 ? "compared" : "no measured load");

@@ -59,7 +59,7 @@ void fillFigures(const life::ChannelFigures& figures, ChannelCycles& message) {
   message.remaining_hours = figures.remaining_hours ? figures.remaining_hours->value : kNaN;
 }
 
-/// Names and room of the message, once.
+/// Sets names, units and array sizes of the message; called once.
 void prepareTurnLoads(const std::vector<std::string>& channels, TurnLoads& message) {
   message.channel = channels;
   message.unit.clear();
@@ -70,7 +70,7 @@ void prepareTurnLoads(const std::vector<std::string>& channels, TurnLoads& messa
     values->assign(channels.size(), kNaN);
 }
 
-/// No allocation.
+/// Fills the message without allocation.
 void fillTurnLoads(const TurnEnd& end, const life::TurnLoads& turn, TurnLoads& message) {
   message.header.stamp = timeOf(end.stamp);
   message.turn = end.turn;
@@ -88,7 +88,7 @@ void fillTurnLoads(const TurnEnd& end, const life::TurnLoads& turn, TurnLoads& m
   }
 }
 
-/// total: since the count began, at `since`. machine: source of the channels' S-N curves. Not for the hot path.
+/// total: counts since the count began at `since`. machine: source of the channels' S-N curves. Not for the hot path.
 void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::LedgerMachine& machine,
                     LoadCycles& message) {
   constexpr double kSecondsPerHour = 3600.0;
@@ -110,10 +110,10 @@ void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::Led
   }
 }
 
-constexpr std::uint64_t kNamingMessages = 64;             ///< whose readings distinguish runs with one first stamp
+constexpr std::uint64_t kNamingMessages = 64;             ///< their readings distinguish runs with one first stamp
 constexpr StampNs kMarkEvery = 4LL * 1000 * 1000 * 1000;  ///< [ns]: a split is longer; a working day gives 7200 marks
 
-/// The sensor's reading before any parameter is applied.
+/// Returns a digest of the sensor's reading before any parameter is applied.
 std::uint64_t readingDigest(const sensor_msgs::JointState& message, Digest digest = Digest()) {
   digest.add(stampOf(message.header.stamp));
   for (const double position : message.position) digest.add(position);
@@ -121,8 +121,8 @@ std::uint64_t readingDigest(const sensor_msgs::JointState& message, Digest diges
   return digest.value();
 }
 
-/// Digest of the parameters that turn readings into loads, without those of the machine, of the log, of counting and of
-/// topics.
+/// Returns a digest of the parameters that turn readings into loads. Those of the machine, of the log, of counting and
+/// of topics are left out.
 std::string sensorParameters(const std::string& yaml) {
   std::istringstream lines(yaml);
   std::string kept;
@@ -168,8 +168,8 @@ void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& r
   follower_.follow();
 }
 
-/// Marks the first message of each stretch of time, so that any part of a recording has the same marks. The run begins
-/// as soon as it is identified, so that a problem with its ledger is reported before the first piece.
+/// Marks the first message of each time slot, so that any part of a recording has the same marks. The run begins as
+/// soon as it is identified, so that a problem with its ledger is reported before the first piece.
 void LifeFlow::mark(const sensor_msgs::JointState& message) {
   if (messages_ < kNamingMessages) digest_ = readingDigest(message, Digest(digest_));
   if (++messages_ == kNamingMessages) name();
@@ -189,7 +189,7 @@ void LifeFlow::name() {
   unnamed_.clear();
 }
 
-/// Ends the piece and publishes the counts; with the messages and marks that belong to it.
+/// Ends the piece and publishes the counts. Returns the piece with its number of messages and its marks.
 life::LifePiece LifeFlow::takePiece() {
   life::LifePiece piece = follower_.take();
   piece.messages = messages_ - std::exchange(messages_kept_, messages_);
@@ -201,7 +201,7 @@ life::LifePiece LifeFlow::takePiece() {
   return piece;
 }
 
-/// Reason why most of the readings cannot be those of this machine with these parameters; empty: they can.
+/// Returns the reason why most readings contradict this machine with these parameters; empty if they do not.
 std::string LifeFlow::contradiction() const {
   if (!pipeline_.counts().contradictSince(counts_before_)) return {};
   for (const Warning& warning : warningsOf(pipeline_))

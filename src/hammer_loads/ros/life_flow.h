@@ -18,13 +18,13 @@ namespace hammer_loads {
 
 class LifeFlow {
  public:
-  /// Refers to pipeline and outputs, which must outlive it. pieces: null, or where the counts go as well; must outlive
-  /// it, too.
+  /// Refers to pipeline and outputs, which must outlive it. pieces: additional receiver of the counts, which must
+  /// outlive it, too; null: none.
   LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOutputs& outputs, life::PieceSink* pieces);
 
   /// Takes the pipeline's result for a crank message; the first messages identify the run.
   void follow(const sensor_msgs::JointState& message, const ros::Time& record_time);
-  /// Takes the ends of Pipeline::end().
+  /// Takes the revolutions that Pipeline::end() has ended.
   void end() { follower_.end(); }
   /// Sends the loads of a revolution, one of the ends of the result just followed.
   void sendTurn(const TurnEnd& end, const ros::Time& record_time);
@@ -35,9 +35,9 @@ class LifeFlow {
   const LifeFollower& follower() const { return follower_; }
   const life::LedgerMachine& machine() const { return machine_; }  ///< machine of the counts
   std::int64_t period() const { return period_; }                  ///< period of ~load_cycles and pieces [ns]
-  /// Samples of each channel since the count began.
+  /// Returns the numbers of samples of each channel since the count began.
   std::vector<life::SampleTally> tallies() const;
-  /// Loads beyond their full scale, with the keys that set it. Not for the hot path.
+  /// Returns warnings of loads beyond their full scale, with the keys that set it. Not for the hot path.
   std::vector<Warning> warnings() const;
 
  private:
@@ -51,18 +51,18 @@ class LifeFlow {
   HammerOutputs& outputs_;
   life::PieceSink* pieces_;
   life::LedgerMachine machine_;
-  std::string parameters_;      ///< digest of those of the sensors
-  SampleCounts counts_before_;  ///< counts go on from run to run
+  std::string parameters_;      ///< digest of the sensors' parameters
+  SampleCounts counts_before_;  ///< counts at the start; counts continue from run to run
   std::int64_t period_;
   ros::Time record_time_;          ///< record time of the last message
   std::optional<StampNs> first_;   ///< header stamp of the first message
   std::uint64_t digest_{};         ///< digest of the first messages
-  std::uint64_t messages_{};       ///< since the count began
-  std::uint64_t messages_kept_{};  ///< messages in pieces
+  std::uint64_t messages_{};       ///< messages since the count began
+  std::uint64_t messages_kept_{};  ///< messages in earlier pieces
   bool named_{};
-  std::optional<StampNs> slot_;           ///< slot of the message before, for marks
-  std::vector<std::int64_t> marks_;       ///< since the last piece
-  std::vector<life::LifePiece> unnamed_;  ///< pieces of a run that has no name yet
+  std::optional<StampNs> slot_;           ///< time slot of the previous message, for marks
+  std::vector<std::int64_t> marks_;       ///< marks since the last piece
+  std::vector<life::LifePiece> unnamed_;  ///< pieces of a run that is not identified yet
 };
 
 }  // namespace hammer_loads

@@ -19,7 +19,7 @@ void LifeTables::begin(HammerBridge& bridge, std::int64_t run) {
   bridge.outputs().load_cycles.attach([this](const LoadCycles& message, const ros::Time&) { cycles_ = message; });
 }
 
-/// Turns seen whole, as those of the table `turns`.
+/// Writes the loads of a revolution that was seen as a whole, like the rows of the table `turns`.
 void LifeTables::takeTurn(const TurnLoads& message) {
   if (!message.whole) return;
   for (std::size_t i = 0; i < message.channel.size(); ++i)
@@ -28,8 +28,8 @@ void LifeTables::takeTurn(const TurnLoads& message) {
                  message.maximum_systematic_std[i]);
 }
 
-/// An alarm lasts from the turn that raised it to the last one of the same level; its value is the one farthest beyond
-/// the limit.
+/// Adds the alarms of a revolution. An alarm lasts from the revolution that raised it to the last one of the same
+/// level. Its value is the one farthest beyond the limit.
 void LifeTables::takeAlarms(const Alarms& message) {
   for (const Alarm& alarm : message.alarm) {
     auto row = std::find_if(alarms_.rbegin(), alarms_.rend(),
@@ -53,8 +53,8 @@ void LifeTables::write(const BudgetFigure& figure) {
                  source.name, source.variance / all);
 }
 
-/// A channel's range has the parts of its own turns; of the boom's, whose constants are not separated, those of all
-/// constants and of the rest.
+/// Writes the uncertainty budgets. A hull channel's range has the shares of its own budget. The boom's channels do not
+/// separate their constants: they have one share of all constants and one of the rest.
 void LifeTables::writeBudget() {
   for (const BudgetFigure& figure : budget_->figures()) write(figure);
   const std::vector<std::string> names = channelNames(nullptr);  // names of the hull's channels

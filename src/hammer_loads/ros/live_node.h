@@ -1,4 +1,4 @@
-/// Interface of the live nodes for programs and nodelets, which saves them the headers of the node.
+/// Interface of the live nodes for programs and nodelets, which thus do not include the headers of the node.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -15,7 +15,7 @@ class LiveNode {
   virtual ~LiveNode() = default;
 };
 
-/// The hammer's node from its private parameters; every problem is reported on one line each and gives no node.
+/// Makes the hammer's node from its private parameters. Returns null after problems, which are reported one a line.
 std::unique_ptr<LiveNode> makeHammerNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                          std::vector<std::string>& problems);
 

@@ -1,4 +1,4 @@
-/// A live node within a nodelet manager: the same class, fed without serialisation.
+/// Live node within a nodelet manager: the same class, which receives messages without serialisation.
 #pragma once
 
 #include <nodelet/nodelet.h>
@@ -9,7 +9,7 @@
 
 namespace hammer_loads {
 
-/// make: as makeHammerNode.
+/// make: function such as makeHammerNode.
 template <auto make>
 class LiveNodelet : public nodelet::Nodelet {
   void onInit() override {

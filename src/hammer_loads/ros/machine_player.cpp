@@ -40,7 +40,7 @@ std::ofstream opened(const std::string& path, const char* header) {
   return file;
 }
 
-/// All nanoseconds, which a double does not hold.
+/// Returns the stamp with all nanoseconds, which a double cannot hold.
 std::string stampText(std::int64_t nanoseconds) {
   constexpr std::int64_t kGiga = 1'000'000'000;
   return format("%lld.%09lld", static_cast<long long>(nanoseconds / kGiga),
@@ -54,10 +54,10 @@ using std::chrono::steady_clock;
 
 constexpr auto kBatch = std::chrono::milliseconds(1);
 constexpr double kLongestBatch = 5e-3;  // [s] of wall time
-constexpr double kMostAhead = 2.0;      // [s] of wall time; a node reports once a second, and its queues hold ten
+constexpr double kMostAhead = 2.0;  // [s] of wall time; a node reports once a second, and its queues hold ten seconds
 constexpr auto kPoll = std::chrono::milliseconds(10);
-constexpr double kJointPatience = 1.0;  // who listens to the crank connects to the boom at about the same time [s]
-constexpr double kNotable = 1.0;        // [s]
+constexpr double kJointPatience = 1.0;  // a subscriber to the crank connects to the joints at about the same time [s]
+constexpr double kNotable = 1.0;        // delay that is worth a warning [s]
 constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // for subscribers that do not report
 constexpr std::uint32_t kQueueSize = 100000;                    // 20 s at 5 kHz: a stalled subscriber loses no message
 constexpr std::uint32_t kOwnClockStart = 1700000000;            // [s]; fixed, so that the same seed gives the same bag
@@ -68,13 +68,13 @@ double seconds(steady_clock::duration duration) { return std::chrono::duration<d
 /// Stamps are those of the session [s]; a load is that of links and drive about D in axes of hammer_hull [N], [N m].
 class TruthFiles {
  public:
-  /// Replaces the files. Throws std::runtime_error when one cannot be written.
+  /// Replaces the files. Throws std::runtime_error if one cannot be written.
   explicit TruthFiles(const std::string& prefix)
       : samples_(opened(prefix + "_samples.csv", "stamp_s,force_x_N,force_z_N,torque_y_Nm")),
         blows_(opened(prefix + "_blows.csv",
                       "stamp_s,energy_J,tool_impulse_Ns,rocker_speed_before_rad_s,rocker_speed_after_rad_s")) {}
 
-  /// Appends a session's truth. start_stamp: of t = 0 [ns].
+  /// Appends the true values of a session. start_stamp: stamp of t = 0 [ns].
   void write(const simulation::Session& session, std::int64_t start_stamp) {
     const auto stamp = [start_stamp](double time) { return stampText(start_stamp + std::llround(time * 1e9)); };
     for (const simulation::CrankTruth& truth : session.truth)
@@ -152,7 +152,7 @@ class MachinePlayer {
     const simulation::OnBoomSettings& sensors = settings_.machine.on_boom;
     if (sensors.imu.rate > 0.0) imu_publisher_ = node.advertise<sensor_msgs::Imu>("hull_imu", kQueueSize);
     imu_message_.header.frame_id = "hammer_hull";
-    imu_message_.orientation_covariance[0] = -1.0;  // it has no orientation
+    imu_message_.orientation_covariance[0] = -1.0;  // the IMU measures no orientation
     for (std::size_t i = 0; i < 3; ++i) {
       imu_message_.linear_acceleration_covariance[4 * i] = std::pow(sensors.imu.acceleration_noise, 2);
       imu_message_.angular_velocity_covariance[4 * i] = std::pow(sensors.imu.rate_noise, 2);
@@ -211,7 +211,7 @@ class MachinePlayer {
     clock_publisher_.publish(clock);
   }
 
-  /// Since the start, of the batch after that one [s of the machine's time].
+  /// Returns the end of the batch after `last`, since the start [s of the machine's time].
   double timeAfter(double last) {
     if (source_ == TimeSource::kClockTopic) return (ros::Time::now() - timeOf(settings_.machine.start_stamp)).toSec();
     const SteadyTime now = steady_clock::now();
@@ -221,7 +221,7 @@ class MachinePlayer {
     return last + speed() * batch;
   }
 
-  /// Not without a subscriber, nor without one that reports.
+  /// Returns false while the node is too far behind. Without a subscriber or a report, the machine never waits.
   bool isFollowed(double last) {
     if (followed_ == 0 || crank_publisher_.getNumSubscribers() == 0) return true;
     const double behind = last - 1e-9 * static_cast<double>(followed_ - settings_.machine.start_stamp);
@@ -235,13 +235,13 @@ class MachinePlayer {
       for (const diagnostic_msgs::KeyValue& value : status.values) {
         if (value.key != kLastSampleKey) continue;
         const std::int64_t stamp = std::strtoll(value.value.c_str(), nullptr, 10);
-        // Else of another machine.
+        // A stamp outside this range belongs to another machine.
         if (stamp >= settings_.machine.start_stamp && stamp <= newest_) followed_ = std::max(followed_, stamp);
       }
     }
   }
 
-  /// Readings before a crank sample in time, then the sample.
+  /// Publishes each crank sample after the readings that precede it in time.
   void publish(const Session& session) {
     auto joints = session.joints.begin();
     auto imu = session.imu.begin();

@@ -27,8 +27,8 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   publisher_.add("log", [&log](Status& status) { describeLog(log, status); });
 }
 
-/// Each warning on the console when it is new, of an input that is awaited where it has not come by the next report
-/// either; a log that stops by itself as above.
+/// Prints each new warning on the console. An awaited input is reported only if it has not come by the next report
+/// either. A log that stops by itself is also reported.
 void NodeDiagnostics::warnOnConsole() {
   std::set<std::string> awaited;
   for (const Warning& warning : warnings()) {
@@ -206,7 +206,7 @@ void NodeDiagnostics::describeMisuse(Status& status) {
 void NodeDiagnostics::describeBoom(Status& status) {
   const BoomFollower& boom = *bridge_.pipeline().boom();
   const BoomState& state = boom.state();
-  // Joints are judged at the last crank sample: a crank that has stopped is no fault of theirs.
+  // Joints are checked at the last crank sample, so that a stopped crank is no fault of theirs.
   const bool none_yet = inputs_.crank.arrived == Clock::time_point{};
   const std::vector<std::string> complaints = boom.complaints();
   if (none_yet) {

@@ -1,4 +1,4 @@
-/// The node's health on /diagnostics, and new warnings on the console, once each.
+/// Health of the node on /diagnostics, and new warnings on the console, once each.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -17,15 +17,14 @@
 
 namespace hammer_loads {
 
-/// Value of the crank's status: header stamp of the last sample that the node has taken [ns].
+/// Key in the crank's status: header stamp of the last sample that the node has taken [ns].
 inline constexpr char kLastSampleKey[] = "header stamp of the last sample [ns]";
 
-/// Reports rates, ages, counts of accepted and refused input by reason,
-/// model, boom, log health.
+/// Reporter of rates and ages, counts of accepted and refused input by reason, model, boom and health of the log.
 class NodeDiagnostics {
  public:
-  /// inputs: each of a sensor should have one publisher; the age of the crank's decides whether the node is stale.
-  /// ledger: null where none is kept.
+  /// inputs: each input of a sensor should have one publisher; the age of the crank's input decides whether the node is
+  /// stale. ledger: null if none is kept.
   NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge, HammerInputs& inputs,
                   BagLog& log, const RecordClock& clock, const life::LiveLedger* ledger);
 
@@ -46,7 +45,7 @@ class NodeDiagnostics {
   void describeLife(Status& status);
   void describeLimits(Status& status);
   void describeReference(Status& status);
-  /// Warning of pieces that the ledger cannot accept at present, if there are any.
+  /// Returns a warning if the ledger cannot accept pieces at present.
   std::optional<Warning> ledgerWarning() const;
 
   const HammerBridge& bridge_;
@@ -56,8 +55,8 @@ class NodeDiagnostics {
   Clock::time_point last_report_{Clock::now()};
   SampleCounts last_counts_;
   ImuCounts last_imu_counts_;
-  std::set<std::string> said_;     ///< keys of warnings on the console already
-  std::set<std::string> awaited_;  ///< inputs that had not come at the last report
+  std::set<std::string> said_;     ///< keys of warnings already on the console
+  std::set<std::string> awaited_;  ///< keys of inputs that were missing at the last report
   LogState log_state_{LogState::kOff};
   DiagnosticsPublisher publisher_;
 };

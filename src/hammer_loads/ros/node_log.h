@@ -1,4 +1,4 @@
-/// The log of a node: its start, requests to it, its part of the diagnostics.
+/// Log of a node: its start, its services and its part of the diagnostics.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -16,8 +16,8 @@
 
 namespace hammer_loads {
 
-/// Null where the settings can never work: one line per problem. A disk that cannot take a bag now is reported and
-/// costs the log, not the node. node: resolved name.
+/// Makes the log of a node. Returns null, with one line per problem, if the settings can never work. If the disk cannot
+/// take a bag now, this is reported and the node runs without a log. node: resolved name.
 inline std::unique_ptr<BagLog> makeNodeLog(const LogSettings& settings, const std::string& node,
                                            std::vector<std::string>& problems) {
   LogSettings of_node = settings;
@@ -31,9 +31,9 @@ inline std::unique_ptr<BagLog> makeNodeLog(const LogSettings& settings, const st
   return log;
 }
 
-/// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request is empty: directory and names of the log come
-/// from the parameters. The answer states the action or the reason against it. A log that a full disk has stopped
-/// restarts by itself once there is room.
+/// Services `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request is empty: directory and names of the
+/// log come from the parameters. The answer states the action or the reason against it. A log that a full disk has
+/// stopped restarts by itself once there is room.
 class LogServices {
  public:
   /// finish: called before a log begins, is split or ends, so that the last messages of a run are in its file. begin:

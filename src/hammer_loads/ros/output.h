@@ -1,4 +1,4 @@
-/// One output topic: its message is filled in place and sent to all attached receivers; and the destinations of a table
+/// Output topic whose message is filled in place and sent to all attached receivers. Also the destinations of a table
 /// of outputs, which are a node's topics and its log, or a bag.
 #pragma once
 
@@ -22,8 +22,8 @@ namespace hammer_loads {
 
 enum class Delivery {
   kEach,
-  kOnRequest,  ///< left out of every log, and of bags unless asked for
-  kLast,       ///< late subscribers get the last one
+  kOnRequest,  ///< left out of every log, and of bags unless requested
+  kLast,       ///< late subscribers get the last message
   kLatched,    ///< one message per run, repeated for late subscribers and in every file
 };
 
@@ -35,8 +35,8 @@ class Output {
   using Deliver = std::function<void(const Message&, const ros::Time& record_time)>;
   using Wants = std::function<bool()>;
 
-  /// name: below the node's private name space or the prefix of a bag's outputs. logged_from: least log_outputs that
-  /// logs it.
+  /// name: relative to the node's private namespace or to the prefix of a bag's outputs. logged_from: lowest value of
+  /// log_outputs that logs it.
   explicit Output(std::string name, LoggedOutputs logged_from = LoggedOutputs::kAll,
                   Delivery delivery = Delivery::kEach)
       : name_(std::move(name)), logged_from_(logged_from), delivery_(delivery) {}
@@ -80,11 +80,11 @@ class Output {
 };
 
 constexpr std::uint32_t kTopicQueue =
-    10000;  ///< ten seconds at 1 kHz, for inputs and outputs: a stalled machine loses no message
+    10000;  ///< ten seconds at 1 kHz, for inputs and outputs: a stalled computer loses no message
 
-/// Private topics. Each is published while it has a subscriber and logged while a log that wants it records; otherwise
-/// it is not computed. A latched output is only logged, since the node itself publishes it. The log must outlive the
-/// outputs.
+/// Attaches outputs to private topics. Each is published while it has a subscriber and logged while a log that includes
+/// it is recording; otherwise it is not computed. A latched output is only logged, since the node itself publishes it.
+/// The log must outlive the outputs.
 template <typename Outputs>
 void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) {
   outputs.forEach([&](auto& output) {
@@ -105,7 +105,7 @@ void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) 
   });
 }
 
-/// Topics below a prefix (without / at its end). on_request: outputs of that delivery as well.
+/// Attaches outputs to topics below a prefix (without / at its end). on_request: outputs of that delivery as well.
 template <typename Outputs>
 void attachToBag(Outputs& outputs, BagWriter& bag, const std::string& prefix, bool on_request) {
   outputs.forEach([&](auto& output) {

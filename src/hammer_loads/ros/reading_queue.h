@@ -10,23 +10,23 @@
 
 namespace hammer_loads {
 
-/// Queue of the readings of one topic that are ahead of the crank. A node that is held up receives its messages in
-/// bursts, topic by topic: the readings of some tenths of a second, then the crank samples of that time. A reading
-/// waits for the first crank sample that is not older. One reading beyond the last crank sample does not wait, so that
-/// the pipeline can interpolate. The order within the topic is kept.
+/// Queue of the readings of one topic that are ahead of the crank. A delayed node receives its messages in bursts,
+/// topic by topic: the readings of some tenths of a second, then the crank samples of that time. A reading waits for
+/// the first crank sample that is not older. One reading beyond the last crank sample does not wait, so that the
+/// pipeline can interpolate. The order within the topic is kept.
 ///
-/// The result depends on stamps and order of arrival alone, so that a recording gives the same.
+/// The result depends on stamps and order of arrival alone, so that a recording gives the same result.
 template <typename Reading>
 class ReadingQueue {
  public:
   using Pass = std::function<void(StampNs, const Reading&)>;
 
-  /// pass: called for each reading that does not wait any more.
+  /// pass: called for each reading that no longer waits.
   explicit ReadingQueue(Pass pass) : pass_(std::move(pass)) {}
 
   /// Takes a reading. crank: stamp of the last crank sample; none: there was no sample yet, and all readings but the
-  /// first one wait. Readings wait for 1 s at most: further ahead are stamps of another clock, or the crank has
-  /// stopped.
+  /// first one wait. Readings wait for 1 s at most. If one is further ahead, its stamp is from another clock or the
+  /// crank has stopped.
   void add(StampNs stamp, const Reading& reading, std::optional<StampNs> crank) {
     const bool is_beyond = !crank || (stamp > *crank && seconds(stamp - *crank) <= kLongestWait);
     const bool waits = is_beyond && passed_ && (!crank || *passed_ >= *crank);
@@ -40,7 +40,7 @@ class ReadingQueue {
       pass_(stamp, reading);
     }
   }
-  /// Passes on what a crank sample at this stamp needs.
+  /// Passes on the readings that a crank sample at this stamp needs.
   void passUpTo(StampNs crank) {
     passWhile([this, crank](const Waiting&) { return *passed_ < crank; });
   }

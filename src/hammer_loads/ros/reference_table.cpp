@@ -13,12 +13,12 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLatest = 4294967295.0;  // [s], as a message's stamp
+constexpr double kLatest = 4294967295.0;  // [s], largest stamp of a message
 constexpr auto& kLoadNames = ReferenceComparison::kNames;
 
 using Row = std::map<std::string, std::string>;  // cells by the names of their columns
 
-/// Nothing: a cell is no number.
+/// Returns the load of a row; nothing if a cell is no number.
 std::optional<MeasuredLoad> loadOf(Row row) {
   const auto stamp = decimalNumber(row["stamp"]);
   if (!stamp || !(*stamp >= 0.0 && *stamp <= kLatest)) return std::nullopt;

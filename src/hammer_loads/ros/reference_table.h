@@ -1,4 +1,4 @@
-/// A measured load of the hull from a data logger's file.
+/// Measured load of the hull from a data logger's file.
 #pragma once
 
 #include <string>
@@ -14,9 +14,9 @@ struct MeasuredLoad {
   ReferenceComparison::Values load{};  ///< force x, force z [N], torque y [N m]; NaN: not measured
 };
 
-/// Rows of a CSV text with a header: `stamp` in seconds since 1970 (UTC), and at least one of force_x, force_z in
-/// newtons and torque_y in newton metres, the load on the hull as in ~hull_wrench. Other columns and lines that begin
-/// with # are ignored; an empty field is not measured. Problems begin with the line's number. Stamps grow.
+/// Reads a CSV text with a header: `stamp` in seconds since 1970 (UTC), and at least one of force_x, force_z in newtons
+/// and torque_y in newton metres, the load on the hull as in ~hull_wrench. Other columns and lines that begin with #
+/// are ignored. An empty field is not measured. Problems begin with the line's number. Stamps must increase.
 Checked<std::vector<MeasuredLoad>> readReferenceTable(const std::string& csv);
 
 }  // namespace hammer_loads

@@ -34,7 +34,7 @@ YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value) {
       node = YAML::Node(YAML::NodeType::Map);
       for (auto& [key, item] : value) node.force_insert(key, yamlFromXmlRpc(item));
       return node;
-    default:  // nothing here has a date or binary data
+    default:  // no parameter here is a date or binary data
       return node;
   }
 }

@@ -11,14 +11,14 @@
 
 namespace hammer_loads {
 
-/// Keeps the types of the parameter server: a text that looks like a number remains a text.
+/// Converts a value and keeps its type: a text that looks like a number remains a text.
 YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value);
 
-/// Every parameter in the node's private name space; none if there are none.
+/// Returns every parameter in the node's private namespace.
 ParameterMap privateParameters(const ros::NodeHandle& private_node, std::vector<std::string>& problems);
 
-/// Private parameters over the shipped ones and the robot description, the text of `robot_description` searched from
-/// the private name space upwards: hammer_loads::load for a node.
+/// Calls hammer_loads::load for a node, with its private parameters over the shipped ones and the robot description.
+/// The latter is the text of `robot_description`, searched from the private namespace upwards.
 Checked<Settings> loadPrivateParameters(const ros::NodeHandle& private_node);
 
 }  // namespace hammer_loads

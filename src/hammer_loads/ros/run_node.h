@@ -1,4 +1,4 @@
-/// Processes of nodes: answers to --help and --version, memory, main loop.
+/// Process of a node: answers to --help and --version, memory settings, main loop.
 #pragma once
 
 #include <malloc.h>
@@ -39,8 +39,8 @@ inline void keepMemorySteady() noexcept {
   mallopt(M_MMAP_THRESHOLD, kLargeBlock);
 }
 
-/// make: as makeHammerNode; null ends the program with code 1. Every problem is a line on stderr. Returns the exit
-/// code.
+/// Runs a node and returns the exit code. make: function such as makeHammerNode; null ends the program with code 1.
+/// Every problem is a line on stderr.
 template <typename Make>
 int runNode(int argc, char** argv, const std::string& usage, const char* name, Make make) {
   if (const auto code = answerUsage(argc, argv, usage)) return *code;

@@ -10,16 +10,16 @@
 namespace hammer_loads {
 namespace {
 
-// From a model on a desk to hammers larger than any machine carries. The mechanism checks the signs.
+// Bounds from a model on a desk to hammers larger than any machine carries. The mechanism checks the signs.
 constexpr NumberRule kLength = NumberRule::within(1e-3, 10.0), kOffset = NumberRule::within(-10.0, 10.0);
 constexpr NumberRule kMass = NumberRule::within(1e-3, 1e5), kMassOrNone = NumberRule::zeroOrWithin(1e-6, 1e5);
 constexpr NumberRule kInertia = NumberRule::within(1e-9, 1e6), kInertiaOrNone = NumberRule::zeroOrWithin(1e-12, 1e6);
 constexpr NumberRule kStiffness = NumberRule::zeroOrWithin(1e6, 1e12), kDampingRatio = NumberRule::within(0.0, 100.0);
 constexpr NumberRule kPlay = NumberRule::within(0.0, 0.01), kFriction = NumberRule::within(0.0, 2.0);
-// The lever is some radii of gyration; a much shorter one would make the impulse of any blow infinite.
+// Bounds of the lever in radii of gyration. A much shorter one would make the impulse of any blow infinite.
 constexpr double kLeastLever = 0.1, kMostLever = 10.0;
 
-/// In the order of kHammerConstants.
+/// Rules in the order of kHammerConstants.
 constexpr NumberRule kRules[kHammerConstantCount] = {kLength,        kLength,   kLength,
                                                      kLength,        kLength,   NumberRule::within(-360.0, 360.0),
                                                      kMass,          kInertia,  kLength,
@@ -33,7 +33,7 @@ void name(const std::string& key, double deviation, std::string& usual) {
   usual += format("%s%s %.3g", usual.empty() ? "" : ", ", key.c_str(), deviation);
 }
 
-/// Reads the deviations of the file; the others get their default, which `usual` names.
+/// Reads the standard deviations of the file. The others get their default, which `usual` names.
 void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::string& usual) {
   parameters.deviations = usualDeviations(parameters);
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
@@ -48,7 +48,7 @@ void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::
   }
 }
 
-/// Checks that the values are those of a hammer.
+/// Reports standard deviations that are impossible for a hammer with the other values.
 void checkDeviations(ParameterReader& reader, const HammerParameters& parameters) {
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
     const HammerConstant& constant = kHammerConstants[i];
@@ -87,10 +87,10 @@ void readRod(ParameterReader& reader, HammerParameters& parameters, std::string&
   }
 }
 
-/// Optional: what an unmeasured hull can do depends on it.
+/// Reads the optional mass of the hull, on which the motion of an unmeasured hull depends.
 void readHullMass(ParameterReader& reader, HammerParameters& parameters) {
   constexpr const char *kHullMass = "hull_mass_kg", *kDeviation = "hull_mass_std_kg";
-  constexpr double kUsual = 0.3;  // relative deviation of a mass, by default
+  constexpr double kUsual = 0.3;  // default relative standard deviation of a mass
   if (reader.given(kHullMass)) parameters.hull_mass = reader.number(kHullMass, "kg", NumberRule::within(1.0, 1e5));
   parameters.hull_mass_std = kUsual * parameters.hull_mass;
   if (!reader.given(kDeviation)) return;
@@ -110,7 +110,7 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   }
 
   std::string usual;
-  readDeviations(reader, parameters, usual);  // known keys, whatever else is wrong
+  readDeviations(reader, parameters, usual);  // in any case, so that these keys are known
   readRod(reader, parameters, usual);
   readHullMass(reader, parameters);
   const Checked<Mechanism> mechanism = Mechanism::make(parameters);
@@ -150,8 +150,8 @@ std::vector<std::pair<std::string, double>> deviationsInForce(const HammerParame
   return deviations;
 }
 
-/// Removes the drive's inertia, a first guess that a calibration replaces, and the direction of rotation, which is not
-/// a property of the mechanism.
+/// Returns true if a key of the mechanism is given. The drive's inertia does not count, as a first guess that a
+/// calibration replaces, nor does drive_reaction_ratio, which is not a property of the mechanism.
 bool hasHammerKey(const ParameterMap& parameters) {
   return std::any_of(kHammerConstants.begin(), kHammerConstants.end(), [&](const HammerConstant& constant) {
     const bool of_drive = constant.enters == HammerConstant::Enters::kLearned || std::string(constant.key) == kRatio;

@@ -9,21 +9,21 @@
 
 namespace hammer_loads {
 
-/// Resolved names; empty: not known.
+/// Resolved names; empty: unknown.
 struct InputTopics {
   std::string crank, joint_states, hull_imu;
   std::string cylinder_pressures{};  ///< prefix: its topics are /NAME/bore and /NAME/rod below it, per cylinder
   std::string reference{};
 };
 
-/// The names of an input.
+/// Names of an input.
 struct InputName {
   std::string InputTopics::*topic;
   const char* name;      ///< name of a node's topic, to be remapped
   const char* key;       ///< key of the parameters in a run_info
-  const char* recorded;  ///< topic of a bag that states none
+  const char* recorded;  ///< default topic of a bag that states none
   const char* option;    ///< option of the commands that read bags
-  const char* holds;     ///< type of its messages, and what is in them; lines of a usage text
+  const char* holds;     ///< type and content of its messages; lines of a usage text
 };
 
 inline constexpr std::array<InputName, 5> kInputs{{
@@ -42,7 +42,7 @@ inline constexpr std::array<InputName, 5> kInputs{{
      "measured"},
 }};
 
-/// Names by `nameOf` of each row of kInputs.
+/// Returns the names that nameOf() gives for the rows of kInputs.
 template <typename NameOf>
 InputTopics inputTopics(const NameOf& nameOf) {
   InputTopics topics;

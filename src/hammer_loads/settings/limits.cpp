@@ -9,13 +9,13 @@ namespace {
 
 constexpr char kFileKey[] = "limits_file";
 
-/// NaN where the key is not given.
+/// Reads a bound. Returns NaN if the key is not given.
 double readBound(ParameterReader& reader, const std::string& key, const std::string& unit) {
   return reader.given(key) ? reader.number(key, unit, NumberRule::notNegative()) : kNaN;
 }
 
 void readLimit(ParameterReader& reader, Limit limit, std::vector<Limit>& limits) {
-  const bool per_hour = limit.unit == "1/h";  // the name states it
+  const bool per_hour = limit.unit == "1/h";  // the name states the unit
   const std::string ending = per_hour ? "" : "_" + limit.unit;
   const std::string warn = "limit_" + limit.name + "_warn" + ending, error = "limit_" + limit.name + "_error" + ending;
   limit.warn = readBound(reader, warn, limit.unit);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Conflicts between model, boom file and robot description; empty when they agree.
+/// Returns the conflict between model, boom file and robot description; empty if they agree.
 std::string boomConflict(BoomModel model, bool boom_file, bool description) {
   if (description && model == BoomModel::kCompliant && !boom_file)
     return "boom: compliant, must be none, rigid or auto without a boom file: its cylinders' oil is the spring";
@@ -30,7 +30,7 @@ std::string boomConflict(BoomModel model, bool boom_file, bool description) {
   return "robot_description: missing, must be given (a URDF), or boom must be none or auto";
 }
 
-/// Conflicts of the other keys with a boom that vibrates, or does not; empty when they agree.
+/// Returns the conflict of other keys with a boom that vibrates, or does not; empty if they agree.
 std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, bool vibrates) {
   if (vibrates && pipeline.boom_acceleration == BoomAcceleration::kDifference)
     return "boom_acceleration: difference, must be none with a boom that may be compliant: where the joints' sensors "
@@ -43,7 +43,7 @@ std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, 
   return {};
 }
 
-/// Nothing when there is none, or the reader got a problem with it.
+/// Reads the boom. Returns nothing if there is none or if the reader has a problem with it.
 std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, const PipelineSettings& pipeline,
                              const std::optional<RobotDescription>& description, std::vector<std::string>& notes) {
   const std::size_t problems_before = reader.problems().size();
@@ -70,7 +70,7 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, const Pipe
   return std::move(boom.value);
 }
 
-/// Weight by the description's axes and zeros where there is no boom. Signs that contradict it are a problem.
+/// Takes the weight's axes and zeros from the description if there is no boom. Contradicting signs are a problem.
 void takePitchChain(ParameterReader& reader, PipelineSettings& pipeline, const std::optional<Boom>& boom,
                     const std::optional<RobotDescription>& description, std::vector<std::string>& notes) {
   const std::vector<std::string>& joints = pipeline.pitch_joints;
@@ -98,7 +98,7 @@ std::string withoutDriveInertia(std::string yaml) {
   return yaml;
 }
 
-/// Keys of the topics that are known, one a line.
+/// Returns the keys of the known topics, one a line.
 std::string yamlOf(const InputTopics& topics) {
   std::string yaml;
   for (const InputName& input : kInputs) {
@@ -126,7 +126,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   if (!conflict.empty()) reader.addProblem(conflict);
   takePitchChain(reader, pipeline, boom, description, result.notes);
   life::LifeSettings life = readLifeSettings(reader);
-  // The channels can be judged only where the boom is known.
+  // Channels can be checked only if the boom is known.
   if (reader.problems().empty()) checkChannels(life, channelNames(boom ? &*boom : nullptr), reader);
   std::vector<Limit> limits = readLimits(reader, life);
   const InputTopics topics = readInputTopics(reader);  // last, so that they are the end of the YAML
@@ -203,14 +203,14 @@ std::string configDirectory() {
   std::vector<fs::path> candidates;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);  // PREFIX/lib/hammer_loads/PROGRAM
   if (!error) candidates.push_back(program.parent_path() / "../../share/hammer_loads/config");
-  // PREFIX/lib/LIBRARY or, by Debian, PREFIX/lib/ARCHITECTURE/LIBRARY: for a nodelet and Python, programs of others.
+  // PREFIX/lib/LIBRARY or, in Debian, PREFIX/lib/ARCHITECTURE/LIBRARY: nodelets and Python run in other programs.
   Dl_info library{};
   if (dladdr(reinterpret_cast<void*>(&configDirectory), &library) != 0 && library.dli_fname != nullptr) {
     for (const char* share : {"../share/hammer_loads/config", "../../share/hammer_loads/config"})
       candidates.push_back(fs::path(library.dli_fname).parent_path() / share);
   }
   for (const fs::path& candidate : candidates) {
-    // Debian's /lib is a link to /usr/lib: its parent is not that of the name.
+    // Debian's /lib is a link to /usr/lib: the target's parent is not the parent in the path.
     if (fs::exists(candidate / "pipeline.yaml", error)) return fs::canonical(candidate).string();
   }
   return HAMMER_LOADS_CONFIG_DIR;

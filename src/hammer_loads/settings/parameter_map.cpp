@@ -13,7 +13,7 @@ std::string at(const std::string& origin, const YAML::Mark& mark) {
   return mark.is_null() ? origin : origin + ":" + std::to_string(mark.line + 1);
 }
 
-/// By their marks: of some texts that are no YAML, yaml-cpp 0.7 reads documents without end.
+/// Counts documents by their marks. From some texts that are no YAML, yaml-cpp 0.7 reads documents without end.
 int countDocuments(const std::string& text) {
   int count = 0;
   bool open = false;
@@ -68,7 +68,7 @@ std::optional<ParameterMap> readParameterFile(const std::string& file, std::vect
   return std::nullopt;
 }
 
-/// Inserted anew: an assignment to a node changes every copy of it, and the documents of both are never released.
+/// Inserts all anew: an assignment to a node changes every copy of it, and the documents of both are never released.
 void merge(const ParameterMap& over, ParameterMap& base) {
   ParameterMap all = over;
   all.insert(base.begin(), base.end());

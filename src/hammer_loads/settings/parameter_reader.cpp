@@ -26,7 +26,7 @@ std::string withUnit(const std::string& value, const std::string& unit) {
   return unit.empty() ? value : value + " " + unit;
 }
 
-/// Texts in brackets, as a list of YAML.
+/// Returns texts in brackets, as a list of YAML.
 template <typename T, typename TextOf>
 std::string listText(const std::vector<T>& items, const TextOf& textOf) {
   std::string list;
@@ -34,7 +34,7 @@ std::string listText(const std::vector<T>& items, const TextOf& textOf) {
   return "[" + list + "]";
 }
 
-/// Letters to insert, delete or replace to turn one word into the other (Levenshtein).
+/// Returns the number of letters to insert, delete or replace to turn one word into the other (Levenshtein).
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -176,7 +176,7 @@ std::string ParameterReader::nearestKnownKey(const std::string& key) const {
   std::size_t least = 1 + std::max<std::size_t>(2, key.size() / 4);  // a larger distance is no misspelling
   for (const std::string& known : known_) {
     const auto [shorter, longer] = std::minmax({key.size(), known.size()});
-    if (longer - shorter >= least) continue;  // no nearer than that; saves most of the time of a file of foreign keys
+    if (longer - shorter >= least) continue;  // cannot be nearer; saves most of the time of a file of foreign keys
     const std::size_t distance = editDistance(key, known);
     if (distance < least) {
       least = distance;

@@ -10,17 +10,17 @@
 namespace hammer_loads {
 namespace {
 
-// Beyond these no machine, sensor or supply lies; within them, in any mixture, the pipeline ends, allocates little and
+// Bounds that no machine, sensor or supply exceeds. For all values within them, the pipeline ends, allocates little and
 // its arithmetic stays finite: test/fuzz/pipeline_fuzz.cpp draws every one of them.
-constexpr NumberRule kTurned = NumberRule::within(-6.3, 6.3);     // [rad] a turn either way: degrees lie beyond
-constexpr NumberRule kPlace = NumberRule::within(-100.0, 100.0);  // [m] on a machine
-constexpr NumberRule kAge = NumberRule::within(1e-3, 10.0);       // [s] some samples at 1 kHz; a rest between two blows
-constexpr NumberRule kPart = NumberRule::within(1e-9, 10.0);      // [-] of a peak; as cfg/HammerLoads.cfg
+constexpr NumberRule kTurned = NumberRule::within(-6.3, 6.3);     // [rad] a revolution either way; degrees lie beyond
+constexpr NumberRule kPlace = NumberRule::within(-100.0, 100.0);  // [m] place on a machine
+constexpr NumberRule kAge = NumberRule::within(1e-3, 10.0);       // [s] a sample at 1 kHz to a rest between two blows
+constexpr NumberRule kPart = NumberRule::within(1e-9, 10.0);      // [-] part of a peak, as in cfg/HammerLoads.cfg
 // Output rate [Hz], as in cfg/HammerLoads.cfg: one core computes and sends some 30000 wrenches a second, and a sample
 // after a gap of stale_after has 1e5 outputs at most, 30 MB.
 constexpr NumberRule kOutputRate = NumberRule::zeroOrWithin(1e-3, 1e4);
 
-/// Fit to be a part of a topic's name.
+/// Returns true if a link's name can be a part of a topic's name.
 bool namesATopic(const std::string& link) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '/'; };

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-/// A number of a part of the boom; its key in the file begins with the part's name.
+/// Number of a part of the boom; its key in the file begins with the part's name.
 template <typename Part>
 struct PartKey {
   const char* key;
@@ -125,7 +125,7 @@ constexpr std::array<const char*, 7> kOtherKeys{"root_link",     "tip_link",    
 /// Reads the keys of the oil, which may be omitted together for a boom without cylinders.
 void readOil(ParameterReader& reader, bool cylinders, BoomParameters& p) {
   const auto given = [&](const char* key) { return reader.given(key); };
-  if (std::count_if(kOilKeys.begin(), kOilKeys.end(), given) == 0 && !cylinders) return;  // all of them are known now
+  if (std::count_if(kOilKeys.begin(), kOilKeys.end(), given) == 0 && !cylinders) return;  // given() marks them known
   p.bulk_modulus = reader.number("bulk_modulus_Pa", "Pa", NumberRule::any());
   p.vibration.damping_ratio = reader.number("damping_ratio", "", NumberRule::any());
   p.vibration.refresh_angle = reader.number("mode_refresh_angle_rad", "rad", NumberRule::any());

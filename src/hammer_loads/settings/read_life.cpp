@@ -15,14 +15,14 @@ namespace {
 using life::LoadGrid;
 
 constexpr double kPaPerMPa = 1e6;
-constexpr NumberRule kFullScale = NumberRule::within(-1e15, 1e15);  // [N], [N m], [Pa]: beyond it nothing holds
+constexpr NumberRule kFullScale = NumberRule::within(-1e15, 1e15);  // [N], [N m], [MPa]; no structure bears more
 
-/// A short name in the file and the channel that it stands for.
+/// Short name in the file and the channel for which it stands.
 struct NamedChannel {
   std::string name, channel;
 };
 
-/// Nothing after a problem.
+/// Reads the full scale of a channel. Returns nothing after a problem.
 std::optional<LoadGrid> readGrid(ParameterReader& reader, const std::string& name, const std::string& unit,
                                  std::int64_t classes) {
   const std::string ending = unit.empty() ? "" : "_" + unit, key = name + "_full_scale_least" + ending;
@@ -34,7 +34,7 @@ std::optional<LoadGrid> readGrid(ParameterReader& reader, const std::string& nam
   return std::move(grid.value);
 }
 
-/// [MPa per unit of the channel]
+/// Returns the stress that a channel causes [MPa per unit of the channel].
 double readInfluence(ParameterReader& reader, const std::string& key, const std::string& channel) {
   const std::string direct = key + "_MPa_per_unit", modulus = key + "_modulus_m3", area = key + "_area_m2";
   const int given = int{reader.given(direct)} + int{reader.given(modulus)} + int{reader.given(area)};
@@ -51,7 +51,7 @@ double readInfluence(ParameterReader& reader, const std::string& key, const std:
   return factor;
 }
 
-/// Nothing without a curve, or after a problem.
+/// Reads an S-N curve. Returns nothing without a curve, or after a problem.
 std::optional<life::SnCurve> readCurve(ParameterReader& reader, const std::string& name) {
   const std::string keys[] = {name + "_sn_knee_range_MPa", name + "_sn_knee_cycles", name + "_sn_slope",
                               name + "_sn_slope_below"};
@@ -95,7 +95,7 @@ void readHotSpot(ParameterReader& reader, const std::string& name, const std::ve
   if (grid) counted.push_back({"stress/" + name, *grid, name, std::move(influences), curve, mean});
 }
 
-/// The names of a list; none where it is none.
+/// Returns the names of a list; none if it is no list.
 std::vector<std::string> namesIn(const ParameterMap& parameters, const char* key) {
   const auto found = parameters.find(key);
   if (found == parameters.end()) return {};

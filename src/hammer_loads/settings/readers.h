@@ -1,10 +1,10 @@
-/// Readers of the parameter files: of the hammer, the boom, the load cycles with the names of a machine's loads
-/// (topic/field or topic/name/field), and the log. Their results are usable only if the reader got no problem.
+/// Readers of the parameter files of the hammer, the boom, the load cycles with the names of a machine's loads
+/// (topic/field or topic/name/field), and the log. Their results are usable only if the reader has no problem.
 ///
-/// Every key of the hammer file is required but those that kHammerConstants names optional. Every key of the boom file
-/// is required but `sections`, and those of friction, sensors' offsets, weighed links and deviations; with `cylinders:
-/// []` so are only `root_link` and `tip_link`, and the keys of the oil and those of the supports each together or not
-/// at all.
+/// Every key of the hammer file is required, except those that kHammerConstants marks as optional. Every key of the
+/// boom file is required, except `sections` and those of friction, sensor offsets, weighed links and standard
+/// deviations. With `cylinders: []`, only `root_link` and `tip_link` are required. Then the keys of the oil are given
+/// together or not at all, and so are those of the supports.
 #pragma once
 
 #include <optional>
@@ -21,32 +21,32 @@
 
 namespace hammer_loads {
 
-/// `cylinders` and `sections` name them; the keys of each begin with its name. The keys of a section's part beyond
-/// (NAME_section_mass_beyond_kg and its like) are given together or not at all. Usable only if the reader has no
-/// problem; Boom::make() checks the values against each other and the chain.
+/// Reads the boom file. `cylinders` and `sections` list names, with which the keys of each begin. The keys of a
+/// section's part beyond (such as NAME_section_mass_beyond_kg) are given together or not at all. The result is usable
+/// only if the reader has no problem; Boom::make() checks the values against each other and the chain.
 BoomParameters readBoomParameters(ParameterReader& reader);
 
-/// Returns true if any key of a boom file is there that is not a cylinder's own.
+/// Returns true if any key of a boom file is given that does not belong to a single cylinder.
 bool hasBoomKey(const ParameterMap& parameters);
 
-/// The boom file's keys of parameters in force, as Settings::yaml has them; one `key: value` a line.
+/// Returns the boom file's keys among parameters in force, in the form of Settings::yaml: one `key: value` a line.
 std::string boomYaml(const std::string& parameters);
 
-/// The mechanism; empty if the reader has a problem with it. notes receives the mechanism's accepted peculiarities.
+/// Returns the mechanism; empty if the reader has a problem with it. notes receives its accepted peculiarities.
 std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes);
 
-/// Keys that the hammer file must have, in its order.
+/// Returns the keys that the hammer file must have, in its order.
 std::vector<std::string> hammerKeys();
 
-/// Keys and values [the key's unit] of the standard deviations in force, those that the file does not give among them.
+/// Returns keys and values [the key's unit] of the standard deviations in force, including those that no file gives.
 std::vector<std::pair<std::string, double>> deviationsInForce(const HammerParameters& parameters);
 
 bool hasHammerKey(const ParameterMap& parameters);
 
-/// Usable only if the reader got no problem; checkChannels() then judges whether the machine has its channels.
+/// Reads the settings, usable only if the reader has no problem. checkChannels() then checks the channels.
 life::LifeSettings readLifeSettings(ParameterReader& reader);
 
-/// A problem for each counted channel that is not among the machine's.
+/// Adds a problem for each counted channel that is not among the machine's.
 void checkChannels(const life::LifeSettings& settings, const std::vector<std::string>& of_machine,
                    ParameterReader& reader);
 
@@ -54,11 +54,11 @@ void checkChannels(const life::LifeSettings& settings, const std::vector<std::st
 /// be unknown keys.
 void leaveOutUnwantedChannels(const ParameterMap& given, ParameterMap& shipped);
 
-/// Every channel that turn loads, load cycles and ledger may have, in the order of channelValues(). boom: null where
-/// its loads are not known.
+/// Returns every channel that turn loads, load cycles and ledger may have, in the order of channelValues(). boom: null
+/// if its loads are not known.
 std::vector<std::string> channelNames(const Boom* boom);
 
-/// Usable only if the reader got no problem.
+/// Reads the settings, which are usable only if the reader has no problem.
 LogSettings readLogSettings(ParameterReader& reader);
 
 }  // namespace hammer_loads

@@ -66,7 +66,7 @@ Checked<Settings> loadRecorded(const std::string& config_directory, const std::s
 std::vector<ParameterText> parameterTexts(const std::string& config_directory, const std::string& yaml) {
   std::vector<std::string> problems;
   ParameterMap parameters = parameterMap(YAML::Load(yaml), {}, problems).value_or(ParameterMap{});
-  for (const InputName& input : kInputs) parameters.erase(input.key);  // names of a recording, no parameters
+  for (const InputName& input : kInputs) parameters.erase(input.key);  // topics of a recording, no parameters
   std::vector<std::string> files;
   for (const char* name : {"pipeline", "log", "life", "hammer_mo100", "boom_eo2621"})
     files.push_back(config_directory + "/" + name + ".yaml");

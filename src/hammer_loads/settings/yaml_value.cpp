@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Scalar written without quotes: its meaning depends on its characters.
+/// Returns true for a scalar without quotes: its meaning depends on its characters.
 bool isPlain(const YAML::Node& value) {
   if (!value.IsScalar()) return false;
   const std::string& tag = value.Tag();
@@ -21,7 +21,7 @@ bool isPlain(const YAML::Node& value) {
 std::optional<double> asNumber(const YAML::Node& value) {
   if (!isPlain(value)) return std::nullopt;
   if (const auto number = decimalNumber(value.Scalar())) return number;
-  double special = 0.0;  // .inf, -.inf, .nan: yaml-cpp also takes other spellings of finite numbers
+  double special = 0.0;  // .inf, -.inf, .nan: yaml-cpp also accepts other spellings of finite numbers
   if (!YAML::convert<double>::decode(value, special) || std::isfinite(special)) return std::nullopt;
   return special;
 }

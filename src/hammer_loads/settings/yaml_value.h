@@ -1,4 +1,4 @@
-/// A single YAML value, judged strictly: a quoted number is a text, a text is not a number.
+/// Strict interpretation of a single YAML value: a quoted number is a text, a text is not a number.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -12,26 +12,26 @@
 
 namespace hammer_loads {
 
-/// Decimal number, integer literals included; .nan and .inf count as numbers. Nothing else does.
+/// Returns a decimal number, an integer literal, .nan or .inf; nothing for any other value.
 std::optional<double> asNumber(const YAML::Node& value);
-/// Decimal integer without point or exponent.
+/// Returns a decimal integer without point or exponent.
 std::optional<std::int64_t> asInteger(const YAML::Node& value);
-/// true/false, yes/no, on/off.
+/// Returns the value of true/false, yes/no or on/off.
 std::optional<bool> asBoolean(const YAML::Node& value);
-/// Quoted, or plain and neither number nor boolean nor empty.
+/// Returns a quoted text, or a plain one that is neither number nor boolean nor empty.
 std::optional<std::string> asText(const YAML::Node& value);
-/// List whose items are all texts; an empty list is one.
+/// Returns the texts of a list whose items are all texts; an empty list is one.
 std::optional<std::vector<std::string>> asTexts(const YAML::Node& value);
 
-/// Text that every reader, YAML 1.1 or 1.2, takes for a text.
+/// Makes a node that every reader, YAML 1.1 or 1.2, takes for a text.
 YAML::Node textNode(const std::string& text);
 
-/// Shortest of at most 17 significant digits that reads back as the same double, with a decimal point (YAML 1.1 takes
-/// 5e-4 for a text).
+/// Returns the shortest number of at most 17 significant digits that reads back as the same double, with a decimal
+/// point (YAML 1.1 takes 5e-4 for a text).
 std::string numberText(double value);
-/// In double quotes, escaped: valid YAML on one line.
+/// Returns the text in double quotes, escaped: valid YAML on one line.
 std::string quotedText(const std::string& text);
-/// Text of a value in a report: on one line, shortened when long.
+/// Returns the text of a value for a report: on one line, shortened if long.
 std::string describe(const YAML::Node& value);
 
 }  // namespace hammer_loads
