@@ -12,7 +12,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMostRefreshAngle = 0.05;  // [rad]: frequencies off by some 2 %; modes of another pose run away
+constexpr double kMostRefreshAngle = 0.05;  // [rad]; makes frequencies some 2 % wrong; modes of a farther pose diverge
 // Limit: kMostRefreshAngle
 
 void checkParameters(const BoomParameters& p, std::vector<std::string>& problems) {
@@ -56,7 +56,7 @@ std::vector<Section> makeSections(const std::vector<SectionParameters>& given, c
   return sections;
 }
 
-/// A joint with a cylinder needs inertia about its axis; otherwise its frequency would be infinite.
+/// Requires inertia about the axis of each joint with a cylinder; otherwise its frequency would be infinite.
 void checkInertia(const Chain& chain, const std::vector<Cylinder>& cylinders, std::vector<std::string>& problems) {
   JointVector middle(chain.joints());
   for (int j = 0; j < chain.joints(); ++j) {

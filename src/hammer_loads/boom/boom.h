@@ -24,16 +24,16 @@ struct BoomParameters {
   std::vector<CylinderParameters> cylinders;  ///< at most one per joint
   double bulk_modulus{};                      ///< bulk modulus of oil with hose and air [Pa], > 0
   VibrationSettings vibration;
-  std::optional<Supports> supports;         ///< [m]; nothing: not known
+  std::optional<Supports> supports;         ///< [m]; empty: not known
   std::vector<SectionParameters> sections;  ///< sections whose load is wanted; may be empty
-  double link_mass_std{0.03};               ///< standard, of each link that is not weighed, relative [-]
-  double link_com_std{0.02};                ///< standard, of its centre of mass in x and z each [m]
+  double link_mass_std{0.03};               ///< standard deviation of a link's mass, unless identified, relative [-]
+  double link_com_std{0.02};                ///< standard deviation of its centre of mass, in x and z each [m]
   // Prior: link_mass_std, link_com_std
   double rigid_tolerance{};  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
-/// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the
-/// joint forward. The part that holds the joint - a cylinder - gives the opposite of the total.
+/// Torques of the loads about the joints' axes [N m] ([N] for a prismatic joint); positive drives the joint forward.
+/// The part that holds the joint, such as a cylinder, exerts the opposite of the total.
 struct BoomLoads {
   JointVector hammer;                              ///< J^T w, as on a rigid boom
   JointVector weight;                              ///< weight of the links
@@ -43,13 +43,13 @@ struct BoomLoads {
   std::array<CylinderForce, kMaxJoints> cylinder;  ///< cylinder forces of the total, index as in Boom::cylinders()
 };
 
-/// Errors of the hammer's load that are independent of each other, one standard deviation each.
+/// Independent errors of the hammer's load, one standard deviation each.
 struct WrenchSpread {
-  int count{};                 ///< at most 4: of the crank's angle, speed and acceleration, of the rock, say
-  std::array<Wrench, 4> part;  ///< on the tip, as the load
+  int count{};                 ///< at most 4, for example by crank angle, speed, acceleration and rock
+  std::array<Wrench, 4> part;  ///< loads on the tip
 };
 
-/// Standard deviations of the boom's loads; at a zero moment arm as SteelLoads.
+/// Standard deviations of the boom's loads. At a zero moment arm they are defined as in SteelLoads.
 struct BoomDeviations {
   JointVector torque;                         ///< standard deviation of BoomLoads::total [N m]
   std::array<double, kMaxJoints> cylinder{};  ///< standard deviation of the cylinder's force [N]
@@ -57,7 +57,7 @@ struct BoomDeviations {
   std::array<Wrench, kMaxJoints> joint;       ///< reactions at the joint, each component
 };
 
-/// Boom with its vibration. Call for each sample move() if the boom has moved, advance() if the vibration is wanted,
+/// Boom with its vibration. For each sample, call move() if the boom has moved, advance() if the vibration is needed,
 /// then loads(). After make() nothing allocates or throws; loads() reports an input whose results are not finite.
 class Boom {
  public:
@@ -69,29 +69,29 @@ class Boom {
     parameters.chain = request;
     return make(description, parameters);
   }
-  /// Makes the same boom without sections, with the links' bodies in place of all that were given as weighed; empty for
-  /// impossible bodies. description: that of this boom. Cylinders are not checked again, as no body changes their
-  /// place.
+  /// Makes the same boom without sections, with these identified bodies instead of those in its parameters. Returns
+  /// nothing for impossible bodies. description: of this boom. Cylinders are not checked again, since bodies do not
+  /// move them.
   std::optional<Boom> weighed(const RobotDescription& description, std::vector<WeighedLink> links) const;
 
-  /// Moves the boom. motion: of the chain's joints; g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level
+  /// Moves the boom. motion: of the chain's joints; g_B: gravity in the root's axes [m/s2], (0, 0, -g) for a level
   /// base.
   void move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
-  /// Moves the boom and brings the vibration to this pose; modes are found only then.
+  /// Moves the boom and its vibration to this pose. Modes exist only after this call or moveVibrating().
   void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
-  /// Moves the boom by a motion without the vibration. The modes are those of its pose; the links are displaced by the
-  /// vibration, as by Vibration::displacementAfter() [rad].
+  /// Moves the boom by a motion without the vibration. The modes belong to the pose of this motion. The links are
+  /// displaced in addition by the vibration, see Vibration::displacementAfter() [rad].
   void moveVibrating(const JointMotion& motion, const JointVector& displacement, const Eigen::Vector3d& g_B) noexcept;
 
   const ChainPose& pose() const noexcept { return pose_; }
-  /// Motion of the joints at this pose, displaced by the vibration where moveVibrating() was called.
+  /// Motion of the joints at this pose, including the displacement that moveVibrating() was given.
   const JointMotion& motion() const noexcept { return joints_; }
   /// Gravity g_B in the tip's axes [m/s2], for the hammer's weight.
   Eigen::Vector3d gravityAtTip() const noexcept;
   /// Jacobian of the tip at the pose, see tipJacobian().
   const Jacobian& tipJacobian() const noexcept { return jacobian_; }
-  /// J^T w of a load on the tip: its torque on each joint about the joint's axis, positive when it drives the joint
-  /// forward [N m] ([N] for a prismatic joint). The part that holds the joint gives the opposite.
+  /// Returns J^T w, the torque of a load on the tip about each joint's axis [N m] ([N] for a prismatic joint). Positive
+  /// drives the joint forward. The part that holds the joint exerts the opposite.
   HAMMER_LOADS_INLINE JointVector hammerTorque(const Wrench& w_tip) const noexcept {
     JointVector torque(jacobian_.cols());
     withCount<4>(chain_.joints(), [&](auto joints) {
@@ -106,64 +106,62 @@ class Boom {
 
   Vibration& vibration() noexcept { return vibration_; }
   const Vibration& vibration() const noexcept { return vibration_; }
-  /// Displacement, velocity and acceleration of the tip by vibration: linear, then angular; axes of the tip
-  /// [m, rad and 1/s, 1/s2 of them].
+  /// Displacement, velocity and acceleration of the tip by vibration, linear then angular, in the axes of the tip [m,
+  /// rad and their 1/s, 1/s2].
   struct TipVibration {
     Eigen::Matrix<double, 6, 1> displacement, velocity, acceleration;
   };
   TipVibration tipVibration() const noexcept;
-  /// Reduced mass and stiffness at the hull along a unit vector in the tip's axes, at the pose of the modes. Infinite
-  /// where the vibrating joints do not move the hull along it.
+  /// Returns reduced mass and stiffness at the hull along a unit vector in the tip's axes, at the pose of the modes.
+  /// They are infinite where the vibrating joints do not move the hull in this direction.
   ReducedHull reducedHull(const Eigen::Vector3d& direction) const noexcept;
 
-  /// Loads by inertia and weight of the links in the present motion; rigid: without vibration.
+  /// Returns the loads of the links' inertia and weight in the present motion. rigid: without vibration.
   ChainLoads chainLoads(bool rigid) const noexcept;
   /// Computes the loads. w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull.
-  /// Their weight, and the effect of the boom's motion on them, are not in it, as the hull's mass in the description
-  /// includes theirs. links: result of chainLoads(rigid), computed here if it is not given. Returns false if the input
-  /// is so large that a result is not finite and must not be used; a cylinder with a zero moment arm does not count as
-  /// that.
+  /// It excludes their weight and the effect of the boom's motion, because the hull's mass in the description includes
+  /// theirs. links: result of chainLoads(rigid), computed here if omitted. Returns false if the input is so large that
+  /// a result is not finite and must not be used. NaN at a zero moment arm does not count.
   bool loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomLoads& result) const noexcept;
   bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
     return loads(w_tip, rigid, chainLoads(rigid), result);
   }
-  /// Section loads and joint reactions, with the arguments and cylinder forces of loads().
+  /// Computes section loads and joint reactions with the arguments and cylinder forces of loads().
   bool steelLoads(const Wrench& w_tip, const ChainLoads& links, SteelLoads& result) const noexcept;
   bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
     return steelLoads(w_tip, chainLoads(rigid), result);
   }
-  /// Joint torques by the errors of a load, as input of VibrationSpread::advance().
+  /// Returns the joint torques by errors of a load, as input of VibrationSpread::advance().
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
   /// Finds the standard deviations of loads() and steelLoads() by errors of the hammer's load and, unless rigid, of the
-  /// oil. Errors of masses, dimensions, weight and motion are not in them. They hold for the pose within four times
-  /// refresh_angle: the response to an error is computed again for each such move of a joint.
+  /// oil. They exclude errors of masses, dimensions, weight and motion. The responses to errors are recomputed once a
+  /// joint has moved by four times refresh_angle.
   void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                   BoomDeviations& result) noexcept;
-  /// Finds the standard deviations by given errors, as where the cylinders' forces are measured.
+  /// Finds the standard deviations by given errors, for example with measured cylinder forces.
   void deviations(const LoadErrors& errors, BoomDeviations& result) noexcept;
-  /// Finds the standard deviations by errors of the load in the boom's plane alone (force x, z, moment y): one standard
-  /// deviation a column.
+  /// Finds the standard deviations by errors of the load in the boom's plane alone (force x, z, moment y). Each column
+  /// of tip is one standard deviation.
   void deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexcept;
-  /// Standard deviations of the weight's torques on the joints [N m], by the masses and centres of the links and the
-  /// zeros of the joints' sensors. They are equal in all samples at a pose. Values of the last deviations(), zero
-  /// before.
+  /// Returns standard deviations of the weight's joint torques [N m] by errors of the links' masses and centres and of
+  /// the joint sensors' zeros. They are constant at a pose. deviations() updates them; they are zero before.
   const JointVector& weightDeviation() const noexcept { return weight_std_; }
-  /// Standard deviations of the joints' torques by bending of the links as the boom vibrates [N m]. A mass beyond the
-  /// middle of a link follows the joints; the link's own mass follows them less. Zero without vibration. Values of the
-  /// last deviations().
+  /// Returns standard deviations of the joint torques by bending of the links in vibration [N m], zero without
+  /// vibration. Masses beyond the middle of a link follow the joints; the link's own mass follows them less.
+  /// deviations() updates the underlying responses.
   JointVector bendingDeviation() const noexcept;
-  /// Faults of a cylinder under these loads, sum of CylinderFlag. The steady part is weight and motion.
+  /// Returns the faults of a cylinder under these loads, a sum of CylinderFlag. The steady part is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
-  /// rigidError() of half-sine pulses of that peak and length [s], at the pose of the modes. It takes some 0.1 ms, too
-  /// long for each sample.
+  /// Returns rigidError() for half-sine pulses of this peak and length [s], at the pose of the modes. It takes some 0.1
+  /// ms, too long for each sample.
   double rigidError(const Wrench& w_peak, double pulse_length) const noexcept;
-  /// Factors by which weight and cylinders hold the hull down against a mean load of the hammer on the tip, such as the
-  /// mean hold-down force along +z at the striking line. Static; no sliding; supports on level ground carry pressure
-  /// only.
+  /// Returns the factors by which weight and cylinders resist a mean load of the hammer on the tip, such as the mean
+  /// hold-down force along +z at the striking line. The model is static, without sliding; supports on level ground
+  /// carry pressure only.
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 
   const Chain& chain() const noexcept { return chain_; }
-  /// Readings of the joints at the description's zeros [rad], [m].
+  /// Returns the joint sensors' readings at the description's zeros [rad], [m].
   JointVector jointZeros() const noexcept;
   /// Position of a cylinder at this pose.
   const CylinderPosition& cylinderPosition(std::size_t cylinder) const noexcept { return at_[cylinder]; }
@@ -195,17 +193,17 @@ class Boom {
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void arrangeResponse() noexcept;
   void computeDeviations(BoomDeviations& result) const noexcept;
-  /// Columns: LoadErrors::Inputs. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces
-  /// on their bases' pins.
+  /// Columns: LoadErrors::Inputs. Rows: joint torques; force and moment of each section, then of each joint; forces of
+  /// the cylinders on their base pins.
   Eigen::MatrixXd response_;
-  Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane, nor the rows, half of all, that are then 0
+  Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane and the rows (half of all) that are then 0
   Eigen::VectorXi rows_in_plane_;      ///< indices of these rows, the first in_plane_ of them
   Eigen::Index in_plane_{};
   JointVector weight_std_;     ///< at response_at_
   JointMatrix bending_;        ///< at response_at_: torque of a joint per N m/s2 at the middle of a link [s2]
   JointVector response_at_;    ///< steady_position_ for which response_ was found; NaN before
-  Eigen::VectorXd variance_;   ///< one entry a row of response_in_plane_
-  Eigen::VectorXd deviation_;  ///< one entry a row
+  Eigen::VectorXd variance_;   ///< one entry per row of response_in_plane_
+  Eigen::VectorXd deviation_;  ///< one entry per row of response_
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

@@ -8,13 +8,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kRounded = 1e-12;  // relative size of a column that rounding makes of zero
+constexpr double kRounded = 1e-12;  // relative size below which an entry is rounding of zero
 // Numerical: kRounded
-/// First bending of a link with what it carries, the joints held [rad/s]: anything from 10 to 30 Hz, by the root mean
-/// square of what it then gives, 1/kBending^2.
+/// First bending frequency of a loaded link with its joints held [rad/s]. It lies between 10 and 30 Hz. 1/kBending^2 is
+/// the root mean square of the compliance over this range.
 constexpr double kBending = 16.0 * kTwoPi;
 // Prior: kBending
-constexpr double kOfRefreshAngle = 4;  // moves of joints that make 0.5 % of a deviation
+constexpr double kOfRefreshAngle = 4;  // in refresh_angle [-]; changes a standard deviation by 0.5 %
 // Numerical: kOfRefreshAngle
 
 Wrench wrenchOf(const Eigen::Vector3d& in_plane, const Eigen::Vector3d& across) noexcept {
@@ -40,10 +40,10 @@ void Boom::storeResponse(Eigen::Index column, const JointVector& torque, const S
   for (std::size_t i = 0; i < sections().size(); ++i) append(load.section[i].force), append(load.section[i].torque);
   for (std::size_t i = 0; i < static_cast<std::size_t>(chain_.joints()); ++i)
     append(load.joint[i].force), append(load.joint[i].torque);
-  for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].base);  // as large as the force
+  for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].base);  // magnitude of the cylinder's force
 }
 
-/// The rows of response_ that inputs in the plane make other than zero.
+/// Copies the rows of response_ that are not zero for inputs in the plane.
 void Boom::arrangeResponse() noexcept {
   const Eigen::Index in_plane = response_.cols() - 3;
   const auto by = response_.leftCols(in_plane).cwiseAbs();
@@ -57,7 +57,7 @@ void Boom::arrangeResponse() noexcept {
   }
 }
 
-/// Every load is linear in wrench and accelerations: the difference of two states is the load of their difference.
+/// Finds the response to unit inputs. Every load is linear in wrench and accelerations, so that differences superpose.
 void Boom::findResponse() noexcept {
   if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= kOfRefreshAngle * parameters_.vibration.refresh_angle)
     return;
@@ -129,7 +129,7 @@ void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexce
   computeDeviations(result);
 }
 
-/// Part of one link in the mass matrix [kg m2].
+/// Returns the contribution of one link to the mass matrix [kg m2].
 double Boom::ownInertia(int link, int joint, int other) const noexcept {
   const auto j = static_cast<std::size_t>(joint), k = static_cast<std::size_t>(other);
   if (pose_.prismatic[j] || pose_.prismatic[k]) return 0.0;
@@ -138,9 +138,9 @@ double Boom::ownInertia(int link, int joint, int other) const noexcept {
   return a.dot(body.inertia * b) + body.mass * a.cross(com - pose_.p_BJ_B[j]).dot(b.cross(com - pose_.p_BJ_B[k]));
 }
 
-/// Bending of a link, modelled as a hinge in its middle of compliance 1/(kBending^2 J), where J is the inertia beyond
-/// it. All beyond turns by half of the hinge's angle at each of both joints; the link's own mass does not turn with the
-/// joint before it.
+/// Returns the effect of bending. A link has a hinge in its middle of compliance 1/(kBending^2 J), with the inertia J
+/// beyond it. Everything beyond rotates by half of the hinge angle at each of its two joints. The link's own mass does
+/// not rotate with the first.
 JointMatrix Boom::findBending() const noexcept {
   const BoomModes& modes = vibration_.modes();
   JointMatrix by_moment = JointMatrix::Zero(chain_.joints(), std::max(0, modes.count - 1));
@@ -167,8 +167,8 @@ JointVector Boom::bendingDeviation() const noexcept {
   return variance.cwiseSqrt();
 }
 
-/// Errors of links are independent of each other. A weighed link's first moment stands for all that it carries: it
-/// turns with it alone, so that links beyond the next joint do not count again.
+/// Adds independent errors of the links. The first moment of an identified link includes all that it carries and turns
+/// with this link alone. Links beyond the next joint are therefore not counted again.
 JointVector Boom::findWeightDeviation() const noexcept {
   JointVector variance = JointVector::Zero(chain_.joints());
   for (int i = 1; i < chain_.links(); ++i) {
@@ -195,7 +195,7 @@ JointVector Boom::findWeightDeviation() const noexcept {
     const double zero = cylinder.parameters().joint_zero_std;
     if (zero == 0.0) continue;
     const int k = cylinder.joint();
-    for (int j = 0; j < chain_.joints(); ++j) {  // what is beyond both turns
+    for (int j = 0; j < chain_.joints(); ++j) {  // masses beyond both joints rotate
       const PointMass beyond = massFrom(chain_, pose_, chain_.linkBeyond(std::max(j, k)));
       const auto at = static_cast<std::size_t>(std::max(j, k));
       const Eigen::Vector3d moved = pose_.axis_B[static_cast<std::size_t>(k)].cross(beyond.p - pose_.p_BJ_B[at]);
@@ -205,7 +205,7 @@ JointVector Boom::findWeightDeviation() const noexcept {
   return variance.cwiseSqrt();
 }
 
-/// From deviation_.
+/// Fills result from deviation_.
 void Boom::computeDeviations(BoomDeviations& result) const noexcept {
   Eigen::Index row = chain_.joints();
   result.torque = deviation_.head(row);

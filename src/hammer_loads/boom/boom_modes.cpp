@@ -38,7 +38,7 @@ void findModes(MassMatrix& mass, const std::vector<Cylinder>& cylinders, const J
   JointMatrix M(n, n), columns(modes.mass.rows(), n);
   for (int i = 0; i < n; ++i) columns.col(i) = modes.mass.col(modes.joint[static_cast<std::size_t>(i)]);
   for (int i = 0; i < n; ++i) M.row(i) = columns.row(modes.joint[static_cast<std::size_t>(i)]);
-  // With the cylinders' K: K^-1/2 M K^-1/2 y = (1 + weight's share) y/omega^2, well conditioned since every K is
+  // The cylinders' K gives K^-1/2 M K^-1/2 y = (1 + weight's share) y/omega^2. It is well conditioned, as every K is
   // positive.
   const JointVector soft = modes.stiffness.cwiseSqrt().cwiseInverse();
   const JointMatrix by_weight = weightStiffness(mass.chain(), position, g_B);
@@ -49,10 +49,10 @@ void findModes(MassMatrix& mass, const std::vector<Cylinder>& cylinders, const J
       stiff(i, j) += soft[i] * soft[j] *
                      by_weight(modes.joint[static_cast<std::size_t>(i)], modes.joint[static_cast<std::size_t>(j)]);
   }
-  if (stiff.llt().info() != Eigen::Success) stiff.setIdentity();  // oil too soft to hold the weight: no boom's
+  if (stiff.llt().info() != Eigen::Success) stiff.setIdentity();  // no boom has oil too soft for its weight
   Eigen::GeneralizedSelfAdjointEigenSolver<JointMatrix> solver(n);
   solver.compute(scaled, stiff);
-  // Rounding makes a pose without inertia about some axis look a little positive or negative.
+  // Rounding makes a zero inertia about some axis slightly positive or negative.
   if (!(solver.eigenvalues()[0] > 1e-14 * solver.eigenvalues()[n - 1])) {
     clear(modes);
     return;
@@ -117,7 +117,7 @@ VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d
                                         const Eigen::Vector3d& g_T, double acceleration) {
   VibrationReading reading;
   reading.value = acceleration + n_T.dot(g_T);
-  // n . (v + omega x p) and n . (omega x g), where the vibration tilts the sensor and gravity turns against it.
+  // Terms n . (v + omega x p) and n . (omega x g). The second is due to gravity, as the vibration tilts the sensor.
   const Eigen::Vector3d p_n = p_T.cross(n_T), g_n = g_T.cross(n_T);
   for (Eigen::Index j = 0; j < J.cols(); ++j) {
     const auto omega = J.col(j).tail<3>();

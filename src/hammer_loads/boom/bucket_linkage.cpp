@@ -6,7 +6,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Derivative of a vector (x, z) that turns about +y.
+/// Returns the derivative of a vector (x, z) by its angle about +y.
 Eigen::Vector2d turned(const Eigen::Vector2d& v) noexcept { return {v.y(), -v.x()}; }
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept { return a.y() * b.x() - a.x() * b.y(); }
@@ -25,7 +25,7 @@ BucketLinkagePosition BucketLinkage::at(double c, double s) const noexcept {
   p.driven_pin = c * pins_.driven + pins_.sense * s * turned(pins_.driven);
   const Eigen::Vector2d between = p.driven_pin - pins_.guide;
   const double square = between.squaredNorm();
-  // Foot of the common pin on the line between the two fixed pins, over their distance, and its height above it.
+  // Foot of the common pin on the line from guide pivot to driven pin, and its height above it, over their distance.
   const double along = 0.5 + 0.5 * (guide_ - coupler_) * (guide_ + coupler_) / square;
   const double height_square = guide_ * guide_ / square - along * along;
   p.closed = height_square > 0.0;

@@ -13,7 +13,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Least mass of a weighed link [kg] and least inertia [kg m2]; largest deviation of its first moment [kg m].
+/// Least mass [kg] and inertia [kg m2] of an identified link; largest standard deviation of its first moment [kg m].
 constexpr double kLeastMass = 1e-9, kMostMoment = figure::kMostMass * figure::kMostLength;
 // Limit: kLeastMass, kMostMoment
 
@@ -36,7 +36,7 @@ RigidBody toEigen(KDL::RigidBodyInertia body) {  // its RefPoint() is not const
           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(about_com.data)};
 }
 
-/// Position and rotation of a segment as functions of its joint.
+/// Returns position and rotation of a segment as functions of its joint.
 ChainLink toLink(const KDL::Segment& segment) {
   ChainLink link;
   link.name = segment.getName();
@@ -47,7 +47,7 @@ ChainLink toLink(const KDL::Segment& segment) {
   link.sine = link.cosine = Eigen::Matrix3d::Zero();
   link.slide = link.axis = Eigen::Vector3d::Zero();
   link.body = toEigen(segment.getInertia());
-  // None is how KDL 1.4 and 1.5 both call a fixed joint.
+  // Both KDL 1.4 and KDL 1.5 name a fixed joint None.
   const KDL::Joint::JointType type = segment.getJoint().getType();
   if (type == KDL::Joint::None) return link;
   link.axis = toEigen(segment.getJoint().JointAxis());
@@ -72,7 +72,7 @@ bool isBefore(const std::string& name, urdf::LinkConstSharedPtr link) {
 
 }  // namespace
 
-/// Collects the chain's data and whatever is wrong with it.
+/// Collects the chain's data and all problems of it.
 class ChainBuilder {
  public:
   ChainBuilder(const urdf::ModelInterface& model, const ChainRequest& request, Checked<Chain>& result)
@@ -165,7 +165,7 @@ class ChainBuilder {
     }
   }
 
-  /// A weighed link's body; other axes' inertias change with that about y.
+  /// Returns the identified body of a link if there is one. Inertias about other axes scale with the one about y.
   KDL::RigidBodyInertia asWeighed(const std::string& name, KDL::RigidBodyInertia described) const {
     const WeighedLink* found = findLink(request_.weighed, name);
     if (found == nullptr) return described;
@@ -208,14 +208,14 @@ class ChainBuilder {
     data_.links.push_back(link);
   }
 
-  /// The tree's root has no inertia in KDL; its mass still holds the machine down.
+  /// Returns mass and centre of the root. KDL gives the tree's root no inertia, but its mass holds the machine down.
   static KDL::RigidBodyInertia ownBody(const urdf::Link& link) {
     if (!link.inertial) return KDL::RigidBodyInertia::Zero();
     const urdf::Vector3& p = link.inertial->origin.position;
     return KDL::RigidBodyInertia(link.inertial->mass, KDL::Vector(p.x, p.y, p.z));
   }
 
-  /// Bodies on a link by fixed joints beside the chain, in the link's frame.
+  /// Returns the sum of the bodies on a link by fixed joints beside the chain, in the link's frame.
   KDL::RigidBodyInertia fixedNeighbours(const KDL::SegmentMap::const_iterator& element) {
     KDL::RigidBodyInertia sum = KDL::RigidBodyInertia::Zero();
     for (const KDL::SegmentMap::const_iterator& child : GetTreeElementChildren(element->second)) {
@@ -232,7 +232,7 @@ class ChainBuilder {
     return sum;
   }
 
-  /// Else the mass matrix is singular: mass beyond every joint, and at rest inertia about a revolute one's axis.
+  /// Checks the mass beyond the last joint. A regular mass matrix needs it, and at rest inertia about revolute axes.
   void checkMassBeyondJoints() {
     const int last = data_.link_beyond.back();
     double mass = 0.0;
@@ -266,7 +266,7 @@ std::optional<ChainRequest> chainOver(const RobotDescription& description, const
   for (const std::string& name : joints) {
     const urdf::JointConstSharedPtr joint = model->getJoint(name);
     if (!joint) return std::nullopt;
-    // The last joint is the one that has all of them before it.
+    // The last joint has all the others before it.
     std::size_t met = 0;
     std::string first;  // link before the first joint
     for (urdf::LinkConstSharedPtr link = model->getLink(joint->child_link_name); link->parent_joint;

@@ -23,11 +23,11 @@ HAMMER_LOADS_INLINE Wrench loadOf(const RigidBody& body, const Pose& X_BL, const
   return {force, (X_BL.translation() + body.com).cross(force) - moment};
 }
 
-/// root_acceleration: against gravity it stands for the weight.
+/// Finds the motions of all links. root_acceleration: minus gravity represents the weight.
 void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
                  const Eigen::Vector3d& root_acceleration, std::array<BodyMotion, kMaxLinks>& result) noexcept {
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  BodyMotion now{none, none, root_acceleration};  // of the link before, until it is that of the link itself
+  BodyMotion now{none, none, root_acceleration};  // of the previous link, then updated to the present link
   Eigen::Vector3d origin = none;
   result[0] = now;
   for (int i = 1; i < chain.links(); ++i) {
@@ -90,13 +90,13 @@ JointVector torqueOfMotion(const Chain& chain, const ChainPose& pose, const Plac
   return jointTorque(chain, pose, loads);
 }
 
-/// Second derivatives of the weight's potential: a joint turns everything beyond it, or slides it, against gravity.
+/// Returns second derivatives of the weight's potential. A joint turns or slides everything beyond it against gravity.
 JointMatrix weightStiffness(const Chain& chain, const JointVector& position, const Eigen::Vector3d& g_B) noexcept {
   ChainPose pose;
   forwardKinematics(chain, position, pose);
   JointMatrix K = JointMatrix::Zero(pose.joints, pose.joints);
   double mass = 0.0;
-  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  // mass times centre of mass, of all links so far from the tip
+  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  // first moment of the links from the tip to this one
   for (int i = chain.links() - 1; i > 0; --i) {
     const ChainLink& link = chain.link(i);
     mass += link.body.mass;
@@ -122,7 +122,7 @@ struct MassMatrix::Solver {
         position(chain.kdl().getNrOfJoints()),
         mass(chain.kdl().getNrOfJoints()) {}
 
-  Chain chain;  ///< keeps alive what KDL refers to
+  Chain chain;  ///< owns the data that KDL refers to
   KDL::ChainDynParam composite_bodies;
   KDL::JntArray position;
   KDL::JntSpaceInertiaMatrix mass;

@@ -20,10 +20,10 @@ struct BodyMotion {
 /// root has none, since its load goes into the ground.
 using PlacedBodies = std::array<RigidBody, kMaxLinks>;
 
-/// Index of links as in Chain. The root has no entry, since its load goes into the ground.
+/// Loads of the links, index as in Chain. The root has no entry, since its load goes into the ground.
 struct ChainLoads {
-  std::array<BodyMotion, kMaxLinks> motion;  ///< accelerations less gravity
-  std::array<Wrench, kMaxLinks> beyond;      ///< by inertia and weight of a link and all beyond it, in the root's frame
+  std::array<BodyMotion, kMaxLinks> motion;  ///< accelerations minus gravity
+  std::array<Wrench, kMaxLinks> beyond;      ///< load of inertia and weight of a link and all beyond it, root's frame
 };
 
 void placeBodies(const Chain& chain, const ChainPose& pose, PlacedBodies& placed) noexcept;
@@ -33,21 +33,21 @@ void placeBodies(const Chain& chain, const ChainPose& pose, PlacedBodies& placed
 void findChainLoads(const Chain& chain, const ChainPose& pose, const PlacedBodies& bodies, const JointMotion& motion,
                     const Eigen::Vector3d& g_B, ChainLoads& result) noexcept;
 
-/// Joint torques by inertia and weight; positive drives the joint forward [N m] ([N] for a prismatic one).
+/// Returns joint torques by inertia and weight [N m] ([N] for a prismatic joint); positive drives the joint forward.
 JointVector jointTorque(const Chain& chain, const ChainPose& pose, const ChainLoads& loads) noexcept;
 
-/// Torque on the joints from the links' inertia as the boom moves: -(M q'' + c(q, q')) [N m], without weight. Positive
-/// drives the joint forward, as in Boom::hammerTorque(). Recursive Newton-Euler; nothing is computed at rest.
+/// Returns the joint torques of the links' inertia, -(M q'' + c(q, q')) [N m], without weight. Positive drives the
+/// joint forward, as in Boom::hammerTorque(). Uses recursive Newton-Euler; at rest it computes nothing.
 JointVector torqueOfMotion(const Chain& chain, const ChainPose& pose, const PlacedBodies& bodies,
                            const JointMotion& motion) noexcept;
 
-/// Load of a body's inertia, in the root's frame.
+/// Returns the load of a body's inertia, in the root's frame.
 Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion) noexcept;
 
-/// The weight's part of a stiffness about a pose, minus the derivative of jointTorqueOfWeight(): symmetric [N m/rad].
+/// Returns the stiffness by weight about a pose, minus the derivative of jointTorqueOfWeight(); symmetric [N m/rad].
 JointMatrix weightStiffness(const Chain& chain, const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
 
-/// Mass matrix of a chain by KDL's composite rigid bodies, their arrays made once.
+/// Mass matrix of a chain by KDL's composite-rigid-body algorithm, with arrays that are allocated once.
 class MassMatrix {
  public:
   explicit MassMatrix(const Chain& chain);

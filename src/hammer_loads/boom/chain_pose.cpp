@@ -53,7 +53,7 @@ Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexce
 JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept {
   JointVector torque(pose.joints);
   double mass = 0.0;
-  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  // mass times centre of mass, of all links so far from the tip
+  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  // first moment of the links from the tip to this one
   for (int i = pose.links - 1; i > 0; --i) {
     const ChainLink& link = chain.link(i);
     mass += link.body.mass;

@@ -21,25 +21,25 @@ struct ChainPose {
   const Pose& link(int index) const noexcept { return X_BL[static_cast<std::size_t>(index)]; }
 };
 
-/// position: one entry per joint. No allocation, no failure for finite positions; error some 1e-15 of the lengths.
+/// Finds all poses. position: one entry per joint, finite. Does not allocate or fail; error some 1e-15 of the lengths.
 void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept;
 
-/// Velocity of the tip's origin and turning rate of the tip per joint rate, axes of the tip.
+/// Returns velocity of the tip's origin and angular velocity of the tip per joint rate, in the axes of the tip.
 Jacobian tipJacobian(const ChainPose& pose) noexcept;
 
-/// The wrench shifted to the origin of a link of the chain, axes of that link.
+/// Returns the wrench shifted to the origin of a link of the chain, in the axes of that link.
 Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexcept;
 
-/// Joint torques by the links' weight, with g_B the gravity in the root's axes [m/s2].
+/// Returns the joint torques of the links' weight. g_B: gravity in the root's axes [m/s2].
 JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept;
 
-/// Mass, and its centre in the root's frame.
+/// Mass and its centre in the root's frame.
 struct PointMass {
   double mass{};                                ///< [kg]
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< [m]
 };
 
-/// All links from `first` to the tip as one body in the root's frame.
+/// Returns all links from `first` to the tip as one point mass in the root's frame.
 PointMass massFrom(const Chain& chain, const ChainPose& pose, int first) noexcept;
 
 }  // namespace hammer_loads

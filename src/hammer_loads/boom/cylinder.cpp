@@ -58,8 +58,8 @@ void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems)
         format("%s_closed_length_m: %.9g m, must be > %s_stroke_m = %.9g m", name, p.closed_length, name, p.stroke));
 }
 
-constexpr double kInPlane = 1e-6;  // [-], [m]: pins and joint count as in one plane
-constexpr int kRangeSteps = 1000;  // over the joint's range
+constexpr double kInPlane = 1e-6;  // tolerance of pins and joint being in one plane [-], [m]
+constexpr int kRangeSteps = 1000;  // steps over the joint's range
 // Numerical: kInPlane, kRangeSteps
 
 Eigen::Vector2d inPlane(const Eigen::Vector3d& v) { return {v.x(), v.z()}; }
@@ -102,7 +102,7 @@ Checked<Cylinder> Cylinder::make(const CylinderParameters& p, double bulk_modulu
   return result;
 }
 
-/// L^2 = |R(q) b - a|^2 with a, b from a point of the joint's axis to the anchors, P: frame before, L: frame beyond.
+/// Finds L^2 = |R(q) b - a|^2 with a, b from a point of the axis to the anchors. P: frame before; L: frame beyond.
 void Cylinder::findTriangle(const Chain& chain) {
   const ChainLink& link = chain.link(chain.linkBeyond(joint_));
   const Eigen::Vector3d a_P = Eigen::Vector3d(parameters_.base_x, 0.0, parameters_.base_z) - link.origin;
@@ -114,7 +114,7 @@ void Cylinder::findTriangle(const Chain& chain) {
   shorter_side_ = std::min(link.axis.cross(a_P).norm(), link.axis.cross(b_P).norm());
 }
 
-/// The branch that the file gives; else the one whose length fits the stroke.
+/// Finds the linkage of the branch in the file, or else of the branch whose length fits the stroke.
 void Cylinder::findLinkage(const Chain& chain, std::vector<std::string>& problems) {
   const ChainLink& link = chain.link(chain.linkBeyond(joint_));
   const char* name = parameters_.name.c_str();
@@ -180,11 +180,11 @@ Cylinder::Reach Cylinder::worstReach(const Chain& chain) const {
     if (miss > worst.miss) worst = {miss, angle, length};
   };
   judge(lower), judge(upper);
-  if (linkage_) {  // the extremes between two steps are off by 1e-6 of a length
+  if (linkage_) {  // extremes between two steps are wrong by 1e-6 of a length
     for (int i = 1; i < kRangeSteps; ++i) judge(lower + (upper - lower) * i / kRangeSteps);
     return worst;
   }
-  // Longest and shortest where the anchors are in line with the joint, if within the limits.
+  // The length is extreme where the anchors are in line with the joint. Only angles within the limits count.
   const double longest = std::atan2(sine_, cosine_);
   for (double angle : {longest - kPi, longest, longest + kPi})
     if (angle > lower && angle < upper) judge(angle);
@@ -254,7 +254,7 @@ ChamberPressures chamberPressures(const Cylinder& cylinder, const CylinderPositi
   const double steady = -steady_torque / position.arm, change = -(total_torque - steady_torque) / position.arm;
   const OilVolumes volume = cylinder.volumes(position.length);
   const double bore = cylinder.boreArea(), rod = cylinder.rodArea();
-  // Pressure per force of both, by the same stroke: dp = B A dL/V.
+  // Both chambers have the same displacement dL, so that dp = B A dL/V.
   const double bore_share = bore / volume.bore, rod_share = rod / volume.rod;
   const double stroke = change / (bore * bore_share + rod * rod_share);
   return {std::max(steady, 0.0) / bore + bore_share * stroke, std::max(-steady, 0.0) / rod - rod_share * stroke};

@@ -1,5 +1,5 @@
-/// A hydraulic cylinder that holds a joint, directly or through a bucket linkage: geometry, chambers,
-/// stiffness, faults.
+/// Hydraulic cylinder that holds a joint directly or through a bucket linkage: geometry, chambers, stiffness and
+/// faults.
 #pragma once
 
 #include <cstdint>
@@ -12,32 +12,32 @@
 
 namespace hammer_loads {
 
-/// Lengths in the boom file's terms; keys are `NAME_` and the names beside each member.
+/// Lengths as in the boom file; each key is `NAME_` and the name beside the member.
 struct CylinderParameters {
   std::string name;
   std::string joint;          ///< joint: the moving revolute joint that it spans
   double base_x{}, base_z{};  ///< base_x_m, base_z_m: anchor on the link before the joint, in its frame [m]
-  double rod_x{}, rod_z{};    ///< rod_x_m, rod_z_m: anchor on the link beyond, in its frame; the coupler's pin there,
-                              ///< where there is a linkage [m]
-  std::optional<BucketLinkageParameters> linkage{};  ///< linkage: bucket; nothing: the rod ends on the link beyond
+  double rod_x{}, rod_z{};    ///< rod_x_m, rod_z_m: anchor on the link beyond, in its frame [m]; with a linkage the
+                              ///< coupler's pin on that link
+  std::optional<BucketLinkageParameters> linkage{};  ///< linkage: bucket; empty: the rod ends on the link beyond
   double bore{};                                     ///< bore_m: diameter of the piston [m], > 0
   double rod_diameter{};                             ///< rod_diameter_m [m], > 0, < bore
-  double closed_length{};     ///< closed_length_m: between the cylinder's pins, rod in [m], > stroke
+  double closed_length{};     ///< closed_length_m: between the cylinder's pins, rod retracted [m], > stroke
   double stroke{};            ///< stroke_m [m], > 0
-  double bore_hose_volume{};  ///< bore_hose_volume_m3: oil trapped beside the piston's sweep, hose included, > 0
-  double rod_hose_volume{};   ///< rod_hose_volume_m3, > 0
-  double relief_pressure{};   ///< relief_pressure_Pa: highest pressure that the chambers hold, > 0
-  /// Friction of the seals, against the rod's motion: friction_force_N, and friction times the oil's force [N], [-]; >=
-  /// 0.
+  double bore_hose_volume{};  ///< bore_hose_volume_m3: oil outside the piston's sweep, with the hose [m3], > 0
+  double rod_hose_volume{};   ///< rod_hose_volume_m3 [m3], > 0
+  double relief_pressure{};   ///< relief_pressure_Pa: highest pressure that the chambers hold [Pa], > 0
+  /// Friction of the seals against the rod's motion: a constant part friction_force_N [N], and friction [-] times the
+  /// oil's force; both >= 0.
   double friction_force{}, friction{};
-  /// Standard [N], [-]; not a number: kFrictionForceDeviation of the greatest push.
+  /// Standard deviations [N], [-]. NaN stands for kFrictionForceDeviation times the greatest push.
   double friction_force_std{std::numeric_limits<double>::quiet_NaN()}, friction_std{kFrictionDeviation};
-  double stiffness_std{kStiffnessDeviation};  ///< standard, of its oil against the common one [-]
-  double joint_zero{}, joint_zero_std{};      ///< joint_zero_rad: reading of its joint at the description's zero
-  /// pressure_offset_Pa: of the bore's sensor, as that of both chambers acts on the force [Pa].
+  double stiffness_std{kStiffnessDeviation};  ///< standard deviation of its oil against the common one, relative [-]
+  double joint_zero{}, joint_zero_std{};      ///< joint_zero_rad: sensor reading at the description's zero
+  /// pressure_offset_Pa: offset of the bore's sensor with the effect of both chambers' offsets on the force [Pa].
   double pressure_offset{}, pressure_offset_std{};
 
-  /// Defaults where the boom file gives none, as parts of the greatest push and of the force. A loader crane's
+  /// Defaults without keys in the boom file, as fractions of the greatest push and of the force. A loader crane's
   /// cylinders had a constant friction of 1 to 1.6 % of the push, and 3 to 6 % of a large force
   /// (doc/boom_calibration.md).
   static constexpr double kFrictionForceDeviation = 0.015, kFrictionDeviation = 0.03;
@@ -51,8 +51,8 @@ struct CylinderPosition {
   double arm{};            ///< dL/dq [m]; positive: extending drives the joint forward
   double arm_rate{};       ///< d2L/dq2 [m]
   bool zero_moment_arm{};  ///< the arm is so short that no finite force holds the joint
-  /// Places in a linkage: x, z of the rod's pin and of the coupler's on the link beyond, from the joint's origin, axes
-  /// of the link before [m].
+  /// Positions (x, z) in a linkage, from the joint's origin in the axes of the link before [m]: the rod's pin, and the
+  /// coupler's pin on the link beyond.
   Eigen::Vector2d rod_pin{0.0, 0.0}, driven_pin{0.0, 0.0};
 };
 
@@ -73,13 +73,14 @@ struct OilVolumes {
 class Cylinder {
  public:
   /// Arms below this share of the shortest fixed side (joint to either anchor; of a linkage: joint to the coupler's
-  /// pin, or the guide link) are a zero moment arm: the force would be 50 times the torque over that side.
+  /// pin, or the guide link) count as a zero moment arm, since the force would exceed 50 times the torque over that
+  /// side.
   static constexpr double kZeroMomentArmRatio = 0.02;
   // Limit: kZeroMomentArmRatio
 
-  /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, a linkage that
-  /// does not close, and a geometry that needs the cylinder shorter than closed or longer than open within the joint's
-  /// limits. bulk_modulus: of oil with hose and air [Pa].
+  /// Makes a cylinder or reports its problems, one line each, beginning with the key: signs, rod against bore, joint
+  /// not in the chain, a linkage that does not close, and a geometry that needs the cylinder shorter than closed or
+  /// longer than open within the joint's limits. bulk_modulus: of oil with hose and air [Pa].
   static Checked<Cylinder> make(const CylinderParameters& parameters, double bulk_modulus, const Chain& chain);
 
   const CylinderParameters& parameters() const noexcept { return parameters_; }
@@ -87,14 +88,14 @@ class Cylinder {
   int joint() const noexcept { return joint_; }  ///< index in the chain
 
   CylinderPosition at(double joint_angle) const noexcept;
-  CylinderPosition at(double cosine, double sine) const noexcept;  ///< by those of the joint's angle
-  /// Force that balances a torque of the load on the joint [N m], by virtual work: force dL/dq = -torque.
+  CylinderPosition at(double cosine, double sine) const noexcept;  ///< of the joint angle's cosine and sine
+  /// Returns the force that balances a load's torque on the joint [N m], by virtual work: force dL/dq = -torque.
   CylinderForce load(const CylinderPosition& position, double joint_torque) const noexcept;
-  /// dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.
+  /// Returns dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.
   double stiffness(double length) const noexcept;
   OilVolumes volumes(double length) const noexcept;  ///< beyond the stroke as at its end
-  /// Stiffness about the joint [N m/rad]: stiffness times arm^2; zero at a zero moment arm, where nothing is divided.
-  /// Neglects the pre-load's share, force times d2L/dq2.
+  /// Returns the stiffness about the joint, stiffness times arm^2 [N m/rad]. It vanishes with the arm and involves no
+  /// division. Neglects the pre-load's share, force times d2L/dq2.
   double jointStiffness(const CylinderPosition& position) const noexcept;
 
   double boreArea() const noexcept { return bore_area_; }                                    ///< pushes [m2]
@@ -120,15 +121,14 @@ class Cylinder {
   double bulk_modulus_{};
   double bore_area_{}, rod_area_{};
   std::optional<BucketLinkage> linkage_;
-  double shorter_side_{};  ///< shorter one of the two from the joint's axis to the anchors; or of the linkage [m]
+  double shorter_side_{};                ///< shortest fixed side, see kZeroMomentArmRatio [m]
   double steady_{}, cosine_{}, sine_{};  ///< L^2 = steady + cosine cos q + sine sin q [m2]
 };
 
 enum CylinderFlag : std::uint16_t {
-  kChamberEmpty =
-      1,  ///< a chamber's pressure would be negative: its oil cavitates, and the cylinder is softer than computed
-  kForceReversed = 2,  ///< the force opposes the steady one: the pins cross their clearance
-  kReliefReached = 4,  ///< a chamber carries its relief pressure: the valve opens, the joint yields
+  kChamberEmpty = 1,   ///< absolute pressure would be negative: the oil cavitates, the cylinder is softer than computed
+  kForceReversed = 2,  ///< the force opposes the steady one, so that the pins cross their clearance
+  kReliefReached = 4,  ///< a chamber reaches relief pressure, so that the valve opens and the joint yields
   kZeroMomentArm = 8,  ///< the cylinder does not hold the joint
 };
 
@@ -137,18 +137,18 @@ struct ChamberPressures {
   double bore{}, rod{};
 };
 
-/// The steady load is carried by one chamber, the other is without pressure; what changes quickly is shared by both as
-/// the oil's stiffness is. Negative: the chamber runs empty. Torques of the load on the joint [N m]: steady, as of
-/// weight and slow motion, and total. Not at a zero moment arm.
+/// Returns both pressures; negative: the chamber runs empty. One chamber carries the steady load, the other has no
+/// pressure. Both share quick changes in proportion to their oil's stiffness. Torques of the load on the joint [N m]:
+/// steady (weight and slow motion) and total. Not valid at a zero moment arm.
 ChamberPressures chamberPressures(const Cylinder& cylinder, const CylinderPosition& position, double steady_torque,
                                   double total_torque) noexcept;
 
-/// Force of measured pressures in both chambers [N]; positive pushes the anchors apart.
+/// Returns the force of measured pressures in both chambers [N]; positive pushes the anchors apart.
 inline double forceOf(const Cylinder& cylinder, const ChamberPressures& p) noexcept {
   return p.bore * cylinder.boreArea() - p.rod * cylinder.rodArea();
 }
 
-/// Sum of CylinderFlag. Empty: below absolute zero, 1 bar below gauge zero.
+/// Returns a sum of CylinderFlag. A chamber is empty below absolute zero, 1 bar below gauge zero.
 std::uint16_t cylinderFlags(const Cylinder& cylinder, const CylinderPosition& position, double steady_torque,
                             double total_torque) noexcept;
 

@@ -5,7 +5,7 @@
 namespace hammer_loads {
 namespace {
 
-/// Turn about +y that takes x to that direction [rad].
+/// Returns the rotation about +y that takes x to this direction [rad].
 double directionOf(const Eigen::Vector2d& v) noexcept { return std::atan2(-v.y(), v.x()); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Positions of the joints by which a robot description draws a cylinder and its linkage.
+/// Joint positions with which a robot description displays a cylinder and its linkage.
 #pragma once
 
 #include <array>
@@ -10,20 +10,19 @@
 
 namespace hammer_loads {
 
-/// Geometry of one cylinder whose joint turns about y. The barrel turns about its pin on the link before, the rod
-/// slides in it, the guide link turns about its pivot on the link before, the coupler about its pin on the link beyond.
-/// Angles are positive about +y; at zero each body lies along x of the link that carries it, and the cylinder is
-/// closed.
+/// Geometry of one cylinder whose joint turns about y. The barrel turns about its pin on the link before, and the rod
+/// slides in it. The guide link turns about its pivot on the link before, the coupler about its pin on the link beyond.
+/// Angles are positive about +y. At zero each body lies along x of its carrying link, and the cylinder is closed.
 class CylinderDrawing {
  public:
   static constexpr std::size_t kMost = 4;
 
   CylinderDrawing(const Chain& chain, const Cylinder& cylinder);
 
-  /// NAME_barrel_joint, NAME_rod_joint; with a linkage NAME_guide_joint and NAME_coupler_joint as well. Empty where the
-  /// joint does not turn about y.
+  /// Returns NAME_barrel_joint and NAME_rod_joint, and with a linkage NAME_guide_joint and NAME_coupler_joint. Empty
+  /// where the joint does not turn about y.
   const std::vector<std::string>& names() const noexcept { return names_; }
-  /// In the order of the names [rad], [m]; joint_angle: of the cylinder's joint [rad].
+  /// Returns the positions in the order of the names [rad], [m]. joint_angle: of the cylinder's joint [rad].
   std::array<double, kMost> positions(double joint_angle) const noexcept;
 
  private:

@@ -1,4 +1,4 @@
-/// Ranges of the numbers of a boom: beyond them no figure lies, and no product of figures overflows.
+/// Ranges of a boom's parameters. No machine exceeds them, and no product of values within them overflows.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@ namespace hammer_loads {
 namespace figure {
 
 constexpr double kLeastLength = 1e-6, kMostLength = 1e3;  ///< [m]
-constexpr double kMostMass = 1e9;                         ///< [kg]; of a weighed link's inertia [kg m2] as well
+constexpr double kMostMass = 1e9;                         ///< [kg]; also of an identified link's inertia [kg m2]
 // Limit: kLeastLength, kMostLength, kMostMass
 
 }  // namespace figure
 
-/// Adds a line for a number that is not within its range.
+/// Adds a line to problems if the value is not within its range.
 inline void checkRange(const std::string& key, double value, const std::string& unit, double least, double most,
                        std::vector<std::string>& problems) {
   if (value >= least && value <= most) return;

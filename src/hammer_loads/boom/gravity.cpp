@@ -37,7 +37,7 @@ PitchOfChain pitchOf(const Chain& chain, const std::vector<std::string>& asked) 
   if (has_all)
     for (const std::string& name : asked) add(name, sideOf(*chain.jointIndex(name)));
   for (int j = 0; !has_all && j < chain.joints(); ++j)
-    if (2.0 * square(sideOf(j)) > 1.0)  // nearer to y than across
+    if (2.0 * square(sideOf(j)) > 1.0)  // axis nearer to y than across it
       add(chain.jointNames()[static_cast<std::size_t>(j)], sideOf(j));
   result.offset = std::atan2(-R_BT(2, 0), R_BT(2, 2));
   return result;

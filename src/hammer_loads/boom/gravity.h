@@ -1,4 +1,4 @@
-/// Gravity as the base and the hull see it, with every tilt that the description or the ground has.
+/// Gravity in the axes of base and hull, including every tilt of the description and of the ground.
 #pragma once
 
 #include <string>
@@ -16,24 +16,24 @@ struct BaseTilt {
   double pitch{};  ///< base_pitch_rad: positive lowers the boom's side [rad]
 };
 
-/// Gravity in the root's axes [m/s2]: (0, 0, -g) for a level base.
+/// Returns gravity in the root's axes [m/s2], (0, 0, -g) for a level base.
 Eigen::Vector3d gravityInRoot(double gravity, const BaseTilt& base) noexcept;
 
-/// Gravity in the tip's axes [m/s2], tilts fixed in the description included; (g sin pitch, 0, -g cos pitch) for a
-/// level base and joints about +y that add up to the pitch. The y component acts across the mechanism's plane, where no
-/// link moves. No allocation.
+/// Returns gravity in the tip's axes [m/s2], including tilts fixed in the description. It is (g sin pitch, 0, -g cos
+/// pitch) for a level base and joints about +y that add up to the pitch. The y component acts across the mechanism's
+/// plane, where no link moves. No allocation.
 Eigen::Vector3d gravityInTip(const Chain& chain, const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
 
-/// Pitch of the tip by the chain's joints, as the sum that HullPitch uses: exact where their axes are along y of the
-/// tip.
+/// Pitch of the tip as a signed sum of joint positions, for HullPitch. It is exact where the joint axes are along the
+/// tip's y.
 struct PitchOfChain {
   std::vector<std::string> joints;
   std::vector<int> signs;  ///< 1 about +y of the tip, -1 about -y
   double offset{};         ///< pitch of the tip with every joint at zero [rad]
 };
 
-/// Pitch of the requested joints if the chain has them all, else of those of its joints that turn about y rather than
-/// across.
+/// Returns the pitch by the requested joints if the chain has them all. Otherwise it uses all joints that turn about y
+/// rather than across it.
 PitchOfChain pitchOf(const Chain& chain, const std::vector<std::string>& asked);
 
 }  // namespace hammer_loads

@@ -10,13 +10,13 @@
 namespace hammer_loads {
 namespace {
 
-/// Factor by which `load` may be added to `now` before the sum reaches `limit`, all in the direction of failure.
+/// Returns the multiple of `load` that, added to `now`, reaches `limit`. All are positive in the direction of failure.
 double factor(double now, double load, double limit) noexcept {
   if (!(now <= limit) || std::isnan(load)) return 0.0;
   return load > 0.0 ? (limit - now) / load : kInfinity;
 }
 
-/// Moment about an edge of the supports; positive lifts what stands inside. The inside is to the left of the edge.
+/// Returns the moment about an edge of the supports; positive lifts the machine inside, to the left of the edge.
 double tippingMoment(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& point,
                      const Eigen::Vector3d& force, const Eigen::Vector3d& moment) noexcept {
   return (to - from).normalized().dot(moment + (point - from).cross(force));
@@ -30,7 +30,7 @@ double cylinderFactor(const Cylinder& cylinder, double angle, double weight, dou
                   factor(-force_weight, -force_load, cylinder.greatestPull()));
 }
 
-/// Times until each edge of the supports is let go.
+/// Finds the least factor of the load at which the machine tips over an edge of its supports.
 void tipOver(const Supports& s, const PointMass& machine, const Eigen::Vector3d& g_B, const Eigen::Vector3d& p_BH_B,
              const Eigen::Vector3d& f_B, const Eigen::Vector3d& t_B, HoldDown& result) noexcept {
   const std::array<Eigen::Vector3d, 4> corner{
@@ -65,7 +65,7 @@ HoldDown Boom::holdDown(const Wrench& w_mean) const noexcept {
 }
 
 InPlaneTip::InPlaneTip(const Jacobian& J, const std::array<int, 3>& joints) noexcept : joints_(joints) {
-  // The torque on each joint by (force x, force z, moment y).
+  // Torque on a joint per unit of (force x, force z, moment y).
   const auto row = [&](std::size_t i) {
     const int joint = joints[i];
     return Eigen::Vector3d(J(0, joint), J(2, joint), J(4, joint));

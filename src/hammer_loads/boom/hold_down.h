@@ -15,8 +15,8 @@ struct Supports {
   double rear_half_width{};   ///< [m], > 0
 };
 
-/// Factors by which a mean load may act before a support or a cylinder yields. Infinity: the load relieves it, or the
-/// machine's supports are not known; 0: it yields already.
+/// Factors by which a mean load may be multiplied before a support or a cylinder yields. Infinity: the load relieves
+/// it, or the machine's supports are not known. 0: it yields already.
 struct HoldDown {
   double machine{};  ///< factor at which the machine tips over an edge of its supports or lifts
   int edge{};        ///< edge of machine: 0 front, 1 left, 2 rear, 3 right
@@ -25,17 +25,17 @@ struct HoldDown {
   double least{};  ///< smallest of all factors
 };
 
-/// Loads on the tip, forces along its x and z and moment about its y, by the torques that they make on three joints of
-/// the chain: what a cylinder's measured force holds (-force times arm) less hammer, weight, motion and vibration.
-/// About the tip's origin, axes of the tip; force across the plane zero. Errors grow as 1/sine of the angle between
-/// boom and arm.
+/// Load on the tip (force x and z, moment y) from the torques that it causes on three joints of the chain. Such a
+/// torque is -force times arm of a measured cylinder force, less hammer, weight, motion and vibration. The load is
+/// about the tip's origin in the axes of the tip, with zero force across the plane. Errors grow as 1/sine of the angle
+/// between boom and arm.
 class InPlaneTip {
  public:
   /// J of tipJacobian().
   InPlaneTip(const Jacobian& J, const std::array<int, 3>& joints) noexcept;
-  /// Not where the three joints do not move the tip in its plane independently (boom and arm in line).
+  /// Returns false where the three joints do not move the tip independently in its plane (boom and arm in line).
   bool isKnown() const noexcept { return known_; }
-  /// Load in the plane by torques on all joints of the chain [N m], linear in them: force x, z [N], moment y [N m].
+  /// Returns the load in the plane, linear in the torques on all joints [N m]: force x, z [N], moment y [N m].
   template <typename Torques>
   Eigen::Vector3d inPlane(const Torques& torque) const noexcept {
     return inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
@@ -49,7 +49,7 @@ class InPlaneTip {
  private:
   std::array<int, 3> joints_;
   bool known_;
-  Eigen::Matrix3d inverse_;  ///< (force x, force z, moment y) by torques on the joints
+  Eigen::Matrix3d inverse_;  ///< (force x, force z, moment y) per torque on the joints
 };
 
 }  // namespace hammer_loads

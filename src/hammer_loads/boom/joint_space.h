@@ -1,4 +1,4 @@
-/// Quantities per joint of a chain, without heap: sizes vary up to a fixed most.
+/// Quantities per joint of a chain, without heap allocation. Sizes vary up to a fixed maximum.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@ namespace hammer_loads {
 constexpr int kMaxJoints = 8;  ///< moving joints of a chain
 constexpr int kMaxLinks = 16;  ///< links of a chain, its root included
 
-/// One entry per moving joint, from the root to the tip. A copy of the usual sizes takes a few instructions; Eigen's
-/// own calls memmove, some forty times a sample.
+/// One entry per moving joint, from the root to the tip. A copy of the usual sizes takes a few instructions, while
+/// Eigen would call memmove some forty times a sample.
 class JointVector : public Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1> {
  public:
   using Base = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
