@@ -53,7 +53,7 @@ void expectEffect(int constant, double by, Filtered& with, Filtered& without, do
     const CrankAngle& at = a.position.angle;  // just after a blow the sample decides what each takes for its factor
     if (i < 250 || at.side == Side::kAfterBlow || at.offset > -0.1) continue;
     const Eigen::Vector3d change(difference(a.position, b.position), a.speed - b.speed, a.torque - b.torque);
-    const Eigen::Vector3d said = by * without.filter.belief().by_constant.col(constant).head<3>();
+    const Eigen::Vector3d said = by * without.filter.belief().by_constant.col(constant).head<3>().cast<double>();
     largest = largest.cwiseMax(said.cwiseAbs());
     off = off.cwiseMax((change - said).cwiseAbs());
   }

@@ -66,7 +66,7 @@ TEST(GaussianBelief, EqualsTheTextbookFilterWithGatheredConstants) {
       const Eigen::Vector3d p = of_constants * score;
       EXPECT_TRUE((mean - belief.by_constant * p).isApprox(textbook.mean.head<kN>(), 1e-10));
       EXPECT_TRUE(p.isApprox(textbook.mean.tail<kC>(), 1e-10));
-      EXPECT_TRUE(belief.grown(1.0, of_constants).isApprox(textbook.covariance.topLeftCorner<kN, kN>(), 1e-10));
+      EXPECT_TRUE(machine.grown(belief, of_constants).isApprox(textbook.covariance.topLeftCorner<kN, kN>(), 1e-10));
     }
   }
 }
@@ -92,7 +92,7 @@ TEST(GaussianBelief, EqualsTheLastStateOfBatchLeastSquares) {
   EXPECT_TRUE(p.isApprox(batch.p(), 1e-8)) << p << '\n' << batch.p();
   EXPECT_TRUE(of_constants.isApprox(batch.ofConstants(), 1e-8));
   EXPECT_TRUE((mean - belief.by_constant * p).isApprox(batch.x(25), 1e-8));
-  EXPECT_TRUE(belief.grown(1.0, of_constants).isApprox(batch.of(25), 1e-8));
+  EXPECT_TRUE(machine.grown(belief, of_constants).isApprox(batch.of(25), 1e-8));
 }
 
 /// Squared errors over their covariance (NEES) have the mean kN for machines whose constants are drawn from the prior.
@@ -108,7 +108,7 @@ TEST(GaussianBelief, ErrorsOfDrawnMachinesHaveTheStatedSize) {
     Machine::Vector mean = Machine::Vector::Zero();
     for (const double z : run.z) machine.predict(belief, mean), machine.correct(belief, mean, z);
     const Machine::Vector error = run.x.back() - mean;
-    considered += error.dot(belief.grown(1.0, of_constants).llt().solve(error)) / kRuns;
+    considered += error.dot(machine.grown(belief, of_constants).llt().solve(error)) / kRuns;
     left_out += error.dot(belief.covariance.llt().solve(error)) / kRuns;
   }
   EXPECT_NEAR(considered, kN, 4.0 * std::sqrt(2.0 * kN / kRuns));  // 4 standard deviations of a mean of chi squares
@@ -155,7 +155,7 @@ TEST(GaussianBelief, WeighsAMeasurementByConstantsThatAreConsidered) {
     const Dense left = Dense::Identity() - of_all * seen;
     both = (left * both * left.transpose() + machine.noise * of_all * of_all.transpose()).eval();
     EXPECT_TRUE(gain.isApprox(of_all.head<kN>(), 1e-10)) << k;
-    EXPECT_TRUE(belief.grown(1.0, of_constants.asDiagonal()).isApprox(both.topLeftCorner<kN, kN>(), 1e-10)) << k;
+    EXPECT_TRUE(machine.grown(belief, of_constants.asDiagonal()).isApprox(both.topLeftCorner<kN, kN>(), 1e-10)) << k;
   }
   Belief plain = machine.begin(), weighed = plain;  // zero variances: as without constants
   EXPECT_TRUE(

@@ -12,9 +12,10 @@ namespace hammer_loads::test {
 /// x' = F x + B p + w, z = H x + D p + v.
 template <int N, int C>
 struct LinearMachine {
-  using Belief = GaussianBelief<N, C>;
+  using Belief = GaussianBelief<N, C, double>;
   using Vector = typename Belief::Vector;
   using Constants = Eigen::Matrix<double, C, 1>;
+  using ConstantMatrix = Eigen::Matrix<double, C, C>;
 
   typename Belief::Matrix F, step_noise, first;  ///< covariances of w and of the first x
   typename Belief::Effect B;
@@ -56,6 +57,10 @@ struct LinearMachine {
     mean += belief.correct(H, noise, D) * innovation;
     return innovation;
   }
+  /// Returns the covariance of the variables for a given one of the constants.
+  static typename Belief::Matrix grown(const Belief& belief, const ConstantMatrix& of_constants) {
+    return belief.covariance + belief.by_constant * of_constants * belief.by_constant.transpose();
+  }
   double innovationVariance(const Belief& belief) const { return H * belief.covariance * H.transpose() + noise; }
 
   struct Run {
@@ -86,7 +91,7 @@ struct LinearMachine {
     Vector x(int k) const { return mean.segment<N>(N * k); }
     typename Belief::Matrix of(int k) const { return covariance.block<N, N>(N * k, N * k); }
     Constants p() const { return mean.tail<C>(); }
-    typename Belief::ConstantMatrix ofConstants() const { return covariance.bottomRightCorner<C, C>(); }
+    ConstantMatrix ofConstants() const { return covariance.bottomRightCorner<C, C>(); }
   };
   /// Estimates all x and p from all z by the normal equations. deviations: prior standard deviations of p.
   Batch batch(const std::vector<double>& z, const Constants& deviations) const {

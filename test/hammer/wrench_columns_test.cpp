@@ -9,6 +9,8 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kRounding = 1e-6;  // of single precision
+
 /// Returns a hammer whose constants are all uncertain, including those that are 0 or usually exact.
 HammerParameters uncertain(double drive_reaction_ratio) {
   HammerParameters p = test::mo100LinkageParameters();
@@ -81,9 +83,9 @@ TEST(WrenchColumns, EqualTheLoadsOfTheHammersBesideIt) {
         for (std::size_t i = 0; i < names.size(); ++i) {
           if (names[i].rfind("striking", 0) == 0) continue;
           const Eigen::Vector3d truth = columnOf(mechanism, level, names[i], load);
-          const Eigen::Vector3d size = found.cwiseAbs().rowwise().maxCoeff();
+          const Eigen::Vector3d size = found.cast<double>().cwiseAbs().rowwise().maxCoeff();
           for (int row = 0; row < 3; ++row)
-            EXPECT_NEAR(found(row, static_cast<Eigen::Index>(i)), truth[row], 1e-9 * size[row])
+            EXPECT_NEAR(found(row, static_cast<Eigen::Index>(i)), truth[row], kRounding * size[row])
                 << names[i] << ", row " << row << ", level " << static_cast<int>(level) << ", ratio " << ratio;
           ++seen;
         }
@@ -109,9 +111,9 @@ TEST(WrenchColumns, EqualTheLoadsOnTheShaftOfTheHammersBesideIt) {
         const std::string& name = columns.columns()[i].name;
         if (columns.columns()[i].enters == HammerConstant::Enters::kBlow) continue;
         const Eigen::Vector3d truth = columnOf(mechanism, level, name, load);
-        const Eigen::Vector3d size = found.cwiseAbs().rowwise().maxCoeff();
+        const Eigen::Vector3d size = found.cast<double>().cwiseAbs().rowwise().maxCoeff();
         for (int row = 0; row < 3; ++row)
-          EXPECT_NEAR(found(row, static_cast<Eigen::Index>(i)), truth[row], 1e-9 * size[row])
+          EXPECT_NEAR(found(row, static_cast<Eigen::Index>(i)), truth[row], kRounding * size[row])
               << name << ", row " << row << ", level " << static_cast<int>(level);
       }
     }
@@ -138,7 +140,7 @@ TEST(WrenchColumns, AreWithinAHundredthOfTheLargestFromATable) {
       const HullMotion turns{hull.gravity, 0.5, 3.0};  // not covered by the table
       EXPECT_EQ(table.wrench(0.7, at, crank, turns), exact.wrench(0.7, at, crank, turns));
     }
-    EXPECT_TRUE((worst.array() <= 0.01 * largest.array()).all()) << worst << "\n\n" << largest;
+    EXPECT_TRUE((worst.array() <= 0.01F * largest.array()).all()) << worst << "\n\n" << largest;
     EXPECT_GT(worst.sum(), 0.0);  // not exact between its points
   }
 }

@@ -56,8 +56,10 @@ void ConstantErrors::addConsidered() noexcept {
 }
 
 void ConstantErrors::learn(double innovation, double variance, const Row& by_error) noexcept {
-  const double weight = fit_.learn(innovation, variance, by_error.head<kTable>());
-  beside_ += (weight * by_error.head<kPlace>().transpose()).lazyProduct(by_error.middleCols<kMachineColumns>(kTable));
+  const Eigen::Matrix<double, 1, kTable> by_table = by_error.head<kTable>().cast<double>();
+  const double weight = fit_.learn(innovation, variance, by_table);
+  beside_ += (weight * by_table.head<kPlace>().transpose())
+                 .lazyProduct(by_error.middleCols<kMachineColumns>(kTable).cast<double>());
 }
 
 void ConstantErrors::endTurn(double growth, double count) noexcept {

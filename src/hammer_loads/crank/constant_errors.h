@@ -167,8 +167,8 @@ constexpr int indexOfUnknown(const char* name) {
 /// supply's error is therefore estimated as if the sensor's mounting were right, since the two can hardly be separated.
 class ConstantErrors {
  public:
-  /// kSize: rounded up to an even number, since pairs of columns are computed at once; the last one may be zero.
-  static constexpr int kTable = kUnknowns.size(), kSize = (kTable + kMachineColumns + 1) / 2 * 2, kPlace = countSeen();
+  /// kSize: rounded up, since four columns are computed at once; the last ones may be zero.
+  static constexpr int kTable = kUnknowns.size(), kSize = (kTable + kMachineColumns + 3) / 4 * 4, kPlace = countSeen();
   static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
                        kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
                        kSpeedScale = indexOfUnknown("speed scale");
@@ -177,7 +177,7 @@ class ConstantErrors {
   /// Standard deviation of estimate() by an elastic connecting rod, which imitates an error of the zero [rad].
   static constexpr double kRodHides = 0.01;
   // Prior: kUnknownZero, kRodHides
-  using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
+  using Row = ByConstants<1, kSize>;                ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< errors of the table alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
 
@@ -248,9 +248,9 @@ class ConstantErrors {
   template <int numbers>
   static void toColumns(const Matrix& root, ByConstants<numbers, kSize>& by) noexcept {
     const ByConstants<numbers, kPlace> of_place =
-        by.template leftCols<kPlace>().lazyProduct(root.topLeftCorner<kPlace, kPlace>());
+        by.template leftCols<kPlace>().lazyProduct(root.topLeftCorner<kPlace, kPlace>().template cast<float>());
     by.template leftCols<kPlace>() = of_place;
-    for (int i = kPlace; i < kTable; ++i) by.col(i) *= root(i, i);
+    for (int i = kPlace; i < kTable; ++i) by.col(i) *= static_cast<float>(root(i, i));
   }
 
  private:
@@ -261,7 +261,7 @@ class ConstantErrors {
   template <typename Function, std::size_t... i>
   static Row row(const Function& of, std::integer_sequence<std::size_t, i...>) noexcept {
     Row all = Row::Zero();
-    ((all[i] = of(kUnknowns[i])), ...);
+    ((all[i] = static_cast<float>(of(kUnknowns[i]))), ...);
     return all;
   }
   void addConsidered() noexcept;
@@ -269,8 +269,8 @@ class ConstantErrors {
   Vector prior_;
   double zero_given_{};  ///< [rad]
   ConstantFit<kTable> fit_;
-  ByConstants<kPlace, kMachineColumns> beside_{
-      ByConstants<kPlace, kMachineColumns>::Zero()};  ///< derivatives of fit_'s score by the hammer's errors
+  using Beside = Eigen::Matrix<double, kPlace, kMachineColumns, Eigen::RowMajor>;
+  Beside beside_{Beside::Zero()};  ///< derivatives of fit_'s score by the hammer's errors
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
   double zero_looks_{};  ///< [rad]

@@ -131,7 +131,7 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
       blows += !tool_met;
       tool_met = false;
     }
-    const ConstantErrors::Row torque_by_constant = 0.5 * ConstantErrors::ofTorque(supply, lead);
+    const ConstantErrors::Row torque_by_constant = 0.5F * ConstantErrors::ofTorque(supply, lead);
     by_constant.row(kTorque) += torque_by_constant;
     Base::predict<kAngle, kSpeed>(step.transition);
     by_constant.row(kTorque) += torque_by_constant;
@@ -141,7 +141,8 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
           columns->ofSpeed(model, state, state.drive_inertia, load, drive, h, step.blows > 0);
       constexpr int kFirst = ConstantErrors::kTable;
       by_constant.row(kSpeed).middleCols<kMachineColumns>(kFirst) += of_speed;
-      by_constant.row(kAngle).middleCols<kMachineColumns>(kFirst) += 0.5 * h * of_speed;  // even change of speed
+      by_constant.row(kAngle).middleCols<kMachineColumns>(kFirst) +=
+          static_cast<float>(0.5 * h) * of_speed;  // even change of speed
     }
     addNoise(kAngle, kAngle, speed * h * h / 3.0);
     addNoise(kSpeed, kSpeed, speed + torque * square(b * h) / 3.0);
@@ -223,8 +224,9 @@ void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double 
   if (model.isExact()) return;
   const MachineColumns::OnShaft on_shaft = model.columns(belief.state.position.angle);
   result.by_constant.row(CrankUncertainty::kAcceleration).middleCols<kMachineColumns>(ConstantErrors::kTable) +=
-      inverse_inertia *
-      (on_shaft.row(2) - square(belief.state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));
+      static_cast<float>(inverse_inertia) *
+      (on_shaft.row(2) - static_cast<float>(square(belief.state.speed)) * on_shaft.row(1) -
+       static_cast<float>(acceleration) * on_shaft.row(0));
 }
 
 /// Linearised in the state's error; the acceleration's derivative by the angle is a difference quotient.
@@ -247,7 +249,8 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
   result.own << P.topLeftCorner<2, 2>(), with.head<2>().transpose(), with.head<2>(), with.dot(by);
   result.own *= growth;
   result.by_constant.topRows<2>() = belief.by_constant.topRows<2>();
-  result.by_constant.row(CrankUncertainty::kAcceleration) = by.lazyProduct(belief.by_constant.topRows<4>());
+  result.by_constant.row(CrankUncertainty::kAcceleration) =
+      by.cast<float>().lazyProduct(belief.by_constant.topRows<4>());
   result.by_constant.row(CrankUncertainty::kInertia) = belief.by_constant.row(CrankBelief::kInertia);
   ConstantErrors::toColumns(root, result.by_constant);
   addAcceleration(model, belief, here, inv, result);

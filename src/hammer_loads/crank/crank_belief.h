@@ -187,7 +187,7 @@ inline Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftM
   const double noise = speed_variance + square(change) * timing_variance;
   const auto by_error = ConstantErrors::ofSpeed({belief.encoderOffset(), belief.encoderSpeed(), change});
   const double of_constants =
-      of_speed ? (by_error - belief.encoderByError(CrankBelief::kSpeed)).cwiseAbs2().dot(*of_speed) : 0.0;
+      of_speed ? double{(by_error - belief.encoderByError(CrankBelief::kSpeed)).cwiseAbs2().dot(*of_speed)} : 0.0;
   return {*speed - belief.encoderSpeed(), belief.encoderVariance(CrankBelief::kSpeed) + noise + of_constants, noise,
           by_error};
 }

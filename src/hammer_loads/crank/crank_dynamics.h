@@ -240,7 +240,7 @@ void advanceState(const ShaftModel& model, double dt, const Passing& passing, Sh
 /// M jumps. The columns are of first order in the step.
 class ColumnStep {
  public:
-  using Columns = Eigen::Matrix<double, 1, kMachineColumns>;
+  using Columns = ByConstants<1, kMachineColumns>;
 
   /// Evaluates the columns at the start of the step. inertia: Jc [kg m2].
   ColumnStep(const ShaftModel& model, const ShaftState& from, double inertia, const ShaftLoad& load) noexcept
@@ -254,21 +254,22 @@ class ColumnStep {
                   double dt, bool struck) const noexcept {
     const MachineColumns::OnShaft end = model.columns(to.position.angle);
     const double m = inertia + load.inertia;
-    Columns relative = start_.row(0) / m_ - end.row(0) / m;  // part at constant h
-    double begin = 0.5;                                      // weight of the start
+    Columns relative = f(1.0 / m_) * start_.row(0) - f(1.0 / m) * end.row(0);  // part at constant h
+    double begin = 0.5;                                                       // weight of the start
     if (struck) {
       const CrankAngle before{0.0, Side::kBeforeBlow}, after{0.0, Side::kAfterBlow};
-      relative += model.columns(after).row(0) / (inertia + model(after).inertia) -
-                  model.columns(before).row(0) / (inertia + model(before).inertia);
+      relative += f(1.0 / (inertia + model(after).inertia)) * model.columns(after).row(0) -
+                  f(1.0 / (inertia + model(before).inertia)) * model.columns(before).row(0);
       begin = std::clamp(-offset_ / (to.speed * dt), 0.0, 1.0);
     }
-    return 0.5 * to.speed * relative + begin * dt * driven(start_, torque + weight_, m_) +
-           (1.0 - begin) * dt * driven(end, torque + load.weight_torque, m);
+    return f(0.5 * to.speed) * relative + driven(start_, torque + weight_, m_, begin * dt) +
+           driven(end, torque + load.weight_torque, m, (1.0 - begin) * dt);
   }
 
  private:
-  static Columns driven(const MachineColumns::OnShaft& at, double torque, double m) noexcept {
-    return (at.row(2) - (torque / m) * at.row(0)) / m;
+  static float f(double x) noexcept { return static_cast<float>(x); }
+  static Columns driven(const MachineColumns::OnShaft& at, double torque, double m, double dt) noexcept {
+    return f(dt / m) * at.row(2) - f(dt * torque / (m * m)) * at.row(0);
   }
 
   MachineColumns::OnShaft start_;

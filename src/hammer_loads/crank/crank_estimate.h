@@ -37,8 +37,8 @@ struct CrankUncertainty {
 
   /// Errors of the speed at a given crank angle; an error of the angle shifts the instant at which it is passed. rate:
   /// acceleration over speed [1/s].
-  Eigen::Matrix<double, 1, ConstantErrors::kSize> speedAtAngle(double rate) const noexcept {
-    return by_constant.row(kSpeed) - rate * by_constant.row(kAngle);
+  ConstantErrors::Row speedAtAngle(double rate) const noexcept {
+    return by_constant.row(kSpeed) - static_cast<float>(rate) * by_constant.row(kAngle);
   }
   Eigen::Matrix3d covariance() const noexcept;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/ablation.h"
 #include "hammer_loads/util/functions.h"
@@ -307,7 +308,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
 }
 
 Eigen::Matrix3d CrankUncertainty::covariance() const noexcept {
-  return own + by_constant.topRows<3>() * by_constant.topRows<3>().transpose();
+  return own + covarianceOf(by_constant.topRows<3>());
 }
 
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
@@ -393,7 +394,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
 /// (10) Corrects the supply's stiffness by its estimated error; the sensor's errors are not corrected.
 void CrankFilter::learnSupply() noexcept {
   const double change = supply_.learn(errors_.estimate()[ConstantErrors::kSupply]);
-  now_.move(now_.by_constant.col(ConstantErrors::kSupply) * change);
+  now_.move(now_.by_constant.col(ConstantErrors::kSupply).cast<double>() * change);
   errors_.shiftSupply(change);
 }
 

@@ -188,7 +188,7 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   if (!sample.speed || speed_trust_.areGood()) return sample;
   sample.of_speed = ConstantErrors::Row::Zero();
   for (const int constant : {ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale})
-    (*sample.of_speed)[constant] = square(errors_.consideredDeviation(constant));
+    (*sample.of_speed)[constant] = static_cast<float>(square(errors_.consideredDeviation(constant)));
   return sample;
 }
 
@@ -268,9 +268,10 @@ void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
 void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept {
   Innovation innovation = sample.ofSpeed(now_, model_);
   if (sample.of_speed && !HAMMER_LOADS_ABLATE(late_by)) {
-    double& by = innovation.by_error[ConstantErrors::kSpeedLag];
-    const double of_state = now_.encoderByError(Belief::kSpeed)[ConstantErrors::kSpeedLag], before = by;
-    by = -speed_trust_.lateBy(dt, -before, speedJump(struck));
+    float& by_error = innovation.by_error[ConstantErrors::kSpeedLag];
+    const double of_state = now_.encoderByError(Belief::kSpeed)[ConstantErrors::kSpeedLag], before = by_error;
+    const double by = -speed_trust_.lateBy(dt, -before, speedJump(struck));
+    by_error = static_cast<float>(by);
     innovation.total +=
         (*sample.of_speed)[ConstantErrors::kSpeedLag] * (square(by - of_state) - square(before - of_state));
   }

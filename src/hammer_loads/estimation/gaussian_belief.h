@@ -17,18 +17,17 @@ namespace hammer_loads {
 ///     mean - x = e + V p,  e ~ N(0, P) independent of p,
 ///
 /// with the covariance P for correct constants and V = d(mean)/dp. For any covariance of p, known now or later, the
-/// covariance of the mean's error is P + V cov(p) V^T: grown(). An innovation is (dz/dp - H V) p plus noise;
+/// covariance of the mean's error is P + V cov(p) V^T. An innovation is (dz/dp - H V) p plus noise;
 /// ConstantFit estimates p from it.
 ///
 /// Fixed sizes, no allocation, nothing throws. P stays symmetric to the last bit.
-template <int variables, int constants>
+template <int variables, int constants, typename Scalar = float>
 struct GaussianBelief {
   using Vector = Eigen::Matrix<double, variables, 1>;
   using Row = Eigen::Matrix<double, 1, variables>;  ///< derivative of a number by the variables
   using Matrix = Eigen::Matrix<double, variables, variables>;
-  using Effect = ByConstants<variables, constants>;
-  using ConstantRow = Eigen::Matrix<double, 1, constants>;  ///< derivative of a number by the constants
-  using ConstantMatrix = Eigen::Matrix<double, constants, constants>;
+  using Effect = ByConstants<variables, constants, Scalar>;
+  using ConstantRow = ByConstants<1, constants, Scalar>;  ///< derivative of a number by the constants
 
   Matrix covariance{Matrix::Zero()};   ///< P
   Effect by_constant{Effect::Zero()};  ///< V
@@ -41,7 +40,7 @@ struct GaussianBelief {
     constexpr int count = sizeof...(rows);
     const Eigen::Matrix<double, count, variables> moved = f * covariance;
     const Eigen::Matrix<double, count, count> both = moved * f.transpose();
-    const ByConstants<count, constants> effect = f * by_constant;
+    const ByConstants<count, constants, Scalar> effect = f.template cast<Scalar>().lazyProduct(by_constant);
     for (int i = 0; i < count; ++i) {
       covariance.row(changed[i]) = moved.row(i);
       covariance.col(changed[i]) = moved.row(i).transpose();
@@ -70,7 +69,7 @@ struct GaussianBelief {
   /// Corrects by a measurement that depends on several variables by `seen`, which is H.
   Vector correct(const Row& seen, double variance, const ConstantRow& measured_by_constant) noexcept {
     const Vector column = covariance * seen.transpose(), gain = column / (seen.dot(column) + variance);
-    applyGain(gain, column, variance, measured_by_constant - seen * by_constant);
+    applyGain(gain, column, variance, measured_by_constant - seen.template cast<Scalar>() * by_constant);
     return gain;
   }
   /// Corrects by a measurement of one variable where the constants have these variances, independent of each other.
@@ -82,11 +81,12 @@ struct GaussianBelief {
     const ConstantRow seen = measured_by_constant - by_constant.row(row), weighed = seen.cwiseProduct(*of_constants);
     const Vector column = covariance.col(row);
     const double noise = column[row] + variance;
-    const Vector gain = (column - by_constant * weighed.transpose()) / (noise + seen.dot(weighed));
+    const Vector of_all = by_constant.lazyProduct(weighed.transpose()).template cast<double>();
+    const Vector gain = (column - of_all) / (noise + seen.dot(weighed));
     const Matrix taken = gain * column.transpose();
     covariance += noise * gain * gain.transpose() - taken - taken.transpose();
     covariance.diagonal() = covariance.diagonal().cwiseMax(variance * gain.cwiseAbs2());
-    by_constant.noalias() += gain.lazyProduct(seen);
+    by_constant.noalias() += gain.template cast<Scalar>().lazyProduct(seen);
     return gain;
   }
 
@@ -106,10 +106,6 @@ struct GaussianBelief {
   /// Multiplies the standard deviations by these factors, variable by variable.
   void widen(const Vector& by) noexcept { covariance = (by.asDiagonal() * covariance * by.asDiagonal()).eval(); }
 
-  /// Returns the covariance of the variables for a given one of the constants. growth: factor on the noise.
-  Matrix grown(double growth, const ConstantMatrix& of_constants) const noexcept {
-    return growth * covariance + (by_constant * of_constants) * by_constant.transpose();
-  }
   /// Returns true if the covariance is finite and its diagonal is not negative.
   bool isSound() const noexcept { return covariance.allFinite() && (covariance.diagonal().array() >= 0.0).all(); }
 
@@ -117,7 +113,7 @@ struct GaussianBelief {
   /// P <- P - K c^T. The diagonal is kept at or above that of K R K^T (Joseph's form), below which only rounding can
   /// take it.
   void applyGain(const Vector& gain, const Vector& column, double variance, const ConstantRow& seen) noexcept {
-    if constexpr (constants > 0) by_constant.noalias() += gain.lazyProduct(seen);  // Eigen 3.3 has no such product
+    if constexpr (constants > 0) by_constant.noalias() += gain.template cast<Scalar>().lazyProduct(seen);
     for (Eigen::Index j = 0; j < variables; ++j) {
       covariance(j, j) = std::max(covariance(j, j) - gain[j] * column[j], variance * gain[j] * gain[j]);
       for (Eigen::Index i = j + 1; i < variables; ++i)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace hammer_loads {
 
@@ -20,7 +21,12 @@ class RunningMean {
   /// Adds a value; weight > 0. A weight of at least length replaces the mean.
   void add(const Value& value, double weight = 1.0) noexcept {
     count_ = std::min(count_ + weight, length_);
-    mean_ += std::min(1.0, weight / count_) * (value - mean_);
+    const double part = std::min(1.0, weight / count_);
+    if constexpr (std::is_same_v<Value, double>) {
+      mean_ += part * (value - mean_);
+    } else {
+      mean_ += static_cast<typename Value::Scalar>(part) * (value - mean_);
+    }
   }
   const Value& mean() const noexcept { return mean_; }
   double count() const noexcept { return count_; }  ///< sum of the weights in the mean, <= length

@@ -95,7 +95,8 @@ Eigen::Vector3d openVariance(const HullModel& rich, const std::vector<CrankMotio
   for (const CrankMotion& point : turn)
     sum += columns.wrench(rich.mechanism().parameters().drive_inertia, linksAt(rich, point.angle), point, hull)
                .rowwise()
-               .squaredNorm();
+               .squaredNorm()
+               .cast<double>();
   return sum;
 }
 

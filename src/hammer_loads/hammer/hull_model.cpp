@@ -93,8 +93,9 @@ WrenchColumns::Matrix WrenchColumns::wrench(double drive_inertia, const LinksAtA
   if (isExact()) return Matrix::Zero();
   if (!table_ || hull.turns() || !Table::covers(at.angle)) return evaluate(drive_inertia, at, crank, hull);
   const Table::Point point = table_->at(at.angle);
-  return crank.speed * crank.speed * point.topRows<3>() + crank.acceleration * point.middleRows<3>(3) +
-         hull.gravity.x * point.middleRows<3>(6) + hull.gravity.z * point.bottomRows<3>();
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return f(crank.speed * crank.speed) * point.topRows<3>() + f(crank.acceleration) * point.middleRows<3>(3) +
+         f(hull.gravity.x) * point.middleRows<3>(6) + f(hull.gravity.z) * point.bottomRows<3>();
 }
 
 WrenchColumns::Matrix WrenchColumns::evaluate(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
@@ -110,7 +111,7 @@ WrenchColumns::Matrix WrenchColumns::evaluate(double drive_inertia, const LinksA
     const MachineColumn& column = columns_->columns()[i];
     if (column.enters == HammerConstant::Enters::kBlow || (linear && column.of_masses)) continue;
     columns.col(static_cast<Eigen::Index>(i)) =
-        1.0 / column.step * (load(models_[i], column.linksAt(at.angle, at.links)) - here);
+        (1.0 / column.step * (load(models_[i], column.linksAt(at.angle, at.links)) - here)).cast<float>();
   }
   return columns;
 }

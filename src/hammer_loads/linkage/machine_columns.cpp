@@ -82,8 +82,9 @@ MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravit
     if (c.enters == Enters::kBlow || c.of_masses) continue;
     const ShaftLoad there = loadOf(c.mechanism, c.level, c.linksAt(angle, links), gravity);
     const double by = 1.0 / c.step;
-    effects.col(static_cast<Eigen::Index>(i)) << by * (there.inertia - here.inertia),
-        by * (there.half_inertia_slope - here.half_inertia_slope), by * (there.weight_torque - here.weight_torque);
+    const Eigen::Vector3d change(there.inertia - here.inertia, there.half_inertia_slope - here.half_inertia_slope,
+                                 there.weight_torque - here.weight_torque);
+    effects.col(static_cast<Eigen::Index>(i)) = (by * change).cast<float>();
   }
   return effects;
 }

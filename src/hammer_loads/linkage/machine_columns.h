@@ -109,7 +109,7 @@ class ColumnTable {
     const double place = fromBlow(angle) + kBeyond;
     const int i = static_cast<int>(std::min(kBeyond + kPoints - 1.0, place));  // the last where it is not a number
     const Point* from = (angle.side == Side::kBeforeBlow ? before_ : after_).data() + i;
-    return from[0] + (place - i) * (from[1] - from[0]);
+    return from[0] + static_cast<float>(place - i) * (from[1] - from[0]);
   }
 
  private:
@@ -136,7 +136,7 @@ class MachineColumns {
   /// Effects of the columns of masses on loads of a given motion; by: derivatives of these loads by LinkMasses.
   Effect byMasses(const LinkMasses::Effect& by) const noexcept {
     Effect effects = Effect::Zero();
-    for (const Part& part : parts_) effects.col(part.column) += part.size * by.col(part.mass);
+    for (const Part& part : parts_) effects.col(part.column) += (part.size * by.col(part.mass)).cast<float>();
     return effects;
   }
   /// Hammer whose constants are off by this many standard deviations each, in the columns' order; empty if it cannot
@@ -163,7 +163,7 @@ class MachineColumns {
 inline MachineColumns::OnShaft onShaft(const ShaftTable& table, CrankAngle angle, Gravity gravity) noexcept {
   const ShaftTable::Point at = table.at(angle);
   MachineColumns::OnShaft columns = at.topRows<3>();
-  columns.row(2) = gravity.x * at.row(2) + gravity.z * at.row(3);
+  columns.row(2) = static_cast<float>(gravity.x) * at.row(2) + static_cast<float>(gravity.z) * at.row(3);
   return columns;
 }
 

@@ -9,7 +9,7 @@ namespace hammer_loads {
 
 /// Errors of a CrankBlow due to independent errors of constants, one standard deviation each. Columns are in the order
 /// of ConstantErrors; rows: speed [rad/s], factor [-], drive inertia (relative).
-using BlowColumns = ByConstants<3, ConstantErrors::kSize>;
+using BlowColumns = ByConstants<3, ConstantErrors::kSize, double>;
 
 /// Returns the errors of `blow`, measuredBlow() of `crank`, one difference per constant; adds them to its deviations.
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,

@@ -71,7 +71,7 @@ void BudgetRecorder::sample(const SampleResult& result) noexcept {
   for (std::size_t i = 0; i < kHullChannels; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (!std::isfinite(all[row])) continue;
-    End end{load[row], result.load_columns.row(row), 0.0, square(rod[row]), extreme.unknown.row(row)};
+    End end{load[row], result.load_columns.row(row).cast<double>(), 0.0, square(rod[row]), extreme.unknown.row(row)};
     end.readings = std::max(0.0, square(all[row]) - square(common[row]) - end.own());
     ranges_[i].add(end);
   }

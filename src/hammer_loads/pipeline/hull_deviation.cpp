@@ -83,16 +83,17 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
   if (!(uncertainty.own(1, 1) > 0.0)) return unknownDeviation();
   const DriveReaction drive = driveReaction(model, drive_inertia), none = driveReaction(model, 0.0);
   const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) { return wrenchAt(model, drive, hull, at); });
-  columns.leftCols<ConstantErrors::kSize>() = g.lazyProduct(uncertainty.by_constant.topRows<3>());
+  columns.leftCols<ConstantErrors::kSize>() = g.cast<float>().lazyProduct(uncertainty.by_constant.topRows<3>());
   columns.middleCols<kMachineColumns>(ConstantErrors::kTable) +=
       hammer.wrench(drive_inertia, links.here, motionOf(crank), hull);
   const double by_inertia =
       drive.torque(crank.acceleration, hull.acceleration) - none.torque(crank.acceleration, hull.acceleration);
-  columns.row(2).head<ConstantErrors::kSize>() += by_inertia * uncertainty.by_constant.row(CrankUncertainty::kInertia);
-  columns(2, kInertiaColumn) = by_inertia * uncertainty.inertia;
+  columns.row(2).head<ConstantErrors::kSize>() +=
+      static_cast<float>(by_inertia) * uncertainty.by_constant.row(CrankUncertainty::kInertia);
+  columns(2, kInertiaColumn) = static_cast<float>(by_inertia * uncertainty.inertia);
   const Eigen::Matrix3d common = covarianceOf(columns);
   const Eigen::Matrix3d all = g * uncertainty.own * g.transpose() + common;
-  const Eigen::Vector3d of_crank = uncertainty.by_constant.topRows<3>().rowwise().squaredNorm();
+  const Eigen::Vector3d of_crank = uncertainty.by_constant.topRows<3>().rowwise().squaredNorm().cast<double>();
   const Eigen::Vector3d crank_all = (uncertainty.own.diagonal() + of_crank).cwiseSqrt();
   return {all,
           common,
@@ -130,7 +131,7 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 }
 
 MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
-                                const Eigen::Matrix<double, 1, ConstantErrors::kSize>& of_speed) noexcept {
+                                const ConstantErrors::Row& of_speed) noexcept {
   MomentumColumns columns = MomentumColumns::Zero();
   const auto momentum = [&](const HullModel& of, double at) {
     const LinkMomentum p = linkMomentum(of, angle, at);
@@ -169,7 +170,7 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return wrenchAt(model, drive, at_rest, at); });
   const auto of_sensor = columns.leftCols<ConstantErrors::kTable>();
-  const Eigen::Matrix3d errors = covarianceRoot<3>(g * own * g.transpose() + of_sensor * of_sensor.transpose());
+  const Eigen::Matrix3d errors = covarianceRoot<3>(g * own * g.transpose() + covarianceOf(of_sensor));
   WrenchSpread spread;
   spread.count = 3;
   for (int i = 0; i < 3; ++i) {

@@ -57,7 +57,7 @@ inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& 
 /// Independent errors of a wrench, one standard deviation each, equal in all samples. Their columns: constants of
 /// sensor and hammer (order of ConstantErrors), learned drive inertia, hull whose motion is not measured. Rows: force_x
 /// [N], force_z [N], torque_y [N m].
-constexpr int kInertiaColumn = ConstantErrors::kSize, kHullColumn = kInertiaColumn + 1, kLoadColumns = kHullColumn + 1;
+constexpr int kInertiaColumn = ConstantErrors::kSize, kHullColumn = kInertiaColumn + 1, kLoadColumns = (kHullColumn + 4) / 4 * 4;
 using LoadColumns = ByConstants<3, kLoadColumns>;
 
 /// Returns errors by samples and constants: J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).
@@ -75,11 +75,11 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
                              const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
 
 /// Independent errors of the momentum, one standard deviation each, in the order of LoadColumns. Rows: x, z [N s].
-using MomentumColumns = ByConstants<2, kLoadColumns>;
+using MomentumColumns = ByConstants<2, kLoadColumns, double>;
 
 /// Returns the links' momentum errors at a crank angle and speed [rad/s]. of_speed: errors of that speed [rad/s].
 MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
-                                const Eigen::Matrix<double, 1, ConstantErrors::kSize>& of_speed) noexcept;
+                                const ConstantErrors::Row& of_speed) noexcept;
 /// Returns the errors of the links' weight due to errors of the masses [N].
 MomentumColumns weightColumns(const WrenchColumns& hammer, const HullModel& model, Gravity gravity) noexcept;
 

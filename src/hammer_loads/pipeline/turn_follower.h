@@ -129,7 +129,7 @@ class PendingBlow {
     published_ = withheld_ = 0;
     blow_.speed = speed;
     blow_.speed_std = std::sqrt(doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed));
-    columns_.row(0) = doubt.speedAtAngle(rate);
+    columns_.row(0) = doubt.speedAtAngle(rate).cast<double>();
   }
   bool isWaiting() const noexcept { return waiting_; }
   bool isEarly() const noexcept { return early_; }  ///< the tool was met before the dead centre
@@ -142,7 +142,7 @@ class PendingBlow {
     blow_.drive_inertia = factor.drive_inertia;
     blow_.inertia_std = factor.inertia_std;
     early_ = factor.early;
-    columns_.bottomRows<2>() = factor.by_constant;
+    columns_.bottomRows<2>() = factor.by_constant.cast<double>();
   }
   /// Returns errors of take() due to independent errors of constants: speed [rad/s], factor [-], inertia (relative).
   BlowColumns columns() const noexcept {
@@ -151,9 +151,9 @@ class PendingBlow {
     return columns;
   }
   /// Returns the errors of crankSpeedAfter() due to constants [rad/s].
-  Eigen::Matrix<double, 1, ConstantErrors::kSize> columnsAfter() const noexcept {
-    if (early_) return columns_.row(0);
-    return blow_.factor * columns_.row(0) + blow_.speed * columns_.row(1);
+  ConstantErrors::Row columnsAfter() const noexcept {
+    if (early_) return columns_.row(0).cast<float>();
+    return (blow_.factor * columns_.row(0) + blow_.speed * columns_.row(1)).cast<float>();
   }
   /// Counts a sample after the blow as published or withheld. If most are withheld, as with angles in degrees, the blow
   /// is not confirmed.

@@ -91,7 +91,7 @@ void TurnErrors::sample(double force_z, double deviation, double common, double 
   if (!(force_z > peak_)) return;
   peak_ = force_z;
   at_peak_ = here;
-  at_peak_.columns = columns.row(kZ);
+  at_peak_.columns = columns.row(kZ).cast<double>();
 }
 
 PulseErrors TurnErrors::end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow,

@@ -95,8 +95,8 @@ LoadImpulse WrenchSampler::motionTo(double time) noexcept {
 void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
   if (!(time > added_up_to_)) return;
   const double part = (time - added_up_to_) / (step_->length() - added_up_to_);  // part of the rest of the step
-  const LoadColumns there = columns_ + part * (result.load_columns - columns_);
-  column_impulse_ += 0.5 * (time - added_up_to_) * (columns_ + there);
+  const LoadColumns there = columns_ + static_cast<float>(part) * (result.load_columns - columns_);
+  column_impulse_ += static_cast<float>(0.5 * (time - added_up_to_)) * (columns_ + there);
   columns_ = there;
   const LoadImpulse motion = motionTo(time);
   const LoadImpulse added = addedImpulse(*model_, drive_, *step_, hull_, added_up_to_, time);
@@ -194,7 +194,7 @@ void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& o
   momentum_std_ = momentum;
   blow_doubt_ = {};
   const Eigen::Vector3d of_end = (deviation.covariance - deviation.common_covariance).diagonal().cwiseMax(0.0);
-  const Eigen::Vector3d common = (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm();
+  const Eigen::Vector3d common = (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm().cast<double>();
   column_impulse_.setZero();
   setVariances(common, deviation.common_covariance);
   setVariances(of_end.cwiseMin(allowed.cwiseAbs2()) + common, deviation.covariance);

@@ -5,10 +5,10 @@
 
 namespace hammer_loads {
 
-/// A row a number, a column a constant; a row lies in one piece: there are many more constants than numbers, and a loop
-/// over those is what the compiler makes two or four at a time.
-template <int numbers, int constants>
+/// A row is a number, a column a constant. A row is contiguous, so that a loop over the constants is vectorised. Single
+/// precision is enough for standard deviations and takes half the instructions.
+template <int numbers, int constants, typename Scalar = float>
 using ByConstants =
-    Eigen::Matrix<double, numbers, constants, constants == 1 && numbers != 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+    Eigen::Matrix<Scalar, numbers, constants, constants == 1 && numbers != 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 
 }  // namespace hammer_loads
