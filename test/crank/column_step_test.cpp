@@ -21,7 +21,7 @@ CrankBelief stepped(const ShaftModel& model, double offset, double speed, double
   belief.state.speed = speed, belief.state.torque = torque;
   belief.state.drive_inertia = 0.6;
   belief.least_inertia = 0.06, belief.most_inertia = 60.0;
-  belief.predict(model, {}, {}, true, 1e3, dt);
+  belief.predict(model, model(belief.state.position.angle), {}, {}, true, 1e3, dt);
   return belief;
 }
 

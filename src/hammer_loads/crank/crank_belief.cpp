@@ -107,9 +107,8 @@ void CrankBelief::widen(double by) noexcept {
   Base::widen(deviations);
 }
 
-int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
-                         double most_speed, double dt) noexcept {
-  ShaftLoad load = model(state.position.angle);
+int CrankBelief::predict(const ShaftModel& model, ShaftLoad load, const CrankWalks& walks, const BlowPrior& drawn,
+                         bool contact, double most_speed, double dt) noexcept {
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
   const SupplyLaw& supply = walks.supply;

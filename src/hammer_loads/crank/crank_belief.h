@@ -50,9 +50,10 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   bool tool_met{};         ///< true if the tool was met before the dead centre, where nothing strikes any more
   bool struck_early{};     ///< true if the factor of the last blow acted before the dead centre
 
-  /// Predicts by dt [s] > 0 with random walks; returns the number of blows. Stops at most_speed [rad/s].
-  int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
-              double dt) noexcept;
+  /// Predicts by dt [s] > 0 with random walks; returns the number of blows. load: load of the model at the belief's
+  /// angle. Stops at most_speed [rad/s].
+  int predict(const ShaftModel& model, ShaftLoad load, const CrankWalks& walks, const BlowPrior& prior, bool contact,
+              double most_speed, double dt) noexcept;
   /// Adds a change to the variables; the position may then lie beyond the blow.
   void move(const Vector& change) noexcept;
   /// Bounds the factor between that of a blow that stops the crank and that of one that drives it. To be called after a

@@ -208,7 +208,10 @@ Tracking CrankFilter::accept(const SampleStep& to, double reading) noexcept {
 
 /// (1)
 int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noexcept {
-  return belief.predict(step_model_, walks(), blows_.prior(), contact, mostSpeed(), dt);
+  const CrankAngle at = belief.state.position.angle;
+  const bool known = at == load_angle_ && step_model_.hullMotion() == now_hull_;
+  return belief.predict(step_model_, known ? load_ : step_model_(at), walks(), blows_.prior(), contact, mostSpeed(),
+                        dt);
 }
 
 /// (6)
@@ -318,7 +321,8 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 
 /// Computes the load at now_, with the latest motion of the hull.
 void CrankFilter::updateLoad() noexcept {
-  load_ = model_(now_.state.position.angle);
+  load_angle_ = now_.state.position.angle;
+  load_ = model_(load_angle_);
   now_hull_ = model_.hullMotion();
   hull_moved_ = false;
 }

@@ -266,7 +266,8 @@ class CrankFilter {
   ConstantErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;                     ///< at the last sample, corrected by it
-  ShaftLoad load_;                      ///< load at now_, with now_hull_
+  ShaftLoad load_;                      ///< load at load_angle_ with now_hull_
+  CrankAngle load_angle_;               ///< angle of now_ after its last update
   bool hull_moved_{true};               ///< the hull's motion was set since then
   std::array<CrankBelief, 2> earlier_;  ///< at the last but one sample; the other is scratch
   std::size_t before_{};                ///< index of the former

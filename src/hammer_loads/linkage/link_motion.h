@@ -29,6 +29,10 @@ struct HullMotion {
   double acceleration{};  ///< angular acceleration about +y [rad/s2]
 
   bool turns() const noexcept { return rate != 0.0 || acceleration != 0.0; }
+  friend bool operator==(const HullMotion& a, const HullMotion& b) noexcept {
+    return a.gravity.x == b.gravity.x && a.gravity.z == b.gravity.z && a.rate == b.rate &&
+           a.acceleration == b.acceleration;
+  }
 };
 
 /// Interpolates linearly from a (part 0) to b (part 1); equal motions are returned to the last bit.
