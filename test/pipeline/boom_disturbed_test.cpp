@@ -175,6 +175,19 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
   }
 }
 
+/// An IMU alone takes some revolutions to show whether rock bears the hull. Until then the torques on rock would be 50
+/// to 100 % wrong with deviations of a third of that.
+TEST(BoomFollower, WithholdsLoadsUntilAnImuAloneHasShownThatNoRockBearsTheHull) {
+  for (const bool rock : {false, true}) {
+    const BoomErrors early = errorsOf(sessionOn(rock), kHullByImu, {true, false}, 1.2, 1.9);
+    EXPECT_EQ(early.withheld, early.samples) << rock;
+    EXPECT_TRUE(early.warnedOf("boom loads")) << rock;
+    const BoomErrors later = errorsOf(sessionOn(rock), kHullByImu, {true, false}, 2.3, 5.0);
+    EXPECT_EQ(later.withheld, rock ? later.samples : 0U);
+    expectHonest(later);
+  }
+}
+
 /// The IMU has its own clock. Uncorrected, 1 ms causes an error of 7 % of the torques, and 2 ms one of 15 %.
 TEST(MistakenSensors, ImuStampsThatAreOffAreNamedAndAllowedFor) {
   for (const double late : {0.0, 2e-3, -2e-3}) {

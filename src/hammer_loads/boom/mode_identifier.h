@@ -92,6 +92,9 @@ class ModeIdentifier {
   /// True if the accelerations agree with hammer, oil and, if it is estimated, the rock's force, or if they may still
   /// come to agree.
   bool explains() const noexcept { return explains_ || (learns_ && !seeks_ && explained_for_ <= kProven); }
+  /// True once the accelerations have agreed with hammer and oil for five revolutions.
+  bool isProven() const noexcept { return explained_for_ > kProven; }
+  bool imuSpeaks() const noexcept;  ///< an IMU has sent readings of late
   bool imuStampsJitter() const noexcept { return jitterVariance(Clock::kImu, 0) > 0.0; }  ///< beyond its delay
   /// Time by which an IMU with early stamps must be read later [s].
   double waiting() const noexcept { return waiting_; }
@@ -212,7 +215,6 @@ class ModeIdentifier {
   void walkContact(double step) noexcept;
   void advanceDelays(double step) noexcept;
   double findCrankLead() const noexcept;
-  bool imuSpeaks() const noexcept;
   bool mayYetExplain() const noexcept;
   bool isExplained() const noexcept;
   /// Duration [s] of agreement, of lost frequencies, of inflated variances and of a hull without rock.

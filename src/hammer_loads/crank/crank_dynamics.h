@@ -255,7 +255,7 @@ class ColumnStep {
     const MachineColumns::OnShaft end = model.columns(to.position.angle);
     const double m = inertia + load.inertia;
     Columns relative = f(1.0 / m_) * start_.row(0) - f(1.0 / m) * end.row(0);  // part at constant h
-    double begin = 0.5;                                                       // weight of the start
+    double begin = 0.5;                                                        // weight of the start
     if (struck) {
       const CrankAngle before{0.0, Side::kBeforeBlow}, after{0.0, Side::kAfterBlow};
       relative += f(1.0 / (inertia + model(after).inertia)) * model.columns(after).row(0) -

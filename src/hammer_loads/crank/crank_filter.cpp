@@ -310,9 +310,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   return hypothesis_.isThere() && hypothesis_.choose(now_, mirrored_);
 }
 
-Eigen::Matrix3d CrankUncertainty::covariance() const noexcept {
-  return own + covarianceOf(by_constant.topRows<3>());
-}
+Eigen::Matrix3d CrankUncertainty::covariance() const noexcept { return own + covarianceOf(by_constant.topRows<3>()); }
 
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);

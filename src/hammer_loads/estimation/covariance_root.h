@@ -34,7 +34,8 @@ template <typename Errors>
 auto covarianceOf(const Eigen::MatrixBase<Errors>& errors) noexcept {
   Eigen::Matrix<double, Errors::RowsAtCompileTime, Errors::RowsAtCompileTime> covariance;
   for (Eigen::Index i = 0; i < covariance.rows(); ++i)
-    for (Eigen::Index k = 0; k <= i; ++k) covariance(i, k) = covariance(k, i) = double{errors.row(i).dot(errors.row(k))};
+    for (Eigen::Index k = 0; k <= i; ++k)
+      covariance(i, k) = covariance(k, i) = double{errors.row(i).dot(errors.row(k))};
   return covariance;
 }
 

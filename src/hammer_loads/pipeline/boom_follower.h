@@ -75,7 +75,7 @@ struct BoomState {
   Wrench contact;              ///< contact load BY the rock ON the tip, axes of the tip; zero where it is not measured
   bool measured{};             ///< the cylinders' forces are those of measured pressures
   bool contact_unknown{};      ///< the IMU shows contact with the rock, but no pressures measure its force
-  /// True if, with pressures or an IMU, torques are too uncertain to publish any loads (TorqueWorth).
+  /// True if, with pressures or an IMU, torques are too uncertain to publish any loads, or not proven (TorqueWorth).
   bool useless{};
   bool hold_down_force_lost{};  ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;          ///< along hull z; infinite without modes
@@ -117,6 +117,9 @@ class BoomFollower {
   double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
   /// Returns the largest ratio of standard deviation to joint torque, root mean squares over a revolution [-].
   double torqueUncertainty() const noexcept { return worth_.ratio(); }
+  /// Returns true while the loads rest on an IMU alone that has not agreed with hammer and oil for five revolutions:
+  /// until then rock may bear the hull.
+  bool isUnproven() const noexcept;
   std::uint64_t useless() const noexcept { return useless_; }  ///< samples whose loads were useless
   /// Takes the crank's standard deviations. Call once per revolution.
   void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }

@@ -169,7 +169,12 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
              "cylinder_pressures.",
              follower.unexplainedForce()),
          true});
-  if (boom != nullptr && boom->useless)
+  if (boom != nullptr && boom->useless && follower.isUnproven() && !boom->contact_unknown)
+    warnings.push_back({"boom loads",
+                        "joint_loads: withheld for the first second of work, as hull_imu has yet to show that no rock "
+                        "bears the hull.",
+                        true});
+  else if (boom != nullptr && boom->useless)
     warnings.push_back({"boom loads",
                         format("joint_loads: withheld, deviations are %.2g times the loads by %s.",
                                follower.torqueUncertainty(), causeOf(follower, *boom)),

@@ -57,7 +57,8 @@ inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& 
 /// Independent errors of a wrench, one standard deviation each, equal in all samples. Their columns: constants of
 /// sensor and hammer (order of ConstantErrors), learned drive inertia, hull whose motion is not measured. Rows: force_x
 /// [N], force_z [N], torque_y [N m].
-constexpr int kInertiaColumn = ConstantErrors::kSize, kHullColumn = kInertiaColumn + 1, kLoadColumns = (kHullColumn + 4) / 4 * 4;
+constexpr int kInertiaColumn = ConstantErrors::kSize, kHullColumn = kInertiaColumn + 1,
+              kLoadColumns = (kHullColumn + 4) / 4 * 4;
 using LoadColumns = ByConstants<3, kLoadColumns>;
 
 /// Returns errors by samples and constants: J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).

@@ -20,9 +20,11 @@ namespace hammer_loads {
 class TorqueWorth {
  public:
   /// Adds a sample [N m]: total loads on the joints, the part of the weight, standard deviation. by_sensors: pressures
-  /// show the torques, or an IMU shows a force that is not measured.
-  void add(const JointVector& total, const JointVector& weight, const JointVector& deviation,
-           bool by_sensors) noexcept {
+  /// show the torques, or an IMU shows a force that is not measured. unproven: an IMU alone has not shown yet that no
+  /// rock bears the hull.
+  void add(const JointVector& total, const JointVector& weight, const JointVector& deviation, bool by_sensors,
+           bool unproven) noexcept {
+    unproven_ = unproven;
     if (load_.size() != total.size()) load_ = deviation_ = JointVector::Zero(total.size());
     load_ += (total - weight).cwiseAbs2();
     deviation_ += deviation.cwiseAbs2();
@@ -39,7 +41,9 @@ class TorqueWorth {
   }
   /// Returns the ratio of the worst joint in the last revolution [-]; 0 before.
   double ratio() const noexcept { return ratio_; }
-  bool isUseless(StampNs stamp) const noexcept { return useless_.isEngaged() && isRecent(ended_, stamp); }
+  bool isUseless(StampNs stamp) const noexcept {
+    return (useless_.isEngaged() || unproven_) && isRecent(ended_, stamp);
+  }
 
  private:
   static constexpr double kUseless = 0.6;
@@ -55,7 +59,7 @@ class TorqueWorth {
   }
 
   JointVector load_, deviation_;  ///< sums of squares [N2 m2]
-  bool by_sensors_{};
+  bool by_sensors_{}, unproven_{};
   StampNs ended_{};
   double ratio_{};
   Latch useless_{kUseless};

@@ -194,7 +194,8 @@ void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& o
   momentum_std_ = momentum;
   blow_doubt_ = {};
   const Eigen::Vector3d of_end = (deviation.covariance - deviation.common_covariance).diagonal().cwiseMax(0.0);
-  const Eigen::Vector3d common = (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm().cast<double>();
+  const Eigen::Vector3d common =
+      (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm().cast<double>();
   column_impulse_.setZero();
   setVariances(common, deviation.common_covariance);
   setVariances(of_end.cwiseMin(allowed.cwiseAbs2()) + common, deviation.covariance);
