@@ -36,9 +36,9 @@ class WeightDeviation : public testing::Test {
     for (int i = 0; i < kDraws; ++i) square += (draw(given) - right).cwiseAbs2();
     return (square / kDraws).cwiseSqrt();
   }
-  static void expectAlike(const JointVector& said, const JointVector& drawn) {
-    for (int j = 1; j < 4; ++j) EXPECT_NEAR(said[j] / drawn[j], 1.0, 0.08) << j;  // 5 standard errors of 1.6 %
-    EXPECT_NEAR(said[0], 0.0, 1e-9) << "about the vertical there is no weight";
+  static void expectAlike(const JointVector& stated, const JointVector& drawn) {
+    for (int j = 1; j < 4; ++j) EXPECT_NEAR(stated[j] / drawn[j], 1.0, 0.08) << j;  // 5 standard errors of 1.6 %
+    EXPECT_NEAR(stated[0], 0.0, 1e-9) << "about the vertical there is no weight";
   }
 
   BoomParameters parameters_ = test::shippedBoomParameters();

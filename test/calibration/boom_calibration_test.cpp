@@ -194,30 +194,30 @@ TEST(BoomCalibration, NamesPressuresThatContradictTheBoomFile) {
   const FreeBoom machine = FreeBoom::drawn(random);
   const BoomRecording good = machine.record(random, 60.0);
   const BoomModel model(test::shippedBasis(), {TipWeight{}});
-  const auto said = [&](const BoomRecording& r) { return misreadings(model, pointsOf(r)); };
-  EXPECT_TRUE(said(good).empty()) << said(good).front();
+  const auto stated = [&](const BoomRecording& r) { return misreadings(model, pointsOf(r)); };
+  EXPECT_TRUE(stated(good).empty()) << stated(good).front();
 
   BoomRecording bar = good;
   for (auto& chambers : bar.pressure)
     for (Trace& trace : chambers)
       for (double& p : trace.value) p *= 1e-5;
-  ASSERT_EQ(said(bar).size(), 3U);
-  EXPECT_NE(said(bar)[0].find("in bar"), std::string::npos) << said(bar)[0];
+  ASSERT_EQ(stated(bar).size(), 3U);
+  EXPECT_NE(stated(bar)[0].find("in bar"), std::string::npos) << stated(bar)[0];
 
   BoomRecording chambers = good;
   std::swap(chambers.pressure[0][0], chambers.pressure[0][1]);
-  ASSERT_EQ(said(chambers).size(), 1U);
-  EXPECT_NE(said(chambers)[0].find("bore and rod exchanged"), std::string::npos) << said(chambers)[0];
+  ASSERT_EQ(stated(chambers).size(), 1U);
+  EXPECT_NE(stated(chambers)[0].find("bore and rod exchanged"), std::string::npos) << stated(chambers)[0];
 
   BoomRecording cylinders = good;
   std::swap(cylinders.pressure[0], cylinders.pressure[1]);
-  ASSERT_EQ(said(cylinders).size(), 2U);
-  EXPECT_NE(said(cylinders)[0].find("those of arm_cylinder"), std::string::npos) << said(cylinders)[0];
+  ASSERT_EQ(stated(cylinders).size(), 2U);
+  EXPECT_NE(stated(cylinders)[0].find("those of arm_cylinder"), std::string::npos) << stated(cylinders)[0];
 
   BoomRecording degrees = good;
   for (double& q : degrees.joint[2].value) q *= 180.0 / kPi;
-  ASSERT_EQ(said(degrees).size(), 1U);
-  EXPECT_NE(said(degrees)[0].find("arm_joint"), std::string::npos) << said(degrees)[0];
+  ASSERT_EQ(stated(degrees).size(), 1U);
+  EXPECT_NE(stated(degrees)[0].find("arm_joint"), std::string::npos) << stated(degrees)[0];
 }
 
 TEST(BoomCalibration, NamesTheJointThatMovedTooLittle) {

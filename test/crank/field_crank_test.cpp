@@ -62,7 +62,7 @@ Record follow(const Machine& machine) {
     ++run.samples;
     run.restarts += tracking == Tracking::kRestarted;
     run.outliers += tracking == Tracking::kOutlier;
-    run.doubtful += filter.isDoubtful();
+    run.doubtful += filter.isUncertain();
     run.mirrored += filter.estimate().position.isMirrored();
     if (taken.blows() > 0 && stamp < taken.blowTime() + 0.02) measured = false;
     if (!measured && stamp > taken.blowTime() + 0.06) {
@@ -72,7 +72,7 @@ Record follow(const Machine& machine) {
     }
     const double truth = at_stamp.acceleration();
     run.peak = std::max(run.peak, std::abs(truth));
-    if (tracking == Tracking::kOutlier || filter.isDoubtful()) continue;
+    if (tracking == Tracking::kOutlier || filter.isUncertain()) continue;
     const double error = filter.estimate().acceleration - truth;
     if (std::abs(stamp - taken.blowTime()) > 5e-4) run.worst = std::max(run.worst, std::abs(error));
     squares += error * error;
@@ -179,7 +179,7 @@ TEST(FieldCrank, ARestAtTheDeadCentreIsNoTurnWithoutContact) {
   for (int i = 0; i < 200; ++i) {
     angle = std::max(0.2 * test::kEncoderCount, angle - 0.02);
     filter.update(0.01, {std::floor(angle / test::kEncoderCount) * test::kEncoderCount, std::nullopt});
-    ASSERT_FALSE(filter.isDoubtful()) << i;
+    ASSERT_FALSE(filter.isUncertain()) << i;
     ASSERT_FALSE(filter.estimate().position.isMirrored()) << i;
   }
 }

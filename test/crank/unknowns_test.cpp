@@ -53,9 +53,9 @@ void expectEffect(int constant, double by, Filtered& with, Filtered& without, do
     const CrankAngle& at = a.position.angle;  // just after a blow the sample decides what each takes for its factor
     if (i < 250 || at.side == Side::kAfterBlow || at.offset > -0.1) continue;
     const Eigen::Vector3d change(difference(a.position, b.position), a.speed - b.speed, a.torque - b.torque);
-    const Eigen::Vector3d said = by * without.filter.belief().by_constant.col(constant).head<3>().cast<double>();
-    largest = largest.cwiseMax(said.cwiseAbs());
-    off = off.cwiseMax((change - said).cwiseAbs());
+    const Eigen::Vector3d stated = by * without.filter.belief().by_constant.col(constant).head<3>().cast<double>();
+    largest = largest.cwiseMax(stated.cwiseAbs());
+    off = off.cwiseMax((change - stated).cwiseAbs());
   }
   // the linearisation of a step is within 1 % (crank_dynamics.h)
   for (int row = 0; row < rows; ++row)
@@ -84,13 +84,13 @@ TEST(Unknowns, LatencyHasTheEffectThatTheFilterStates) {
 /// be.
 TEST(Unknowns, ConsideredLatencyIsInTheDeviation) {
   constexpr double kLate = 5e-4;
-  Filtered said(kLate), exact;
-  for (int i = 0; i < 900; ++i) said.sample(i, kLate, angleOf), exact.sample(i, kLate, angleOf);
-  const double error = kLate * said.crank.speed();
-  const double of_said = std::sqrt(said.filter.uncertainty(1.0).covariance()(0, 0)),
+  Filtered stated(kLate), exact;
+  for (int i = 0; i < 900; ++i) stated.sample(i, kLate, angleOf), exact.sample(i, kLate, angleOf);
+  const double error = kLate * stated.crank.speed();
+  const double of_said = std::sqrt(stated.filter.uncertainty(1.0).covariance()(0, 0)),
                of_exact = std::sqrt(exact.filter.uncertainty(1.0).covariance()(0, 0));
   EXPECT_NEAR(std::sqrt(square(of_said) - square(of_exact)), error, 0.1 * error);
-  EXPECT_EQ(said.filter.state().speed, exact.filter.state().speed);  // considered, not corrected
+  EXPECT_EQ(stated.filter.state().speed, exact.filter.state().speed);  // considered, not corrected
 }
 
 }  // namespace

@@ -123,13 +123,13 @@ TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsFlagged) {
   machine.blow.blank_share = 0.1;
   const simulation::Session session = simulation::recordSession(machine);
   Pipeline pipeline(shipped.mechanism, shipped.pipeline);
-  double square_error = 0.0, square_said = 0.0, doubted_later = 0.0;
+  double square_error = 0.0, square_said = 0.0, contradicted_later = 0.0;
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
     const SampleResult& r =
         pipeline.crankSample(session.crank[i].stamp, {session.crank[i].angle, session.crank[i].speed});
     const double offset = r.crank.position.angle.offset;
     if (!r.isPublished() || session.truth[i].time < 4.0 || offset < 0.0) continue;
-    if (offset > 0.5) doubted_later = std::max(doubted_later, pipeline.crank().tracker().otherBranch());
+    if (offset > 0.5) contradicted_later = std::max(contradicted_later, pipeline.crank().tracker().otherBranch());
     if (offset > 0.1) continue;
     square_error += square(r.wrench.force_x - session.truth[i].load.force_x);
     square_said += square(r.deviation.wrench().force_x);
@@ -137,7 +137,7 @@ TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsFlagged) {
   EXPECT_GT(square_error, 1e8) << "blank blows";
   EXPECT_GT(square_said, 0.05 * square_error);
   EXPECT_LT(square_said, 2.0 * square_error);
-  EXPECT_LT(doubted_later, 1e-4) << "half a radian after the blow it is known";
+  EXPECT_LT(contradicted_later, 1e-4) << "half a radian after the blow it is known";
 }
 
 }  // namespace

@@ -108,9 +108,9 @@ Played played(const Session& session, const std::string& sensor) {
 TEST(MistakenSensors, RightOnesAreUsed) {
   for (const bool rock : {false, true}) {
     for (const char* sensor : {"pressures", "imu"}) {
-      const Played as_said = played(sessionOn(rock), sensor);
-      EXPECT_EQ(as_said.warning, "") << sensor << rock;
-      EXPECT_TRUE(as_said.used) << sensor << rock;
+      const Played as_given = played(sessionOn(rock), sensor);
+      EXPECT_EQ(as_given.warning, "") << sensor << rock;
+      EXPECT_TRUE(as_given.used) << sensor << rock;
     }
   }
 }

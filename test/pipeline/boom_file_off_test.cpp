@@ -75,7 +75,7 @@ TEST(BendingLinks, AreInTheDeviationsOfAnImuAlone) {
     EXPECT_LT(rigid.worstTorque(), 0.02);
     EXPECT_GT(rigid.covered(), 0.95);
     for (int j = 0; j < 3; ++j)
-      EXPECT_LT(std::sqrt(rigid.torque_said[j] / rigid.torque[j].square) * rigid.torque[j].rms(), 0.2) << j;
+      EXPECT_LT(std::sqrt(rigid.torque_stated[j] / rigid.torque[j].square) * rigid.torque[j].rms(), 0.2) << j;
   }
   EXPECT_GT(worst, 0.04);
 }

@@ -61,18 +61,18 @@ constexpr HullWrench kLoad{-900.0, 7000.0, 300.0};
 TEST(BoomFollower, ResetsAVibrationThatRunsAwayAndWithholdsItForAWhile) {
   Follower struck(BoomModel::kCompliant), other(BoomModel::kCompliant);
   for (int i = 0; i < 50; ++i) ASSERT_FALSE(struck.sample(kLoad).fault) << "the channel";
-  EXPECT_EQ(struck.follower.runaways(), 0U);
+  EXPECT_EQ(struck.follower.divergences(), 0U);
   const BoomState& first = struck.sample({kNaN, kNaN, kNaN});
   ASSERT_TRUE(first.fault);
   EXPECT_EQ(first.fault->kind, JointFault::Kind::kRunAway);
-  EXPECT_EQ(struck.follower.runaways(), 1U);
+  EXPECT_EQ(struck.follower.divergences(), 1U);
   int withheld = 1;
   while (struck.sample(kLoad).fault) {
     ASSERT_EQ(struck.follower.state().fault->kind, JointFault::Kind::kRunAway);
     ASSERT_LT(++withheld, 10001);
   }
   EXPECT_GT(withheld, 50) << "a boom swings for some periods";
-  EXPECT_EQ(struck.follower.runaways(), 1U);
+  EXPECT_EQ(struck.follower.divergences(), 1U);
   for (int i = 0; i < 10000; ++i) struck.sample(kLoad), other.sample(kLoad);
   const JointVector torque = struck.follower.state().loads.total;
   ASSERT_TRUE(torque.allFinite());

@@ -137,11 +137,11 @@ TEST(BudgetMonteCarlo, SharesAreThoseOfDrawnHammers) {
     if (quantity == "blow/restitution") continue;
     for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
       const double share = of_draws.cwiseAbs2()[static_cast<Eigen::Index>(i)] / of_draws.squaredNorm();
-      double said = 0.0;
+      double stated = 0.0;
       for (const BudgetFigure::Source& source : figure->sources)
-        if (source.name == kHammerConstants[i].key) said = source.variance / (figure->deviation * figure->deviation);
+        if (source.name == kHammerConstants[i].key) stated = source.variance / (figure->deviation * figure->deviation);
       compared += share > 0.1;
-      EXPECT_NEAR(said, share, share > 0.1 ? 0.1 * share : 0.03) << quantity << ' ' << kHammerConstants[i].key;
+      EXPECT_NEAR(stated, share, share > 0.1 ? 0.1 * share : 0.03) << quantity << ' ' << kHammerConstants[i].key;
     }
   }
   EXPECT_GE(compared, 15);

@@ -93,9 +93,9 @@ TEST(ElasticOutputs, TakeTheRodAsASpringBetweenSamplesToo) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       if (truth[i].touches()) continue;
       const Eigen::Vector3d error = vectorOf(outputs[i].wrench) - loadOf(truth[i]);
-      const Eigen::Vector3d said = vectorOf(outputs[i].deviation.wrench());
+      const Eigen::Vector3d stated = vectorOf(outputs[i].deviation.wrench());
       for (std::size_t k = 0; k < 3; ++k)
-        errors[k].add(error[static_cast<Eigen::Index>(k)], said[static_cast<Eigen::Index>(k)]);
+        errors[k].add(error[static_cast<Eigen::Index>(k)], stated[static_cast<Eigen::Index>(k)]);
       right.add(truth[i].load.force_z, 0.0);
     }
     EXPECT_GT(right.count(), 1000.0);

@@ -51,10 +51,10 @@ TEST(ElasticRanges, AVibrationBetweenSparseSamplesIsCounted) {
       fine.add(truth.load.force_z);
       if (step++ % 50 == 0) sparse.add(truth.load.force_z);
     }
-    const life::RangeDeviation said = life::rangeDeviation(piece.counts[0]);
+    const life::RangeDeviation stated = life::rangeDeviation(piece.counts[0]);
     for (const double slope : {3.0, 5.0}) {
       const double right = life::equivalentLoad(life::rangesAndMeans(fine), slope, 1.0, {}).value;
-      const life::Figure found = life::equivalentLoad(life::rangesAndMeans(piece.counts[0]), slope, 1.0, said);
+      const life::Figure found = life::equivalentLoad(life::rangesAndMeans(piece.counts[0]), slope, 1.0, stated);
       EXPECT_NEAR(found.value, right, 0.07 * right) << slope;
       EXPECT_NEAR(found.value, right, 2.0 * found.deviation) << slope;
       EXPECT_LT(life::equivalentLoad(life::rangesAndMeans(sparse), slope, 1.0, {}).value, 0.92 * right) << slope;

@@ -16,8 +16,8 @@ namespace {
 
 /// Results of one run. error, said, elsewhere: root mean squares of Fz [N]; error and said 10 to 40 ms after the blows.
 struct RingFound {
-  double error{}, said{}, elsewhere{};  ///< said: due to the vibration; elsewhere: this later than 70 ms
-  double impulse_bias{};                ///< relative error of a revolution's impulse along z [-]
+  double error{}, stated{}, elsewhere{};  ///< said: due to the vibration; elsewhere: this later than 70 ms
+  double impulse_bias{};                  ///< relative error of a revolution's impulse along z [-]
   double impulse_covered{};
   double restitution_bias{}, restitution_covered{}, energy_covered{}, restitution_said{};
   double energy_bias{}, energy_said{};       ///< relative [-]
@@ -114,13 +114,13 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, Ranges ranges 
     if (since > 0.01 && since < 0.04) {
       ++n;
       found.error += square(result.wrench.force_z - truth.load.force_z);
-      found.said += square(result.rod_ring.force_z);
+      found.stated += square(result.rod_ring.force_z);
     } else if (since > 0.07) {
       ++others;
       found.elsewhere += square(result.rod_ring.force_z);
     }
   }
-  found.error = std::sqrt(found.error / n), found.said = std::sqrt(found.said / n);
+  found.error = std::sqrt(found.error / n), found.stated = std::sqrt(found.stated / n);
   found.elsewhere = std::sqrt(found.elsewhere / others);
   for (double* mean : {&found.impulse_bias, &found.impulse_covered, &found.restitution_bias, &found.restitution_said,
                        &found.restitution_covered, &found.energy_covered, &found.energy_bias, &found.energy_said})
@@ -143,9 +143,9 @@ TEST(RodRing, RigidLevelsStateItsSize) {
        {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
     const RingFound found = ringOf(rod, Level::kLinkage, Ranges::kCounted);
-    EXPECT_GT(found.said, 0.7 * found.error);
-    EXPECT_LT(found.said, 4.0 * found.error);  // a rod softer than assumed vibrates less
-    EXPECT_LT(found.elsewhere, 0.05 * found.said);
+    EXPECT_GT(found.stated, 0.7 * found.error);
+    EXPECT_LT(found.stated, 4.0 * found.error);  // a rod softer than assumed vibrates less
+    EXPECT_LT(found.elsewhere, 0.05 * found.stated);
     for (const int k : {0, 1}) {
       EXPECT_LT(found.range_error[k], -0.1);  // the vibration is missing
       EXPECT_LT(std::abs(found.range_error[k]), 2.0 * found.range_said[k]);
@@ -193,12 +193,12 @@ TEST(RodRing, WornPinsThatLetGoOfTheRockerAreInTheBlow) {
 
 TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
   const RingFound rigid = ringOf({}, Level::kLinkage, Ranges::kCounted);
-  EXPECT_LT(rigid.said, 0.35 * ringOf({1e9, 0.6, 0.0}, Level::kLinkage).said);
+  EXPECT_LT(rigid.stated, 0.35 * ringOf({1e9, 0.6, 0.0}, Level::kLinkage).stated);
   EXPECT_LT(rigid.range_said[0], 0.2);
   HammerParameters p = test::shippedDrawing().mechanism.parameters();
   p.rod_std = {};
   const Mechanism exact = *Mechanism::make(p).value;
-  EXPECT_EQ(ringOf({}, Level::kLinkage, Ranges::kLeftOut, 1000.0, {}, exact).said, 0.0);
+  EXPECT_EQ(ringOf({}, Level::kLinkage, Ranges::kLeftOut, 1000.0, {}, exact).stated, 0.0);
 }
 
 /// The rocker rebounds from this rock with half its speed; a rigid mechanism derives a quarter from the crank. Rigid
@@ -213,7 +213,7 @@ TEST(RodRing, RigidLevelsKnowNoRestitutionOnLivelyRock) {
     EXPECT_GT(rigid.restitution_covered, 0.9);
     EXPECT_GT(rigid.energy_covered, 0.9);
     EXPECT_NEAR(rigid.restitution_said, std::hypot(0.29, 0.2 - 0.5), 0.05);  // unknown within 0 to 1; 0.2 is read
-    EXPECT_GT(rigid.said, rigid.error);
+    EXPECT_GT(rigid.stated, rigid.error);
     const RingFound elastic = ringOf(rod, Level::kElastic, Ranges::kLeftOut, 1000.0, lively);
     EXPECT_LT(std::abs(elastic.restitution_bias), 0.02);
     EXPECT_GT(elastic.restitution_covered, 0.88);
@@ -260,7 +260,7 @@ TEST(RodRing, BeginsBeforeTheBlow) {
   const simulation::Session session = simulation::recordSession(ringingMachine({5e8, 0.65, 0.0}, 10.0, 4713));
   Pipeline pipeline(test::shippedDrawing().mechanism, test::shippedDrawing().pipeline);
   int samples = 0, covered = 0;
-  double error = 0.0, said = 0.0;
+  double error = 0.0, stated = 0.0;
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
     const simulation::CrankTruth& truth = session.truth[i];
     const SampleResult& r =
@@ -268,13 +268,13 @@ TEST(RodRing, BeginsBeforeTheBlow) {
     const double offset = CrankAngle::wrapToPi(truth.angle);
     if (truth.time < 4.0 || !r.isPublished() || !(offset > -0.15 && offset < 0.0)) continue;
     const double off = r.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y;
-    ++samples, error += square(off), said += square(r.deviation.wrench().torque_y);
+    ++samples, error += square(off), stated += square(r.deviation.wrench().torque_y);
     covered += std::abs(off) < 2.0 * r.deviation.wrench().torque_y;
   }
   ASSERT_GT(samples, 150);
   EXPECT_GT(std::sqrt(error / samples), 20.0) << "what there is to cover";
   EXPECT_GT(covered, 0.9 * samples);
-  EXPECT_LT(said, square(4.0) * error);
+  EXPECT_LT(stated, square(4.0) * error);
 }
 
 /// Issue: counted damage 0.7 to 1.4 of the true one; picking up the rocker is part of the revolution's impulse.

@@ -75,12 +75,12 @@ TEST(RodWarnings, ReportsNoCauseThatHasPassed) {
     pipeline.crankSample(r.stamp, {r.angle + (shaken ? 0.004 * std::sin(600.0 * time) : 0.0), r.speed});
   }
   const std::vector<Warning> warnings = warningsOf(pipeline);
-  const auto said = std::find_if(warnings.begin(), warnings.end(),
-                                 [](const Warning& w) { return std::string(w.key) == "inconsistent"; });
-  ASSERT_NE(said, warnings.end());
+  const auto stated = std::find_if(warnings.begin(), warnings.end(),
+                                   [](const Warning& w) { return std::string(w.key) == "inconsistent"; });
+  ASSERT_NE(stated, warnings.end());
   EXPECT_LT(pipeline.crank().tracker().consistency(), 1.5);
-  EXPECT_TRUE(names(said->text, "readings differed from the model")) << said->text;
-  EXPECT_FALSE(names(said->text, "readings differ ")) << said->text;
+  EXPECT_TRUE(names(stated->text, "readings differed from the model")) << stated->text;
+  EXPECT_FALSE(names(stated->text, "readings differ ")) << stated->text;
 }
 
 /// Coarse or rare readings show less of the rod and of the zero. If the rigid model follows less than half of such a

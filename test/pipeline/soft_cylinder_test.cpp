@@ -25,7 +25,7 @@ simulation::MachineSettings drawnMachine(unsigned seed, std::array<double, 3> oi
 
 struct FoundOil {
   BoomErrors errors;
-  std::array<std::optional<Vibration::OilFound>, 3> oil;
+  std::array<std::optional<Vibration::IdentifiedOil>, 3> oil;
   std::string named, others;  ///< text of "cylinder stiffness"; keys of all other warnings
 };
 
@@ -42,7 +42,7 @@ FoundOil findOil(const simulation::MachineSettings& machine, const std::string& 
     ASSERT_TRUE(result.boom != nullptr && !result.boom->fault) << time;
     found.errors.addSample(truth, result);
   });
-  for (std::size_t k = 0; k < 3; ++k) found.oil[k] = player.pipeline.boom()->boom().vibration().oilFound(k);
+  for (std::size_t k = 0; k < 3; ++k) found.oil[k] = player.pipeline.boom()->boom().vibration().identifiedOil(k);
   for (const Warning& warning : warningsOf(player.pipeline)) {
     if (std::string(warning.key) == "cylinder stiffness") {
       found.named = warning.text;

@@ -48,12 +48,12 @@ SwingingMachine drawnSwing(std::uint64_t seed) {
 }
 
 struct SwingFigure {
-  double squares{}, said{};
+  double squares{}, stated{};
   int count{}, within{};
   void add(double error, double deviation) {
     if (std::isnan(error)) return;
     ++count, within += std::abs(error) <= 2.0 * deviation;
-    squares += error * error, said += deviation * deviation;
+    squares += error * error, stated += deviation * deviation;
   }
 };
 
@@ -112,9 +112,9 @@ void followSwing(const SwingingMachine& m, const std::string& hull_motion, std::
 /// most: largest ratio of the stated standard deviation to the rms error.
 void expectHonest(const SwingFigure& f, const char* name, double most) {
   std::printf("%s: %d of %d blows within two deviations, rms error %.4f, stated %.4f\n", name, f.within, f.count,
-              std::sqrt(f.squares / f.count), std::sqrt(f.said / f.count));
+              std::sqrt(f.squares / f.count), std::sqrt(f.stated / f.count));
   EXPECT_GE(f.within, 0.88 * f.count) << name;
-  EXPECT_LE(f.said, most * most * f.squares) << name;
+  EXPECT_LE(f.stated, most * most * f.squares) << name;
 }
 
 TEST(UnmeasuredHull, TheDeviationsOfABlowHoldTheHullsVelocity) {
@@ -130,7 +130,7 @@ TEST(UnmeasuredHull, AHullThatIsHeldHasNoPartOfIt) {
   SwingErrors free, held;
   followSwing(drawnSwing(920), "unmeasured", 1, free);
   followSwing(drawnSwing(920), "fixed", 1, held);
-  EXPECT_LT(held.energy.said, 0.25 * free.energy.said);
+  EXPECT_LT(held.energy.stated, 0.25 * free.energy.stated);
   EXPECT_EQ(held.energy.within, 0);
 }
 

@@ -30,7 +30,7 @@ HammerParameters heavy() {
 /// psi of the rocker [rad].
 double rockerOf(const TwoBodies& bodies, const TwoBodyState& s) {
   const Motion m = bodies.links(s.angle).rocker;
-  return std::atan2(m.sin_psi, m.cos_psi) + s.beside;
+  return std::atan2(m.sin_psi, m.cos_psi) + s.displacement;
 }
 
 TEST(TwoBodies, AccelerationsAndWrenchAreThoseOfFreeLinks) {
@@ -43,7 +43,7 @@ TEST(TwoBodies, AccelerationsAndWrenchAreThoseOfFreeLinks) {
     TwoBodyState s{CrankAngle::fromOffset(offset), 14.0, 1e-5, 0.8};
     const LinkMotion l = bodies.links(s.angle);
     const simulation::TwoBodies angles{offset, rockerOf(bodies, s)},
-        speeds{s.speed, l.rocker.u * s.speed + s.beside_speed};
+        speeds{s.speed, l.rocker.u * s.speed + s.displacement_rate};
     const simulation::ElasticLinks::View view = links.at(angles, speeds);
     const double tension = spring.tension(view.rod.stretch, view.rod.rate(speeds));
     const auto weight = links.weight(view, kWeight), inertia = links.inertiaOfSpeeds(view);
@@ -74,19 +74,19 @@ TEST(TwoBodies, AStepFollowsTheAccelerations) {
   const TwoBodyDrive drive{kJc, kTorque, kWeight};
   constexpr double kStep = 1e-6;  // [s]
   for (const double play : {0.0, 1e-4})
-    for (const double beside : {-0.05, -0.01, 0.02, 0.05}) {
+    for (const double displacement : {-0.05, -0.01, 0.02, 0.05}) {
       const RodSpring rod{1e9, 0.3, play};
-      const TwoBodyState from{CrankAngle::fromOffset(0.15), 20.0, beside, -8.0};
+      const TwoBodyState from{CrankAngle::fromOffset(0.15), 20.0, displacement, -8.0};
       TwoBodyState s = from;
       bodies.move(rod, drive, kStep, s);
       const LinkMotion before = bodies.links(from.angle), after = bodies.links(s.angle);
       const auto rocker = [](const LinkMotion& l, const TwoBodyState& of) {
-        return l.rocker.u * of.speed + of.beside_speed;
+        return l.rocker.u * of.speed + of.displacement_rate;
       };
       const TwoBodyAccelerations a = bodies.accelerations(rod, drive, from, before);
       const double scale = 1e-3 * (std::abs(a.crank) + std::abs(a.rocker));
-      EXPECT_NEAR((s.speed - from.speed) / kStep, a.crank, scale) << beside;
-      EXPECT_NEAR((rocker(after, s) - rocker(before, from)) / kStep, a.rocker, scale) << beside;
+      EXPECT_NEAR((s.speed - from.speed) / kStep, a.crank, scale) << displacement;
+      EXPECT_NEAR((rocker(after, s) - rocker(before, from)) / kStep, a.rocker, scale) << displacement;
     }
 }
 
@@ -95,7 +95,7 @@ double energyOf(const TwoBodies& bodies, const simulation::ElasticLinks& links, 
                 const TwoBodyState& s) {
   const LinkMotion l = bodies.links(s.angle);
   const simulation::TwoBodies angles{s.angle.offset, rockerOf(bodies, s)},
-      v{s.speed, l.rocker.u * s.speed + s.beside_speed};
+      v{s.speed, l.rocker.u * s.speed + s.displacement_rate};
   const simulation::ElasticLinks::View view = links.at(angles, v);
   auto M = links.inertia(view);
   return 0.5 * ((M[0] + kJc) * v[0] * v[0] + M[2] * v[1] * v[1]) + M[1] * v[0] * v[1] +
@@ -131,7 +131,7 @@ TEST(TwoBodies, FrictionDissipatesTheWorkOfThePins) {
   const auto anglesOf = [&](const TwoBodyState& s) {  // crank, rocker and rod from pin to pin [rad]
     const LinkMotion rigid = bodies.links(s.angle);
     const Planar pivots = l.crank * rigid.phi + l.rod * rigid.beta - l.rocker * rigid.psi;
-    const LinkMotion at = withRocker(rigid, s.beside);
+    const LinkMotion at = withRocker(rigid, s.displacement);
     const Planar rod = pivots + l.rocker * at.psi - l.crank * at.phi;
     return std::array<double, 3>{std::atan2(at.phi.im, at.phi.re), std::atan2(at.psi.im, at.psi.re),
                                  std::atan2(rod.im, rod.re)};
@@ -175,7 +175,7 @@ TEST(TwoBodies, AStiffRodIsTheRigidMechanism) {
     advanceState(model, 0.02, {}, rigid);
     EXPECT_NEAR(s.angle.offset, rigid.position.angle.offset, 1e-5) << ratio;
     EXPECT_NEAR(s.speed, rigid.speed, 1e-3) << ratio;
-    EXPECT_LT(std::abs(s.beside), 1e-5) << ratio;
+    EXPECT_LT(std::abs(s.displacement), 1e-5) << ratio;
   }
 }
 
@@ -188,14 +188,14 @@ TEST(TwoBodies, MomentumIsWhatTheWrenchTakes) {
   const TwoBodyDrive drive{kJc, kTorque, kWeight};
   const auto linksOf = [&](const TwoBodyState& s) {
     LinkMotion links = bodies.links(s.angle);
-    links.psi = links.psi * Planar{std::cos(s.beside), std::sin(s.beside)};
+    links.psi = links.psi * Planar{std::cos(s.displacement), std::sin(s.displacement)};
     return links;
   };
   const auto momentum = [&](const TwoBodyState& s) {
     return -1.0 * hullWrenchOf(mechanism, linksOf(s), bodies.linkSpeeds(s, linksOf(s)), {0.0, 0.0});
   };
-  for (const double beside : {1e-5, 0.02}) {
-    TwoBodyState s{CrankAngle::fromOffset(0.3), 14.0, beside, 3.0};
+  for (const double displacement : {1e-5, 0.02}) {
+    TwoBodyState s{CrankAngle::fromOffset(0.3), 14.0, displacement, 3.0};
     const LinkMotion links = linksOf(s);
     const TwoBodyAccelerations a = bodies.accelerations(rod, drive, s, bodies.links(s.angle));
     const HullWrench wrench = hullWrenchOf(mechanism, links, bodies.linkAccelerations(s, a, links), {0.0, 0.0});
@@ -204,9 +204,9 @@ TEST(TwoBodies, MomentumIsWhatTheWrenchTakes) {
     bodies.move(rod, drive, kTime, s);
     const HullWrench lost = (1.0 / kTime) * (before + -1.0 * momentum(s));
     const double size = std::hypot(wrench.force_x, wrench.force_z);
-    EXPECT_NEAR(lost.force_x, wrench.force_x, 0.01 * size) << beside;
-    EXPECT_NEAR(lost.force_z, wrench.force_z, 0.01 * size) << beside;
-    EXPECT_NEAR(lost.torque_y, wrench.torque_y, 0.01 * std::abs(wrench.torque_y) + 0.002 * size) << beside;
+    EXPECT_NEAR(lost.force_x, wrench.force_x, 0.01 * size) << displacement;
+    EXPECT_NEAR(lost.force_z, wrench.force_z, 0.01 * size) << displacement;
+    EXPECT_NEAR(lost.torque_y, wrench.torque_y, 0.01 * std::abs(wrench.torque_y) + 0.002 * size) << displacement;
   }
 }
 
@@ -228,13 +228,13 @@ TEST(TwoBodies, ABlowActsOnTheRockerAlone) {
   EXPECT_NEAR(rockerOf(bodies, blow->after), 0.0, 1e-7);
   TwoBodyState later = s;
   EXPECT_FALSE(bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, later, memo)) << "it is behind it";
-  EXPECT_NEAR(bodies.links(s.angle).rocker.u * s.speed + s.beside_speed, -0.16 * before, 1e-2);
+  EXPECT_NEAR(bodies.links(s.angle).rocker.u * s.speed + s.displacement_rate, -0.16 * before, 1e-2);
   EXPECT_NEAR(rockerOf(bodies, s), 0.0, 1e-3);
   TwoBodyState early{{-1e-4, Side::kBeforeBlow}, 14.0, 0.0, 0.0};
   bodies.strikeEarly(drive, {0.0, 0.16}, early);
   bodies.move(rod, drive, 2e-5, early);
   EXPECT_NEAR(early.angle.offset, s.angle.offset, 1e-9);
-  EXPECT_NEAR(early.beside, s.beside, 1e-7);
+  EXPECT_NEAR(early.displacement, s.displacement, 1e-7);
   EXPECT_NEAR(early.speed, s.speed, 1e-4);
 }
 

@@ -72,9 +72,9 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   ++samples;
   force_x.add(result.wrench.force_x, truth.load.force_x);
   force_z.add(result.wrench.force_z, truth.load.force_z);
-  const auto said = life::LoadError::of;
+  const auto stated = life::LoadError::of;
   life_force_z.add(result.wrench.force_z, truth.load.force_z,
-                   said(result.ofExtreme().deviation.force_z, result.deviation.common().force_z));
+                   stated(result.ofExtreme().deviation.force_z, result.deviation.common().force_z));
   addWrench(truth, result);
   moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
   const BoomState& boom = *result.boom;
@@ -85,14 +85,15 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   for (int j = 0; j < 3; ++j) {
     const double weight = boom.loads.weight[j + 1], total = boom.loads.total[j + 1];
     torque[j].add(total - weight, -truth.hold[j] - weight);
-    life_torque[j].add(total, -truth.hold[j], said(boom.deviations.torque[j + 1], boom.common.torque[j + 1]));
-    torque_said[j] += square(boom.deviations.torque[j + 1]);
+    life_torque[j].add(total, -truth.hold[j], stated(boom.deviations.torque[j + 1], boom.common.torque[j + 1]));
+    torque_stated[j] += square(boom.deviations.torque[j + 1]);
     torques.add(total + truth.hold[j], boom.deviations.torque[j + 1]);
   }
   for (std::size_t s = 0; s < 3; ++s) {
     const double bending = boom.steel.section[s].torque.y(), right = truth.cut[s].torque_y;
     section[s].add(bending, right);
-    life_section[s].add(bending, right, said(boom.deviations.section[s].torque.y(), boom.common.section[s].torque.y()));
+    life_section[s].add(bending, right,
+                        stated(boom.deviations.section[s].torque.y(), boom.common.section[s].torque.y()));
     bendings.add(bending - right, boom.deviations.section[s].torque.y());
   }
   contact.add(boom.contact.force.z(), truth.rock.force_z);

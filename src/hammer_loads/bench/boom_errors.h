@@ -20,7 +20,7 @@ struct BoomErrors {
   std::size_t withheld{};                 ///< samples without the boom's loads
   FigureErrors wrench[3];                 ///< force x, force z, moment with their deviations
   FigureErrors torques, bendings;         ///< torques of all joints with weight, bending moments of all sections
-  double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
+  double torque_stated[3]{};              ///< squares of the torques' deviations [N2 m2]
   double worst_force{}, largest_force{};  ///< magnitudes of the force vector [N]
   std::size_t lost_as_shown{};            ///< samples with a correct flag of a lost hold-down force
   std::set<std::string> warnings;         ///< keys of the pipeline's warnings at the end
@@ -52,7 +52,7 @@ struct BoomErrors {
   /// Largest ratio of the torques' deviations to their errors, as root mean squares.
   double widest() const {
     double widest = 0.0;
-    for (int j = 0; j < 3; ++j) widest = std::max(widest, std::sqrt(torque_said[j] / torque[j].square));
+    for (int j = 0; j < 3; ++j) widest = std::max(widest, std::sqrt(torque_stated[j] / torque[j].square));
     return widest;
   }
 

@@ -95,14 +95,14 @@ Table drawingTable(const Settings& settings, int drawings, std::uint64_t first_s
     double least = 1.0;
     for (const DrawingRow& row : rows) {
       const DrawingRow::Figure one = figure(row);
-      sum.rms += square(one.rms), sum.said += square(one.said), sum.covered += one.covered;
+      sum.rms += square(one.rms), sum.stated += square(one.stated), sum.covered += one.covered;
       least = std::min(least, one.covered);
     }
     const auto count = static_cast<double>(rows.size());
     table.beginRow();
     table.text("", "quantity", quantity);
     table.percent("error, rms", "rms", 2, std::sqrt(sum.rms / count));
-    table.percent("stated, rms", "stated", 2, std::sqrt(sum.said / count));
+    table.percent("stated, rms", "stated", 2, std::sqrt(sum.stated / count));
     table.percent("within two standard deviations", "covered", 0, sum.covered / count);
     table.percent("smallest of a machine", "least", 0, least);
   };

@@ -22,10 +22,10 @@ LifeFigure figureBy(double counted, double right, double own, double common) {
 
 void LifeError::endTurn() {
   const double range = turn_.range();
-  const life::LoadError said = turn_.ofRange();
+  const life::LoadError stated = turn_.ofRange();
   turn_ = {};
-  if (!(range > 0.0 && said.own >= 0.0 && said.common >= 0.0)) return;
-  square_ += square(range), own_ += range * said.own, common_ += range * said.common;
+  if (!(range > 0.0 && stated.own >= 0.0 && stated.common >= 0.0)) return;
+  square_ += square(range), own_ += range * stated.own, common_ += range * stated.common;
 }
 
 LifeFigure LifeError::figure() const {
@@ -33,8 +33,8 @@ LifeFigure LifeError::figure() const {
 }
 
 LifeFigure figureOf(const life::CycleCount& counted, const life::ExactCycles& right) {
-  const life::RangeDeviation said = life::rangeDeviation(counted);
-  return figureBy(equivalentRange(counted), equivalentRange(right), said.own, said.common);
+  const life::RangeDeviation stated = life::rangeDeviation(counted);
+  return figureBy(equivalentRange(counted), equivalentRange(right), stated.own, stated.common);
 }
 
 std::string json(const LifeFigure& figure) {

@@ -16,15 +16,15 @@ namespace hammer_loads::accuracy {
 class FigureErrors {
  public:
   struct Result {
-    double rms{}, said{};  ///< root mean squares of errors and of standard deviations
-    double covered{};      ///< part of the errors within two of their deviations
-    double bias{};         ///< mean error
-    double worst{};        ///< largest magnitude of an error
+    double rms{}, stated{};  ///< root mean squares of errors and of standard deviations
+    double covered{};        ///< part of the errors within two of their deviations
+    double bias{};           ///< mean error
+    double worst{};          ///< largest magnitude of an error
   };
 
   void add(double error, double deviation) {
     ++count_;
-    sum_ += error, squares_ += square(error), said_ += square(deviation);
+    sum_ += error, squares_ += square(error), stated_ += square(deviation);
     inside_ += std::abs(error) <= 2.0 * deviation;
     worst_ = std::max(worst_, std::abs(error));
   }
@@ -33,14 +33,14 @@ class FigureErrors {
   }
   /// In parts of `unit`.
   Result result(double unit = 1.0) const {
-    return {std::sqrt(squares_ / count_) / unit, std::sqrt(said_ / count_) / unit, inside_ / count_,
+    return {std::sqrt(squares_ / count_) / unit, std::sqrt(stated_ / count_) / unit, inside_ / count_,
             sum_ / count_ / unit, worst_ / unit};
   }
   double count() const { return count_; }
   double squares() const { return squares_; }  ///< sum of the squares of the errors
 
  private:
-  double count_{}, sum_{}, squares_{}, said_{}, inside_{}, worst_{};
+  double count_{}, sum_{}, squares_{}, stated_{}, inside_{}, worst_{};
 };
 
 /// Errors over root mean square and over the largest of the truth.
@@ -76,9 +76,9 @@ struct LifeFigure {
 
 /// Cycles of both series, sample by sample, counted by ASTM E1049, without a grid.
 struct LifeError {
-  void add(double estimate, double truth, const life::LoadError& said = {}) {
+  void add(double estimate, double truth, const life::LoadError& stated = {}) {
     estimated_.add(estimate);
-    turn_.add(estimate, said);
+    turn_.add(estimate, stated);
     right_.add(truth);
   }
   /// Ranges and their deviations are those of turns, as LifeRecorder has them.

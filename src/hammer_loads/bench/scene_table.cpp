@@ -60,8 +60,8 @@ struct Judge {
       if (touches) continue;
       right /= kInMean;
       largest = largest.cwiseMax(right.cwiseAbs());
-      const Eigen::Vector3d error = vectorOf(mean.wrench) - right, said = vectorOf(mean.deviation.wrench());
-      for (Eigen::Index k = 0; k < 3; ++k) errors[static_cast<std::size_t>(k)].add(error[k], said[k]);
+      const Eigen::Vector3d error = vectorOf(mean.wrench) - right, stated = vectorOf(mean.deviation.wrench());
+      for (Eigen::Index k = 0; k < 3; ++k) errors[static_cast<std::size_t>(k)].add(error[k], stated[k]);
     }
     std::array<FigureErrors::Result, 3> result;
     for (std::size_t k = 0; k < 3; ++k) result[k] = errors[k].result(largest[static_cast<Eigen::Index>(k)]);
@@ -89,7 +89,7 @@ Table sceneTable(const Settings& settings, const std::vector<ElasticRow>& elasti
     table.cell(header, format(pattern, value));
   };
   const auto field = [&](const char* key, const FigureErrors::Result& f) {
-    table.field(key, format("{\"rms\": %.4g, \"stated\": %.4g, \"covered\": %.4g}", f.rms, f.said, f.covered));
+    table.field(key, format("{\"rms\": %.4g, \"stated\": %.4g, \"covered\": %.4g}", f.rms, f.stated, f.covered));
   };
   const std::vector<ElasticKind> kinds = elasticKinds(settings.mechanism.parameters());
   for (const ElasticRow& row : elastic) {
@@ -102,7 +102,7 @@ Table sceneTable(const Settings& settings, const std::vector<ElasticRow>& elasti
     table.text("machine", "machine", row.machine);
     table.text("level", "level", nameOf(row.level));
     table.cell("means of 1/60 s: rms Fx, Fz, moment", percents(2, {x.rms, z.rms, moment.rms}));
-    table.cell("stated", percents(2, {x.said, z.said, moment.said}));
+    table.cell("stated", percents(2, {x.stated, z.stated, moment.stated}));
     table.cell("within two standard deviations", percents(0, {x.covered, z.covered, moment.covered}));
     field("slow_x", x), field("slow_z", z), field("slow_y", moment);
     cell("damage-equivalent range of Fz", "%+.1f %%", 100.0 * life.error);
@@ -110,12 +110,12 @@ Table sceneTable(const Settings& settings, const std::vector<ElasticRow>& elasti
     table.field("life", json(life));
     cell("energy: mean error", "%+.1f %%", 100.0 * energy.bias), table.number("energy_bias", energy.bias);
     cell("rms", "%.1f %%", 100.0 * energy.rms);
-    cell("stated", "%.1f %%", 100.0 * energy.said);
+    cell("stated", "%.1f %%", 100.0 * energy.stated);
     cell("within", "%.0f %%", 100.0 * energy.covered);
     field("energy", energy);
     cell("restitution: mean error", "%+.3f", restitution.bias), table.number("restitution_bias", restitution.bias);
     cell("rms", "%.3f", restitution.rms);
-    cell("stated", "%.3f", restitution.said);
+    cell("stated", "%.3f", restitution.stated);
     cell("within", "%.0f %%", 100.0 * restitution.covered);
     field("restitution", restitution);
   }

@@ -72,9 +72,9 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
     if (loads.refusal) return;
     run.accepted.push_back(seconds(loads.stamp));
     if (!loads.isPublished()) return;
-    const HullWrench said = loads.outputs.empty() ? HullWrench{} : loads.outputs.front().deviation.wrench();
+    const HullWrench stated = loads.outputs.empty() ? HullWrench{} : loads.outputs.front().deviation.wrench();
     run.wrenches.push_back({seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y,
-                            said.force_x, said.force_z, said.torque_y});
+                            stated.force_x, stated.force_z, stated.torque_y});
   });
   run.counts = player.pipeline.counts();
   return run;

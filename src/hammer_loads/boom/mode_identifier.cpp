@@ -183,7 +183,7 @@ void ModeIdentifier::followContact(const JointVector& torque) noexcept {
 void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
   if (isExplained()) explained_for_ += step;
-  if (learns_ && !explains_ && !seeks_ && explained_for_ < kProven) seeks_ = explains_ = true, surprise_ = 1.0;
+  if (learns_ && !explains_ && !seeks_ && explained_for_ < kProven) seeks_ = explains_ = true, innovation_ratio_ = 1.0;
   const double share = std::min(1.0, step / look_back::kTenTurns);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];
@@ -211,10 +211,10 @@ void ModeIdentifier::advanceModes(const HeldForces::Piece& piece) noexcept {
   for (int k = 0; k < count_; ++k) {
     const auto mode = static_cast<std::size_t>(k);
     const ModeStep& its = steps[mode] = stepOf(modeAt(k), step);
-    const double beside = rockOn(k) * state_[kContact] + rubbed[k];
+    const double external = rockOn(k) * state_[kContact] + rubbed[k];
     const ModeState& before = now[mode];
     ModeState& next = then[mode] = advanced(its, before, pathOf({piece.from[k], piece.to[k], piece.mean[k]}, step));
-    next.x += its.r.step * beside, next.v += its.r.impulse * beside;
+    next.x += its.r.step * external, next.v += its.r.impulse * external;
     state_[at(k, kX)] = next.x, state_[at(k, kV)] = next.v;
     history_.set(k, before, next, piece.from[k], piece.to[k]);
   }

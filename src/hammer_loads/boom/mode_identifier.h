@@ -107,7 +107,7 @@ class ModeIdentifier {
   /// Mean square of the innovations of the oil torques over their variance, averaged over 1 s [-]. Correct pressures at
   /// 500 Hz have 0.3 to 0.7 (one of 20 machines briefly 1.2), pressures that lag by 5 ms have 1.2 and more. 0 without
   /// identification.
-  double oilSurprise() const noexcept { return learns_ ? oil_surprise_ : 0.0; }
+  double oilInnovationRatio() const noexcept { return learns_ ? oil_innovation_ratio_ : 0.0; }
 
   int channels() const noexcept { return channels_; }  ///< number of channels that have had a reading
   /// Frequency over the given one, and ratio of damping [-].
@@ -123,7 +123,7 @@ class ModeIdentifier {
   bool waitsForDelay() const noexcept { return unlearns_for_ > 0.0 || (imuSpeaks() && !isDelayFollowed(Clock::kImu)); }
   /// Torque on a cylinder's joint by damping in excess of the given one, rms over an oscillation [N m]. The pressures
   /// do not contain it.
-  double dampingBesideOil(std::size_t cylinder) const noexcept;
+  double dampingWithoutOil(std::size_t cylinder) const noexcept;
   ModeState motion(int mode) const noexcept;  ///< estimated motion
   /// Modal torque of the oil that pressures show with a stamp this long [s] after the present, or before it if
   /// negative.
@@ -173,7 +173,7 @@ class ModeIdentifier {
   auto inUse(const State& state) const noexcept { return state.segment(begin(), states()); }
 
   ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
-  double besideOil(int mode) const noexcept;
+  double varianceWithoutOil(int mode) const noexcept;
   bool isDelayFollowed(Clock clock) const noexcept {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
   }
@@ -219,7 +219,9 @@ class ModeIdentifier {
   bool isExplained() const noexcept;
   /// Duration [s] of agreement, of lost frequencies, of inflated variances and of a hull without rock.
   static constexpr double kProven = look_back::kFiveTurns;
-  double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< factor on the variance of the pressures
+  double misfit() const noexcept {
+    return std::max(1.0, oil_innovation_ratio_);
+  }  ///< factor on the variance of the pressures
   double byDelay(Clock clock, const State& row) const noexcept;
   bool delayShows(Clock clock) const noexcept;
   StateList keptStates() const noexcept;
@@ -259,9 +261,9 @@ class ModeIdentifier {
   double known_for_{};  ///< time since every frequency has been known, until a delay is estimated [s]
   double lost_for_{};   ///< time for which a frequency has been lost since then [s]
   bool explains_{true}, seeks_{};
-  double explained_for_{};    ///< time for which readings have agreed with the identified oil [s]
-  double oil_surprise_{1.0};  ///< mean square of the oil torques' innovations over its expectation [-]
-  double surprise_{1.0};      ///< mean square of the accelerations' innovations over its expectation [-]
+  double explained_for_{};            ///< time for which readings have agreed with the identified oil [s]
+  double oil_innovation_ratio_{1.0};  ///< mean square of the oil torques' innovations over its expectation [-]
+  double innovation_ratio_{1.0};      ///< mean square of the accelerations' innovations over its expectation [-]
   BoomModes modes_;
   ModeHistory history_;
   int count_{};

@@ -16,7 +16,7 @@ constexpr double kDelayWalk = 2e-5;  // random walk of a delay in a second [s]: 
 constexpr double kOilWithDelay = 0.1;      // deviation of log stiffness, beside what was known without a delay
 constexpr double kWrongPart = 0.05;        // relative error of an identified delay
 constexpr double kWrongByPressures = 0.3;  // by them alone
-constexpr double kDoubt =
+constexpr double kLeadDeviations =
     0.6;  // number of deviations of an expected lead; the deviations are large, see ConstantErrors
 constexpr double kWrongLead = 0.3;  // relative error of the crank's lead, which may be a sensor's
 // Prior: kOilWithDelay, kWrongPart, kWrongByPressures, kWrongLead
@@ -84,11 +84,11 @@ ModeHistory::Moment ModeIdentifier::momentAt(int mode, double ahead) const noexc
 /// fastest mode. Beyond the queue, and before the history, the last force is kept.
 ModeHistory::Moment ModeIdentifier::momentAhead(int mode, double ahead) const noexcept {
   const Mode m = modeAt(mode);
-  const double beside = forceOfSeals(way_)[mode] + rockOn(mode) * state_[kContact], damped = 2.0 * m.zeta * m.omega;
+  const double external = forceOfSeals(way_)[mode] + rockOn(mode) * state_[kContact], damped = 2.0 * m.zeta * m.omega;
   ModeHistory::Moment moment{stateOf(mode), force_[mode], force_rate_[mode]};
   const auto move = [&](double h) {
     ModeState& now = moment.state;
-    const double a = acceleration(m, now, moment.force + beside);
+    const double a = acceleration(m, now, moment.force + external);
     const double jerk = moment.force_rate - damped * a - square(m.omega) * now.v;
     now.x += h * (now.v + 0.5 * h * (a + h / 3.0 * jerk)), now.v += h * (a + 0.5 * h * jerk);
     moment.force += h * moment.force_rate;
@@ -111,7 +111,7 @@ void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (!learns_ || isDelayFollowed(clock) || known_for_ < look_back::kTurn || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
   if (clock == Clock::kPressures) return unlearn(1.0);
-  surprise_ = 1.0;  // the delay may explain the earlier misfit
+  innovation_ratio_ = 1.0;  // the delay may explain the earlier misfit
   unlearns_for_ = kProven;
 }
 
@@ -167,16 +167,16 @@ double ModeIdentifier::findCrankLead() const noexcept {
     common = first ? delayByCrank(clock) : lesserOf(common, delayByCrank(clock));
     first = false;
   }
-  const double doubt = kDoubt * expected_lead_.deviation, rest = common - expected_lead_.mean;
-  return lesserOf(common, expected_lead_.mean + (std::abs(rest) <= doubt ? rest : square(doubt) / rest));
+  const double deviation = kLeadDeviations * expected_lead_.deviation, rest = common - expected_lead_.mean;
+  return lesserOf(common, expected_lead_.mean + (std::abs(rest) <= deviation ? rest : square(deviation) / rest));
 }
 
 ModeIdentifier::Lag ModeIdentifier::lagOf(Clock clock, int mode) const noexcept {
   if (clock != Clock::kPressures) return {clock == Clock::kCrank ? -imuDelay() : 0.0, 1.0};
   const double late = pressureLag();
   if (!imuSpeaks() || !(late > 0.0)) return {late, 1.0};
-  const double doubt = std::sqrt(covariance_(delayAt(clock), delayAt(clock)));
-  if (!(late > gate::kVeryRare * doubt)) return {late, 1.0};  // only a hose causes so large a delay
+  const double deviation = std::sqrt(covariance_(delayAt(clock), delayAt(clock)));
+  if (!(late > gate::kVeryRare * deviation)) return {late, 1.0};  // only a hose causes so large a delay
   const double omega = modeAt(mode).omega, turned = omega * late;
   return {std::atan(turned) / omega, 1.0 / std::sqrt(1.0 + square(turned))};
 }

@@ -86,16 +86,16 @@ void ModeIdentifier::useOil() noexcept {
 }
 
 /// Mean square over an oscillation of a mode's acceleration by damping that is not the oil's.
-double ModeIdentifier::besideOil(int k) const noexcept {
+double ModeIdentifier::varianceWithoutOil(int k) const noexcept {
   const Mode mode = modeAt(k);
   const ModeState now = stateOf(k);
   return 0.5 * square(2.0 * std::max(0.0, mode.zeta - damping_ratio_) * mode.omega) *
          (square(now.v) + square(mode.omega * now.x));
 }
 
-double ModeIdentifier::dampingBesideOil(std::size_t cylinder) const noexcept {
+double ModeIdentifier::dampingWithoutOil(std::size_t cylinder) const noexcept {
   double squares = 0.0;
-  for (int k = 0; k < count_; ++k) squares += square(modes_.inertia(modes_.joint[cylinder], k)) * besideOil(k);
+  for (int k = 0; k < count_; ++k) squares += square(modes_.inertia(modes_.joint[cylinder], k)) * varianceWithoutOil(k);
   return std::sqrt(squares);
 }
 
@@ -199,7 +199,7 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     for (int i = 0; i < count_; ++i) covariance(k, k) += square(modes_.shape(i, k) * way_[i] * unknown[i]);
     // The first term is that of damping by neither oil nor known friction, which is not linear and not of a single
     // mode; the others are those of errors of the mode's shape.
-    covariance(k, k) += besideOil(k) + square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +
+    covariance(k, k) += varianceWithoutOil(k) + square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +
                         square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
   }
   return covariance;

@@ -10,12 +10,12 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kFarOff = gate::kRare;  // standard deviations beyond which a reading counts less
-constexpr double kSurpriseShare = 3e-4;  // weight of one reading in the mean of squares: 1.7 s at 1 kHz
-constexpr double kSurprised =
-    5.0;                       // limit of that mean: at 4, the oil was identified wrongly in one of eight poses on rock
-constexpr double kCalm = 1.8;  // limit of that mean for agreement
-constexpr double kWorstSurprise = square(gate::kImpossible);  // limit of the contribution of one reading
-constexpr std::size_t kTogether = 3;                          // readings that are linear about one state
+constexpr double kRatioShare = 3e-4;     // weight of one reading in the mean of squares: 1.7 s at 1 kHz
+constexpr double kContradicted =
+    5.0;  // limit of that mean: at 4, the oil was identified wrongly in one of eight poses on rock
+constexpr double kAgrees = 1.8;                            // limit of that mean for agreement
+constexpr double kWorstRatio = square(gate::kImpossible);  // limit of the contribution of one reading
+constexpr std::size_t kTogether = 3;                       // readings that are linear about one state
 
 }  // namespace
 
@@ -254,7 +254,9 @@ bool ModeIdentifier::mayYetExplain() const noexcept {
 }
 
 /// True if the identified oil explains the accelerations.
-bool ModeIdentifier::isExplained() const noexcept { return explains_ && surprise_ < kCalm && learns_ && identified(); }
+bool ModeIdentifier::isExplained() const noexcept {
+  return explains_ && innovation_ratio_ < kAgrees && learns_ && identified();
+}
 
 /// Innovation variance S of a reading from the variance of its prediction; 0 if the reading is ignored.
 double ModeIdentifier::gateReading(const VibrationReading& reading, double predicted, double difference) noexcept {
@@ -262,15 +264,15 @@ double ModeIdentifier::gateReading(const VibrationReading& reading, double predi
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
     if (explains_) {
-      explains_ = surprise_ < kSurprised || mayYetExplain();
-    } else if (surprise_ < kCalm) {
+      explains_ = innovation_ratio_ < kContradicted || mayYetExplain();
+    } else if (innovation_ratio_ < kAgrees) {
       explains_ = true, seeks_ = false;
     }
-    surprise_ +=
-        kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
+    innovation_ratio_ +=
+        kRatioShare * (std::min(kWorstRatio, square(difference) / (S - square(reading.neglected))) - innovation_ratio_);
   }
   if (reading.of_oil)
-    oil_surprise_ += kSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - oil_surprise_);
+    oil_innovation_ratio_ += kRatioShare * (std::min(kWorstRatio, square(difference) / S) - oil_innovation_ratio_);
   if (!(square(difference) > square(kFarOff) * S)) return S;
   return S * std::abs(difference) / (kFarOff * std::sqrt(S));
 }

@@ -180,26 +180,26 @@ void Vibration::useIdentified() noexcept {
 
 /// Uncertainty of a logarithm of stiffness by damping that is not the oil's. Such damping belongs to no single mode,
 /// and the part of its force, 2 zeta of the stiffness's, that is in phase with the stiffness's is not known.
-double Vibration::oilDoubt(int cylinder) const noexcept {
-  double doubt = 0.0;
+double Vibration::oilDeviation(int cylinder) const noexcept {
+  double excess = 0.0;
   for (int k = 0; k < modes_.count; ++k)
-    doubt += modes_.oil_share(cylinder, k) * std::max(0.0, mode(k).zeta - settings_.damping_ratio);
-  return doubt;
+    excess += modes_.oil_share(cylinder, k) * std::max(0.0, mode(k).zeta - settings_.damping_ratio);
+  return excess;
 }
 
-Vibration::OilFound Vibration::oilFound(const LogOil& by) const noexcept {
+Vibration::IdentifiedOil Vibration::identifiedOil(const LogOil& by) const noexcept {
   double variance = 0.0;
   for (int i = 0; i < modes_.count; ++i) {
     for (int j = 0; j < modes_.count; ++j) variance += by[i] * by[j] * identifier_->oilCovariance(i, j);
-    variance += square(by[i] * oilDoubt(i));
+    variance += square(by[i] * oilDeviation(i));
   }
   return {by.dot(log_oil_ + identifier_->oil()), std::sqrt(std::max(variance, 0.0))};
 }
 
-std::optional<Vibration::OilFound> Vibration::oilFound(std::size_t cylinder) const noexcept {
+std::optional<Vibration::IdentifiedOil> Vibration::identifiedOil(std::size_t cylinder) const noexcept {
   const int own = static_cast<int>(cylinder);
   if (!identifies() || own >= modes_.count || !identifier_->identified()) return std::nullopt;
-  return oilFound(LogOil(LogOil::Unit(own)));
+  return identifiedOil(LogOil(LogOil::Unit(own)));
 }
 
 std::optional<Vibration::OilAgainstOthers> Vibration::oilAgainstOthers(std::size_t cylinder) const noexcept {
@@ -208,7 +208,7 @@ std::optional<Vibration::OilAgainstOthers> Vibration::oilAgainstOthers(std::size
   LogOil by = LogOil::Zero();
   by.head(count).setConstant(-1.0 / (count - 1));
   by[own] = 1.0;
-  const OilFound found = oilFound(by);
+  const IdentifiedOil found = identifiedOil(by);
   return OilAgainstOthers{found.stiffer, found.deviation, by.cwiseProduct(own_oil_).norm()};
 }
 

@@ -82,11 +82,11 @@ class Vibration {
   std::optional<OilAgainstOthers> oilAgainstOthers(std::size_t cylinder) const noexcept;
   /// Stiffness of a cylinder's oil over that of the boom file: logarithm as identified, and its standard deviation,
   /// which includes the effect of damping beside the oil.
-  struct OilFound {
+  struct IdentifiedOil {
     double stiffer{}, deviation{};
   };
   /// Oil of a cylinder; none while frequencies are not identified.
-  std::optional<OilFound> oilFound(std::size_t cylinder) const noexcept;
+  std::optional<IdentifiedOil> identifiedOil(std::size_t cylinder) const noexcept;
   /// Filter that estimates the motion from readings; null without one.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
   /// True if displacement and velocity are estimated from readings, as all frequencies are known or the rock bears on
@@ -128,8 +128,8 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
-  double oilDoubt(int cylinder) const noexcept;        ///< standard deviation of its log stiffness
-  OilFound oilFound(const LogOil& by) const noexcept;  ///< weighted sum over the cylinders
+  double oilDeviation(int cylinder) const noexcept;              ///< standard deviation of its log stiffness
+  IdentifiedOil identifiedOil(const LogOil& by) const noexcept;  ///< weighted sum over the cylinders
   LogOil oilToTake() const noexcept;
   void useMotion() noexcept;
   void storeMotion() noexcept;

@@ -15,7 +15,7 @@ constexpr int kMostSteps = 64;     // from one node of the torque to the next
 
 /// Equations of motion on one side of a blow and their derivatives. The state is angle and sqrt(inertia) speed; time is
 /// counted from the blow.
-class ShotWay {
+class ShotIntegrator {
  public:
   using Path = Eigen::Vector2d;
   struct There {
@@ -29,7 +29,7 @@ class ShotWay {
     There there;
   };
 
-  ShotWay(const ShaftModel& model, const HalfShot& half) : model_(model), half_(half) {}
+  ShotIntegrator(const ShaftModel& model, const HalfShot& half) : model_(model), half_(half) {}
 
   There at(double time, const Path& path) const {
     There t{model_({path[0], side()}), 0.0, 0.0, 0.0};
@@ -81,8 +81,8 @@ class ShotWay {
     double part;
   };
   NodePlace nodePlace(double time) const {
-    const double place = std::fmin(time / half_.node_step, static_cast<double>(kNodesBeside));  // NaN: last node
-    const int node = std::min(static_cast<int>(place), kNodesBeside - 1);
+    const double place = std::fmin(time / half_.node_step, static_cast<double>(kNodesPerSide));  // NaN: last node
+    const int node = std::min(static_cast<int>(place), kNodesPerSide - 1);
     return {node, place - node};
   }
   double sign() const { return half_.before ? -1.0 : 1.0; }
@@ -116,27 +116,27 @@ struct Node {
 };
 
 template <bool with_slopes>
-void step(const ShotWay& way, double dt, ShotWay::Run& run) {
+void step(const ShotIntegrator& integrator, double dt, ShotIntegrator::Run& run) {
   const double middle = run.time + 0.5 * dt, end = run.time + dt;
-  using Path = ShotWay::Path;
-  const Path k1 = way.rate(run.there, run.path), p2 = run.path + 0.5 * dt * k1;
-  const ShotWay::There t2 = way.at(middle, p2);
-  const Path k2 = way.rate(t2, p2), p3 = run.path + 0.5 * dt * k2;
-  const ShotWay::There t3 = way.at(middle, p3);
-  const Path k3 = way.rate(t3, p3), p4 = run.path + dt * k3;
-  const ShotWay::There t4 = way.at(end, p4);
-  const Path k4 = way.rate(t4, p4);
+  using Path = ShotIntegrator::Path;
+  const Path k1 = integrator.rate(run.there, run.path), p2 = run.path + 0.5 * dt * k1;
+  const ShotIntegrator::There t2 = integrator.at(middle, p2);
+  const Path k2 = integrator.rate(t2, p2), p3 = run.path + 0.5 * dt * k2;
+  const ShotIntegrator::There t3 = integrator.at(middle, p3);
+  const Path k3 = integrator.rate(t3, p3), p4 = run.path + dt * k3;
+  const ShotIntegrator::There t4 = integrator.at(end, p4);
+  const Path k4 = integrator.rate(t4, p4);
   if constexpr (with_slopes) {
     using S = ShotSlopes;
-    const S s1 = way.rate(run.there, run.time, run.path, run.slopes);
-    const S s2 = way.rate(t2, middle, p2, S(run.slopes + 0.5 * dt * s1));
-    const S s3 = way.rate(t3, middle, p3, S(run.slopes + 0.5 * dt * s2));
-    const S s4 = way.rate(t4, end, p4, S(run.slopes + dt * s3));
+    const S s1 = integrator.rate(run.there, run.time, run.path, run.slopes);
+    const S s2 = integrator.rate(t2, middle, p2, S(run.slopes + 0.5 * dt * s1));
+    const S s3 = integrator.rate(t3, middle, p3, S(run.slopes + 0.5 * dt * s2));
+    const S s4 = integrator.rate(t4, end, p4, S(run.slopes + dt * s3));
     run.slopes += dt / 6.0 * (s1 + 2.0 * (s2 + s3) + s4);
   }
   run.path += dt / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
   run.time = end;
-  run.there = way.at(end, run.path);
+  run.there = integrator.at(end, run.path);
 }
 
 /// Interpolation within a step. The motion is a polynomial of degree 5 through offset, speed and acceleration at both
@@ -179,26 +179,26 @@ class Between {
 };
 
 template <bool with_slopes>
-Node nodeOf(const ShotWay& way, const ShotWay::Run& run) {
-  Node node{run.time, way.pointAt(run.there, run.path), {}};
-  if constexpr (with_slopes) node.slopes = way.ofPoint(run.there, run.slopes);
+Node nodeOf(const ShotIntegrator& integrator, const ShotIntegrator::Run& run) {
+  Node node{run.time, integrator.pointAt(run.there, run.path), {}};
+  if constexpr (with_slopes) node.slopes = integrator.ofPoint(run.there, run.slopes);
   return node;
 }
 
 /// Integrates over all times in steps that end at the torque nodes; `slopes` is used only if with_slopes is true.
 template <bool with_slopes>
-void follow(const ShotWay& way, const HalfShot& half, const std::vector<double>& times, std::vector<ShotPoint>& points,
-            std::vector<ShotSlopes>* slopes) {
-  ShotWay::Run run = way.atBlow();
-  Node from = nodeOf<with_slopes>(way, run);
+void follow(const ShotIntegrator& integrator, const HalfShot& half, const std::vector<double>& times,
+            std::vector<ShotPoint>& points, std::vector<ShotSlopes>* slopes) {
+  ShotIntegrator::Run run = integrator.atBlow();
+  Node from = nodeOf<with_slopes>(integrator, run);
   double node_end = half.node_step;
   for (std::size_t i = 0; i < times.size();) {
     const double left = node_end - run.time, longest = kMaxStep / std::max(std::abs(run.there.speed), 1.0),
                  needed = left / longest;
     const int steps = needed < kMostSteps ? std::max(1, static_cast<int>(std::ceil(needed))) : kMostSteps;
-    step<with_slopes>(way, left / steps, run);
+    step<with_slopes>(integrator, left / steps, run);
     if (steps == 1) node_end += half.node_step;
-    const Node to = nodeOf<with_slopes>(way, run);
+    const Node to = nodeOf<with_slopes>(integrator, run);
     const Between between(half.before ? -1.0 : 1.0, from, to);
     for (; i < times.size() && times[i] <= to.time; ++i) {
       points[i] = between.point(times[i]);
@@ -212,13 +212,13 @@ void follow(const ShotWay& way, const HalfShot& half, const std::vector<double>&
 
 void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
            std::vector<ShotPoint>& points, std::vector<ShotSlopes>* slopes) {
-  const ShotWay way(model, half);
+  const ShotIntegrator integrator(model, half);
   points.resize(times.size());
   if (slopes) {
     slopes->resize(times.size());
-    follow<true>(way, half, times, points, slopes);
+    follow<true>(integrator, half, times, points, slopes);
   } else {
-    follow<false>(way, half, times, points, nullptr);
+    follow<false>(integrator, half, times, points, nullptr);
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace hammer_loads::calibration {
 
-constexpr int kNodesBeside = 4;  ///< nodes of the torque on either side of the blow
+constexpr int kNodesPerSide = 4;  ///< nodes of the torque on either side of the blow
 
 /// Local parameters of one blow: instant [s], crank speeds before and after [rad/s], net torque [N m] at the nodes. One
 /// node is at the blow, the others at equal steps before and after it. The torque is linear between nodes.
@@ -18,14 +18,14 @@ enum LocalIndex : Eigen::Index {
   kSpeedAfter,
   kTorqueAtBlow,
   kTorques,
-  kLocals = kTorques + 2 * kNodesBeside
+  kLocals = kTorques + 2 * kNodesPerSide
 };
 using Locals = Eigen::Matrix<double, kLocals, 1>;
 
 /// Returns the index of a torque node in Locals; node 0 is at the blow, higher nodes are further away.
 constexpr Eigen::Index torqueIndex(bool before, int node) {
   return node == 0 ? static_cast<Eigen::Index>(kTorqueAtBlow)
-                   : static_cast<Eigen::Index>(kTorques) + (before ? 0 : kNodesBeside) + node - 1;
+                   : static_cast<Eigen::Index>(kTorques) + (before ? 0 : kNodesPerSide) + node - 1;
 }
 
 /// Dependence of the drive torque on the crank's motion, common to all blows.
@@ -38,10 +38,10 @@ struct DriveLaw {
 /// Parameters of the motion on one side of the blow.
 struct HalfShot {
   bool before{};
-  double speed{};                     ///< at the blow [rad/s]
-  double torque[kNodesBeside + 1]{};  ///< at the nodes [N m]
-  double node_step{};                 ///< [s], > 0
-  double drive_inertia{};             ///< [kg m2]
+  double speed{};                      ///< at the blow [rad/s]
+  double torque[kNodesPerSide + 1]{};  ///< at the nodes [N m]
+  double node_step{};                  ///< [s], > 0
+  double drive_inertia{};              ///< [kg m2]
   DriveLaw law;
 };
 
@@ -55,7 +55,7 @@ struct ShotPoint {
 enum HalfIndex : Eigen::Index {
   kOwnSpeed,
   kOwnTorques,
-  kOwnLogInertia = kOwnTorques + kNodesBeside + 1,
+  kOwnLogInertia = kOwnTorques + kNodesPerSide + 1,
   kOwnStiffness,
   kOwnDrag,
   kHalfMoving

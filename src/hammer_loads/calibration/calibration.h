@@ -30,7 +30,7 @@ struct Calibration : Findings {
   SensorFacts facts;
   double seconds{};
   std::size_t blows{}, left_out{};
-  bool rod_gives{};             ///< the connecting rod or its pins are elastic
+  bool rod_is_elastic{};        ///< the connecting rod or its pins are elastic
   double mean_square{};         ///< mean square of the residuals over their variance, per degree of freedom
   ResidualCurve before, after;  ///< with the current parameters, with the identified ones
   double more_blows{};          ///< blows needed to determine every key; infinity: more do not help

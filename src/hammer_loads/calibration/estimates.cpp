@@ -265,7 +265,7 @@ constexpr double kOfZero = 3.0 * kDegree, kOfEccentricity = 1.5 * kDegree, kOfIn
 /// Marks keys that a fit with a rigid rod gets wrong as not determined, with their possible error and the action.
 /// ratio: encoder revolutions per crank revolution.
 void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
-  result.rod_gives = rod.showsElasticRod();
+  result.rod_is_elastic = rod.showsElasticRod();
   if (!rod.showsElasticRod()) return;
   const auto effectOn = [&](const Estimate& e) {
     if (e.key == "crank_zero_rad") return kOfZero * std::abs(ratio);

@@ -15,8 +15,8 @@ namespace {
 // Numerical: kReplicas, kSteps
 constexpr int kReplicas = 4;            // replicas of the recording, in pairs whose errors have opposite signs
 constexpr double kMostUncertain = 5.0;  // variance over the prior variance
-constexpr double kBiasDoubt = 0.5;      // standard deviation of the remaining bias over the removed bias
-// Prior: kBiasDoubt
+constexpr double kBiasStd = 0.5;        // standard deviation of the remaining bias over the removed bias
+// Prior: kBiasStd
 constexpr double kMounting = 0.0175;  // standard deviation of each part of an encoder's eccentricity [rad]: 1 deg
 // Prior: kMounting
 
@@ -38,8 +38,8 @@ struct Information {
 Information informationOf(const SegmentFit& fit, const JointFit& joint, const SegmentModel& model,
                           const MachineColumns& columns, const std::vector<SegmentModel>& others) {
   const auto count = static_cast<Eigen::Index>(columns.columns().size()), size = kGlobals + count;
-  std::vector<std::vector<ShotPoint>> beside;
-  for (const SegmentModel& other : others) beside.push_back(fit.motion(other, joint.globals));
+  std::vector<std::vector<ShotPoint>> neighbours;
+  for (const SegmentModel& other : others) neighbours.push_back(fit.motion(other, joint.globals));
   const std::vector<ResidualRow> rows = fit.rows(model, joint.globals, joint.noise);
   const NormalEquations own = fit.equationsOf(rows, joint.noise);
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(kLocals, size);
@@ -49,7 +49,7 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
     by.head<kGlobals>() = row.by_global;
     for (Eigen::Index k = 0; k < count; ++k) {
       const auto column = static_cast<std::size_t>(k);
-      const ShotPoint& there = beside[column][row.point];
+      const ShotPoint& there = neighbours[column][row.point];
       by[kGlobals + k] =
           (row.by_offset * (there.offset - row.at.offset) + row.by_speed * (there.speed - row.at.speed)) /
           columns.columns()[column].step;
@@ -93,15 +93,15 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model) {
   std::optional<Mechanism> hammer = model.mechanism;
   for (int i = 0; i < kSteps && hammer; ++i) {
     const SegmentModel here{*hammer, model.level};
-    const MachineColumns beside(*hammer, model.level);
-    if (beside.columns().size() != part.names.size()) break;  // the constants are at the limit of a possible hammer
+    const MachineColumns neighbours(*hammer, model.level);
+    if (neighbours.columns().size() != part.names.size()) break;  // the constants are at the limit of a possible hammer
     std::vector<SegmentModel> others;
-    for (const MachineColumn& column : beside.columns()) others.emplace_back(column.mechanism, column.level);
+    for (const MachineColumn& column : neighbours.columns()) others.emplace_back(column.mechanism, column.level);
     Information all{prior.asDiagonal(), Eigen::VectorXd(size)};
     all.score << prior.head<kGlobals>().cwiseProduct(centre - joint.globals), -part.errors;
     for (SegmentFit& fit : joint.fits) {
       if (i > 0) fitLocals(fit, here, joint.globals, joint.noise);
-      const Information one = informationOf(fit, joint, here, beside, others);
+      const Information one = informationOf(fit, joint, here, neighbours, others);
       all.matrix += one.matrix, all.score += one.score;
     }
     if (joint.centred) holdEccentricity(all.matrix, all.score);
@@ -164,10 +164,10 @@ void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, 
     of_hammer.tail(size - kGlobals) += found.errors / kReplicas;
   }
   joint.globals -= bias;
-  joint.covariance += kBiasDoubt * kBiasDoubt * bias * bias.transpose();
+  joint.covariance += kBiasStd * kBiasStd * bias * bias.transpose();
   hammer.globals -= of_hammer.head<kGlobals>();
   hammer.errors -= of_hammer.tail(size - kGlobals);
-  hammer.covariance += kBiasDoubt * kBiasDoubt * of_hammer * of_hammer.transpose();
+  hammer.covariance += kBiasStd * kBiasStd * of_hammer * of_hammer.transpose();
   for (SegmentFit& fit : joint.fits) fitLocals(fit, model, joint.globals, joint.noise);
 }
 

@@ -50,7 +50,7 @@ std::string foundOf(const Calibration& c) {
 }
 
 std::string whyNotFound(const Calibration& c, const Estimate& e) {
-  if (c.rod_gives) return "the connecting rod or its pins are elastic";
+  if (c.rod_is_elastic) return "the connecting rod or its pins are elastic";
   if (!e.hidden_by.empty()) return "hidden by the uncertainty of " + e.hidden_by;
   return std::isfinite(c.more_blows) ? "too few blows" : "this work does not show it";
 }
@@ -77,7 +77,7 @@ std::vector<std::pair<std::string, std::string>> notFoundOf(const Calibration& c
 std::string nextStepOf(const Calibration& c) {
   constexpr double kLargeResidual = 1.3;  // limit stated in doc/your_machine.md
   // Warning: kLargeResidual
-  if (c.rod_gives)
+  if (c.rod_is_elastic)
     return "more such work does not help: turn the crank by hand, without blows, until the rocker rests on its tool "
            "with crank and rod in line; "
            "write that reading as crank_zero_rad, and set level: elastic";

@@ -72,7 +72,7 @@ SegmentFit::SegmentFit(const BlowSegment& segment, const Globals& globals) : seg
   locals_[kInstant] = middle + (globals[kZero] - after_line.value) / locals_[kSpeedAfter];
   locals_[kInstant] = std::clamp(locals_[kInstant], p[after - 1].time, p[after].time);
   mean_speed_ = (p.back().seen - p.front().seen) / (p.back().time - p.front().time);
-  node_step_ = std::max(p.back().time - middle, middle - p.front().time) / kNodesBeside;
+  node_step_ = std::max(p.back().time - middle, middle - p.front().time) / kNodesPerSide;
 }
 
 std::size_t SegmentFit::beforeCount() const {
@@ -86,7 +86,7 @@ HalfShot SegmentFit::halfOf(const Globals& globals, bool before) const {
   HalfShot half;
   half.before = before;
   half.speed = locals_[before ? kSpeedBefore : kSpeedAfter];
-  for (int i = 0; i <= kNodesBeside; ++i) half.torque[i] = locals_[torqueIndex(before, i)];
+  for (int i = 0; i <= kNodesPerSide; ++i) half.torque[i] = locals_[torqueIndex(before, i)];
   half.node_step = node_step_;
   half.drive_inertia = std::exp(globals[kLogInertia]);
   half.law = {mean_speed_, globals[kStiffness], globals[kDrag]};
@@ -116,7 +116,7 @@ std::vector<ShotPoint> SegmentFit::motion(const SegmentModel& model, const Globa
       MotionSlopes& all = (*slopes)[place(i)];
       all.col(kInstant) << -side[i].speed, -side[i].acceleration;
       all.col(is_before ? kSpeedBefore : kSpeedAfter) = side_slopes[i].col(kOwnSpeed);
-      for (int node = 0; node <= kNodesBeside; ++node)
+      for (int node = 0; node <= kNodesPerSide; ++node)
         all.col(torqueIndex(is_before, node)) = side_slopes[i].col(kOwnTorques + node);
       all.rightCols<kShaping>() = side_slopes[i].middleCols<kShaping>(kOwnLogInertia);
     }
@@ -146,7 +146,7 @@ double SegmentFit::cost(const SegmentModel& model, const Globals& globals, const
   }
   const double step = noise.torque_walk * std::sqrt(node_step_);
   for (const bool before : {true, false}) {
-    for (int i = 1; i <= kNodesBeside; ++i)
+    for (int i = 1; i <= kNodesPerSide; ++i)
       cost += 0.5 * square((locals_[torqueIndex(before, i)] - locals_[torqueIndex(before, i - 1)]) / step);
   }
   return cost + 0.5 * square(locals_[kTorqueAtBlow] / noise.torque);
@@ -198,7 +198,7 @@ NormalEquations SegmentFit::equationsOf(const std::vector<ResidualRow>& rows, co
   e.ll = e.ll_angles + e.ll_speeds;
   const double walk = 1.0 / (square(noise.torque_walk) * node_step_);
   for (const bool before : {true, false}) {
-    for (int i = 1; i <= kNodesBeside; ++i) {
+    for (int i = 1; i <= kNodesPerSide; ++i) {
       const Eigen::Index a = torqueIndex(before, i), b = torqueIndex(before, i - 1);
       const double change = locals_[a] - locals_[b];
       e.ll(a, a) += walk, e.ll(b, b) += walk, e.ll(a, b) -= walk, e.ll(b, a) -= walk;

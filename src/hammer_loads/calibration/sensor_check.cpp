@@ -154,10 +154,10 @@ void checkCylinder(const BoomModel& model, const BoomPoints& recording, std::siz
     expected.push_back(
         boom.cylinders()[cylinder].load(boom.cylinderPosition(cylinder), boom.steadyTorque(joint)).force);
   }
-  const double as_said = misfit(model, expected, recording, cylinder, cylinder, false, 1.0);
-  if (as_said <= kFits) return;
+  const double as_given = misfit(model, expected, recording, cylinder, cylinder, false, 1.0);
+  if (as_given <= kFits) return;
   std::string best;
-  double least = as_said;
+  double least = as_given;
   for (std::size_t of = 0; of < boom.cylinders().size(); ++of) {
     for (const bool exchanged : {false, true}) {
       for (const auto& [unit, pascal] : kUnits) {
@@ -172,14 +172,14 @@ void checkCylinder(const BoomModel& model, const BoomPoints& recording, std::siz
     }
   }
   const std::string& name = boom.cylinders()[cylinder].parameters().name;
-  if (least < kBetter * as_said && least < kFits) {
+  if (least < kBetter * as_given && least < kFits) {
     lines.push_back(format("%s: its pressures are off the boom's weight by %.0f %%, read as %s by %.0f %%",
-                           name.c_str(), 100.0 * as_said, best.c_str(), 100.0 * least));
+                           name.c_str(), 100.0 * as_given, best.c_str(), 100.0 * least));
   } else {
     lines.push_back(
         format("%s: its pressures are off the boom's weight by %.0f %%, must be within %.0f %%: topics, "
                "units, bore, anchors or masses are otherwise than given",
-               name.c_str(), 100.0 * as_said, 100.0 * kFits));
+               name.c_str(), 100.0 * as_given, 100.0 * kFits));
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-constexpr double kMostSurprise = 100.0;  ///< limit for one sample, so that a single outlier raises no alarm
+constexpr double kMostNormalised = 100.0;  ///< limit for one sample, so that a single outlier raises no alarm
 
 /// Running mean of innovation^2 over its variance, over some 500 samples: 1 for a correct model.
 class Consistency {
@@ -21,7 +21,7 @@ class Consistency {
   void add(double squared_over_variance) noexcept {
     if (!std::isfinite(squared_over_variance)) return;
     if (samples_ < kLength) ++samples_;
-    mean_ += (std::min(squared_over_variance, kMostSurprise) - mean_) / samples_;
+    mean_ += (std::min(squared_over_variance, kMostNormalised) - mean_) / samples_;
   }
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
@@ -51,7 +51,7 @@ class StrikeConsistency {
  public:
   void add(double squared_over_variance) noexcept {
     if (!std::isfinite(squared_over_variance)) return;
-    sum_ += std::min(squared_over_variance, kMostSurprise);
+    sum_ += std::min(squared_over_variance, kMostNormalised);
     ++samples_;
   }
   /// Ends the half revolution at a passage of the blow.
@@ -83,7 +83,7 @@ class RodEvidence {
   /// Adds an innovation at a place of the crank.
   void add(const CrankAngle& at, double squared_over_variance) noexcept {
     if (!std::isfinite(squared_over_variance)) return;
-    const double bounded = std::min(squared_over_variance, kMostSurprise);
+    const double bounded = std::min(squared_over_variance, kMostNormalised);
     if (at.side == Side::kBeforeBlow) {
       if (at.offset > -kPickedUp) run_up_.add(bounded);
       return;
@@ -114,8 +114,8 @@ class RodEvidence {
  private:
   static double shareOf(const RunningMean<>& place, double reading) noexcept {
     if (!(reading < kCoarsest) || !(place.count() > kEnough)) return 1.0;
-    const double doubt = gate::kUsual * std::sqrt(2.0 / place.count());
-    return std::clamp((place.mean() - 1.0 + doubt) / mismatch::kUnexplained, 0.0, 1.0);
+    const double margin = gate::kUsual * std::sqrt(2.0 / place.count());
+    return std::clamp((place.mean() - 1.0 + margin) / mismatch::kUnexplained, 0.0, 1.0);
   }
   static constexpr double kEnough = 40.0;  ///< ten revolutions at 200 Hz; standard deviation of the mean 0.22
   static constexpr double kShare = 5.0;

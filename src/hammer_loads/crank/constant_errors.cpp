@@ -58,8 +58,8 @@ void ConstantErrors::addConsidered() noexcept {
 void ConstantErrors::learn(double innovation, double variance, const Row& by_error) noexcept {
   const Eigen::Matrix<double, 1, kTable> by_table = by_error.head<kTable>().cast<double>();
   const double weight = fit_.learn(innovation, variance, by_table);
-  beside_ += (weight * by_table.head<kPlace>().transpose())
-                 .lazyProduct(by_error.middleCols<kMachineColumns>(kTable).cast<double>());
+  score_by_hammer_ += (weight * by_table.head<kPlace>().transpose())
+                          .lazyProduct(by_error.middleCols<kMachineColumns>(kTable).cast<double>());
 }
 
 void ConstantErrors::endTurn(double growth, double count) noexcept {
@@ -73,7 +73,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   zero_is_seen_ = exceeds(zero_looks_, ofSensor(kZero), gate::kUsual);
   if (turns_ == kFirstTurns) {
     fit_.begin(prior_);
-    beside_.setZero();
+    score_by_hammer_.setZero();
   }
   if (turns_ < kTurnsToKnow) return;
   for (int i = 0; i < kTable; ++i)
@@ -81,28 +81,28 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
       covariance(i, i) = 1.0 / fit_.information()(i, i);
   estimate_ = covariance * fit_.score();
   const Eigen::Matrix<double, kPlace, 1> by_hammer =
-      (covariance.topLeftCorner<kPlace, kPlace>() * beside_).rowwise().squaredNorm();
+      (covariance.topLeftCorner<kPlace, kPlace>() * score_by_hammer_).rowwise().squaredNorm();
   // doubt: variance of an estimate of b, by which its square exceeds b^2; certain: root of the remainder.
-  Vector doubt = Vector::Zero(), certain = Vector::Zero();
+  Vector uncertain = Vector::Zero(), certain = Vector::Zero();
   double share = 0.0;  // largest certain part of an estimate's square
   for (int i = 0; i < kPlace; ++i) {
     const double variance = growth * covariance(i, i);
-    doubt[i] = ofSensor(i) + by_hammer[i];
+    uncertain[i] = ofSensor(i) + by_hammer[i];
     deviation_[i] =
-        std::sqrt(doubt[i] + (square(kUnmodelledDeviations) - 1.0) * variance + square(kUnmodelledCounts * count));
-    const double excess = square(estimate_[i]) - doubt[i];
+        std::sqrt(uncertain[i] + (square(kUnmodelledDeviations) - 1.0) * variance + square(kUnmodelledCounts * count));
+    const double excess = square(estimate_[i]) - uncertain[i];
     certain[i] = excess > 0.0 ? std::copysign(std::sqrt(excess), estimate_[i]) : 0.0;
     if (excess > 0.0) share = std::max(share, excess / square(estimate_[i]));
   }
   moment_ = growth * covariance + certain * certain.transpose();
   // A certain error counts in full; an uncertain one adds little.
-  moment_.diagonal() += share * share * doubt;
+  moment_.diagonal() += share * share * uncertain;
   moment_(kZero, kZero) += stepped_ + square(zeroNotLinear());
   if (!zeroIsShown()) moment_(kZero, kZero) = std::max(moment_(kZero, kZero), square(zero_given_));
   addConsidered();
   root_ = covarianceRoot(moment_);
   fit_.fade(1.0 - 1.0 / look_back::kManyTurns);
-  beside_ *= 1.0 - 1.0 / look_back::kManyTurns;
+  score_by_hammer_ *= 1.0 - 1.0 / look_back::kManyTurns;
 }
 
 }  // namespace hammer_loads

@@ -229,10 +229,10 @@ class ConstantErrors {
   int turns() const noexcept { return turns_; }
   /// Returns true if the revolutions have shown the zero, or if its given deviation is small. Until then moment()
   /// contains the given deviation, since the estimate of a zero that is 8 deg off may pass through 0 at first.
-  bool zeroIsShown() const noexcept { return zeroIsGiven() || (isKnown() && !zero_is_doubted_); }
+  bool zeroIsShown() const noexcept { return zeroIsGiven() || (isKnown() && !zero_is_contradicted_); }
   bool zeroIsGiven() const noexcept { return zero_given_ < kCalibratedZero; }
   /// Sets whether the search over the whole revolution contradicts estimate().
-  void setZeroContradicted(bool doubted) noexcept { zero_is_doubted_ = doubted; }
+  void setZeroContradicted(bool contradicted) noexcept { zero_is_contradicted_ = contradicted; }
   /// Standard deviation of the zero's estimate due to its linearity [rad], in addition to deviation(). The filter
   /// adapts to a wrong zero, so that 2 deg appear as 1.7 deg and 3.4 deg as 1.1 to 1.6 deg.
   double zeroNotLinear() const noexcept { return kNotLinear * estimate_[kZero] * estimate_[kZero]; }
@@ -269,12 +269,12 @@ class ConstantErrors {
   Vector prior_;
   double zero_given_{};  ///< [rad]
   ConstantFit<kTable> fit_;
-  using Beside = Eigen::Matrix<double, kPlace, kMachineColumns, Eigen::RowMajor>;
-  Beside beside_{Beside::Zero()};  ///< derivatives of fit_'s score by the hammer's errors
+  using ScoreByHammer = Eigen::Matrix<double, kPlace, kMachineColumns, Eigen::RowMajor>;
+  ScoreByHammer score_by_hammer_{ScoreByHammer::Zero()};  ///< derivatives of fit_'s score by the hammer's errors
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
   double zero_looks_{};  ///< [rad]
-  bool zero_is_seen_{}, zero_is_doubted_{};
+  bool zero_is_seen_{}, zero_is_contradicted_{};
   double stepped_{};  ///< variance of the zero's steps [rad2]
   int turns_{};
 };

@@ -29,7 +29,7 @@ class ContactHypothesis {
   /// Returns true if it exists and is not suspended.
   bool isOpen() const noexcept { return belief_ && !aside_; }
   /// Returns true if the estimate is clearly more likely to be on the wrong branch.
-  bool isDoubtful() const noexcept { return isOpen() && evidence_ > odds::kLikely; }
+  bool isUncertain() const noexcept { return isOpen() && evidence_ > odds::kLikely; }
   /// Probability of the second hypothesis; 0 if there is none.
   double probability() const noexcept { return isOpen() ? 1.0 / (1.0 + std::exp(-evidence_)) : 0.0; }
   /// Estimate of the hypothesis. Precondition: isThere().

@@ -14,7 +14,7 @@ constexpr double kMostFactor = 4.0;
 // Prior: kLeastFactor, kMostFactor
 
 /// Adds the uncertainty of a relative change of speed w `since` [s] ago, whose instant is uncertain within dt [s].
-void doubtSpeedChange(double variance, double w, double since, double dt, CrankBelief& b) noexcept {
+void addSpeedChangeNoise(double variance, double w, double since, double dt, CrankBelief& b) noexcept {
   using B = CrankBelief;
   const double by_angle = w * since;
   b.addNoise(B::kAngle, B::kAngle, (square(by_angle) + square(w * dt) / 12.0) * variance);
@@ -25,7 +25,7 @@ void doubtSpeedChange(double variance, double w, double since, double dt, CrankB
 }
 
 /// Returns true if the state is faster or further than any crank gets within the step.
-bool hasRunAway(const BetweenSamples& s, const ShaftState& state) noexcept {
+bool hasDiverged(const BetweenSamples& s, const ShaftState& state) noexcept {
   return !(std::abs(state.speed) < s.most_speed &&
            std::abs(difference(state.position, s.before.state.position)) <= s.most_speed * s.step + 0.5 * kTwoPi);
 }
@@ -41,45 +41,46 @@ void move(double apart, const CrankPosition& back, CrankPosition& position) noex
 
 /// Speed of a path on the relevant side of the blow, where the two paths pass it at different instants. A crank that
 /// turns back makes no blow.
-double speedOn(const CrankAngle& angle, const ShaftState& way, double factor, bool forward) noexcept {
-  const double speed = way.speed;
-  if (way.position.angle.side == angle.side || std::abs(angle.offset) > 1.0 || !(speed > 0.0) || !forward) return speed;
+double speedOn(const CrankAngle& angle, const ShaftState& path, double factor, bool forward) noexcept {
+  const double speed = path.speed;
+  if (path.position.angle.side == angle.side || std::abs(angle.offset) > 1.0 || !(speed > 0.0) || !forward)
+    return speed;
   return angle.side == Side::kAfterBlow ? speed * factor : speed / factor;
 }
 
 /// States of both paths after dt, at the place between them.
-struct Ways {
+struct Paths {
   ShaftState forward, back;
-  bool ran_away{};  ///< true if one path has diverged and was replaced
+  bool diverged{};  ///< true if one path has diverged and was replaced
 };
 
-Ways waysAfter(const BetweenSamples& s, double dt) noexcept {
+Paths pathsAfter(const BetweenSamples& s, double dt) noexcept {
   const ShaftState &before = s.before.state, &now = s.now.state;
-  Ways ways{before, now};
+  Paths paths{before, now};
   const bool contact = !before.position.isMirrored() && !now.position.isMirrored();
   // A tool met before the dead centre leaves nothing to strike there, unless that turned out to be a blow.
   const bool tool_was_none = s.before.struck_early && !s.now.struck_early;
   const Passing passing{s.before.tool_met && !tool_was_none ? 1.0 : s.now.factor, contact};
-  advanceState(s.step_model, dt, passing, ways.forward);
+  advanceState(s.step_model, dt, passing, paths.forward);
   const double part = dt / s.step;
-  if (hasRunAway(s, ways.forward)) {
-    ways.ran_away = true;
-    ways.forward = before;
-    ways.forward.position.turn(part * difference(now.position, before.position));
+  if (hasDiverged(s, paths.forward)) {
+    paths.diverged = true;
+    paths.forward = before;
+    paths.forward.position.turn(part * difference(now.position, before.position));
   }
   const bool at_begin = !(part > 0.0);  // there the backward path has no weight
-  if (!at_begin) advanceState(s.step_model, dt - s.step, passing, ways.back);
-  const bool back_ran_away = !at_begin && hasRunAway(s, ways.back);
-  ways.ran_away |= back_ran_away;
-  if (at_begin || back_ran_away) ways.back = ways.forward;
-  CrankPosition position = ways.forward.position;
-  move(part * difference(ways.back.position, ways.forward.position), ways.back.position, position);
+  if (!at_begin) advanceState(s.step_model, dt - s.step, passing, paths.back);
+  const bool back_diverged = !at_begin && hasDiverged(s, paths.back);
+  paths.diverged |= back_diverged;
+  if (at_begin || back_diverged) paths.back = paths.forward;
+  CrankPosition position = paths.forward.position;
+  move(part * difference(paths.back.position, paths.forward.position), paths.back.position, position);
   const bool forward = now.position.blowsPassed() >= before.position.blowsPassed();
-  for (ShaftState* way : {&ways.forward, &ways.back}) {
-    way->speed = speedOn(position.angle, *way, passing.factor, forward);
-    way->position = position;
+  for (ShaftState* path : {&paths.forward, &paths.back}) {
+    path->speed = speedOn(position.angle, *path, passing.factor, forward);
+    path->position = position;
   }
-  return ways;
+  return paths;
 }
 
 /// Returns the estimate at the place between both samples, with the hull's motion there.
@@ -190,7 +191,7 @@ void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn) noex
 
 void CrankBelief::meetTool(double deviation, double dt) noexcept {
   drawFactor({1.0, deviation});
-  doubtSpeedChange(square(deviation), state.speed, 0.5 * dt, dt, *this);
+  addSpeedChangeNoise(square(deviation), state.speed, 0.5 * dt, dt, *this);
 }
 
 bool CrankBelief::inflateBlow(Row row, double innovation, double total, double dt) noexcept {
@@ -200,7 +201,7 @@ bool CrankBelief::inflateBlow(Row row, double innovation, double total, double d
   if (!(variance > 0.0)) return false;
   covariance(kFactor, kFactor) += variance;
   struck_early = struck_early && square(factor - 1.0) > variance;  // otherwise the early contact was noise
-  doubtSpeedChange(variance, before, since, dt, *this);
+  addSpeedChangeNoise(variance, before, since, dt, *this);
   return true;
 }
 
@@ -235,10 +236,10 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
   const double inv = 1.0 / (state.drive_inertia + load.inertia), here = acceleration(load, state);
   constexpr double kStep = 1e-6;  // [rad]: relative errors 1e-6 by curvature and 1e-9 by rounding
   // Numerical: kStep
-  CrankAngle beside = state.position.angle;
-  beside.offset += kStep;
+  CrankAngle stepped = state.position.angle;
+  stepped.offset += kStep;
   Eigen::RowVector4d by;  // the acceleration's derivatives
-  by[CrankBelief::kAngle] = (acceleration(model(beside), state) - here) / kStep;
+  by[CrankBelief::kAngle] = (acceleration(model(stepped), state) - here) / kStep;
   by[CrankBelief::kSpeed] = -2.0 * load.half_inertia_slope * state.speed * inv;
   by[CrankBelief::kTorque] = inv * torque_part;
   by[CrankBelief::kInertia] = -(here + load.hull_acceleration) * state.drive_inertia * inv;
@@ -258,7 +259,7 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
 }
 
 CrankEstimate estimateBetween(const BetweenSamples& s, double dt) noexcept {
-  const auto [forward, back, ran_away] = waysAfter(s, dt);
+  const auto [forward, back, diverged] = pathsAfter(s, dt);
   const double part = dt / s.step;
   ShaftState state = forward;
   state.speed += part * (back.speed - state.speed);
@@ -267,10 +268,10 @@ CrankEstimate estimateBetween(const BetweenSamples& s, double dt) noexcept {
   return estimateThere(s, dt, state);
 }
 
-std::optional<CrankWays> waysBetween(const BetweenSamples& s, double dt) noexcept {
-  const Ways ways = waysAfter(s, dt);
-  if (ways.ran_away) return std::nullopt;
-  return CrankWays{estimateThere(s, dt, ways.forward), estimateThere(s, dt, ways.back)};
+std::optional<CrankPaths> pathsBetween(const BetweenSamples& s, double dt) noexcept {
+  const Paths paths = pathsAfter(s, dt);
+  if (paths.diverged) return std::nullopt;
+  return CrankPaths{estimateThere(s, dt, paths.forward), estimateThere(s, dt, paths.back)};
 }
 
 }  // namespace hammer_loads

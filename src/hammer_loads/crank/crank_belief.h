@@ -116,8 +116,8 @@ class BlowHistory {
   /// Adds the factor of a blow, its variance and its derivative by the sensor's errors, estimated from all samples
   /// since.
   void add(double factor, double variance, const ConstantErrors::Row& by_error) noexcept {
-    const double doubt = square(gate::kUsual) * variance;
-    if (!(doubt < variance_.mean() || variance < square(kLeast))) return;  // the samples contain no information on it
+    const double bound = square(gate::kUsual) * variance;
+    if (!(bound < variance_.mean() || variance < square(kLeast))) return;  // the samples contain no information on it
     variance_.add(square(factor - mean_.mean()));
     mean_.add(factor);
     by_error_.add(by_error);
@@ -216,6 +216,6 @@ struct BetweenSamples {
 CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;
 
 /// Returns the crank by both paths at the place between, each with its own speed and torque; empty if one diverged.
-std::optional<CrankWays> waysBetween(const BetweenSamples& samples, double dt) noexcept;
+std::optional<CrankPaths> pathsBetween(const BetweenSamples& samples, double dt) noexcept;
 
 }  // namespace hammer_loads

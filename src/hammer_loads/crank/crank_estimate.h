@@ -44,7 +44,7 @@ struct CrankUncertainty {
 };
 
 /// The crank at one place between two samples: predicted forward from the earlier one and backward from the later one.
-struct CrankWays {
+struct CrankPaths {
   CrankEstimate forward, back;
 };
 

@@ -25,15 +25,16 @@ constexpr double kMostTorque = 3.0;      // times its initial standard deviation
 constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: beyond it the filter has diverged
 // Limit: kSoundSpeeds
 // Prior: kLeastInertia, kMostInertia
-constexpr int kOneSided = 3;              // innovations of one sign beyond 5 standard deviations: not jitter
-constexpr int kOneSidedLost = 10;         // such innovations after many restarts: readings are consistent again
-constexpr double kSurpriseLength = 50.0;  // samples over which innovations beyond 5 standard deviations are counted
-constexpr double kManySurprises = 2.5;    // of these: more than jolts of the supply cause
-constexpr double kSlip = 3e-3;            // [s]: largest common error of successive stamps
+constexpr int kOneSided = 3;       // innovations of one sign beyond 5 standard deviations: not jitter
+constexpr int kOneSidedLost = 10;  // such innovations after many restarts: readings are consistent again
+constexpr double kGrossInnovationLength =
+    50.0;  // samples over which innovations beyond 5 standard deviations are counted
+constexpr double kManyGrossInnovations = 2.5;  // of these: more than jolts of the supply cause
+constexpr double kSlip = 3e-3;                 // [s]: largest common error of successive stamps
 
-constexpr double kUnlearnEvery = 3.0;   // [s]
-constexpr double kDoubtfulAngle = 0.3;  // [rad]: predicted standard deviation beyond which the prediction is useless
-constexpr double kForgetDoubts = 30.0;  // [s]
+constexpr double kUnlearnEvery = 3.0;  // [s]
+constexpr double kUselessAngle = 0.3;  // [rad]: predicted standard deviation beyond which the prediction is useless
+constexpr double kForgetContradictions = 30.0;  // [s]
 
 }  // namespace
 
@@ -55,8 +56,8 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings.initial_inertia_std);
 }
 
-void CrankFilter::countSurprise(bool surprised) noexcept {
-  surprises_ += (surprised ? 1.0 : 0.0) - surprises_ / kSurpriseLength;
+void CrankFilter::countGrossInnovation(bool is_gross) noexcept {
+  gross_innovations_ += (is_gross ? 1.0 : 0.0) - gross_innovations_ / kGrossInnovationLength;
 }
 
 double CrankFilter::mostSpeed() const noexcept { return kSoundSpeeds * settings_.max_speed; }
@@ -115,7 +116,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   lost_time_ = instant_off_ = 0.0;
   counts_intervals_ = false;
   restart_load_ *= std::max(0.0, 1.0 - dt / look_back::kTenTurns);
-  doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
+  contradictions_ *= std::max(0.0, 1.0 - dt / kForgetContradictions);
   step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
   const bool struck = predict(dt, true, now_) > 0;  // (1)
   const bool moved = applyZero();
@@ -128,8 +129,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   instant_off_ = std::abs(now_.state.speed) > kLearnSpeed ? to.innovation.value / now_.state.speed : 0.0;
   if (has_speed_)
     if (const auto result = followSensor(to)) return *result;
-  witness_.reset();
-  if (to.sample.speed) witness_.emplace().measured = *to.sample.speed;
+  comparison_.reset();
+  if (to.sample.speed) comparison_.emplace().measured = *to.sample.speed;
   if (has_speed_)
     if (const auto result = judge(to)) return *result;
   return accept(to, reading.angle);
@@ -144,15 +145,15 @@ std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
       exceeds(way, to.innovation.total, 2.0 * gate::kImpossible) && !to.innovation.exceeds(gate::kImpossible);
   const EncoderSlip::Step step = followSlip(to.dt, to.innovation, to.sample);
   if (step == EncoderSlip::Step::kPerhaps) {  // ignored as an outlier until the next sample decides
-    countSurprise(true);
+    countGrossInnovation(true);
     return ignore(to.last, to.innovation);
   }
   if (step == EncoderSlip::Step::kSlipped) to.innovation = to.sample.ofAngle(now_);
   const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
-  if (deviation < kDoubtfulAngle) return std::nullopt;
+  if (deviation < kUselessAngle) return std::nullopt;
   if (!now_.isSound(mostSpeed())) now_ = to.last;
   // Discards a speed so uncertain that the next sample would restart as well.
-  if (!(std::sqrt(speed_variance_) * to.dt < kDoubtfulAngle)) to.sample.speed.reset();
+  if (!(std::sqrt(speed_variance_) * to.dt < kUselessAngle)) to.sample.speed.reset();
   return begin(to.sample);
 }
 
@@ -220,9 +221,9 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
   const int side =
       !HAMMER_LOADS_ABLATE(surprises) && innovation.exceeds(gate::kImpossible) ? (innovation.value > 0.0 ? 1 : -1) : 0;
   if (side != 0) unexplained_ = side * unexplained_ < 0 ? side : unexplained_ + side;
-  countSurprise(side != 0);
+  countGrossInnovation(side != 0);
   const bool one_sided = std::abs(unexplained_) >= (isLost() ? kOneSidedLost : kOneSided);
-  if (side != 0 && !one_sided && (surprises_ > kManySurprises || isLost())) {
+  if (side != 0 && !one_sided && (gross_innovations_ > kManyGrossInnovations || isLost())) {
     innovation.variance = squared / square(gate::kImpossible);  // many on both sides: jittering stamps
   } else if (side != 0) {
     const double factor = (squared / square(gate::kUsual) - innovation.variance) / now_.encoderVariance(Belief::kAngle);
@@ -232,7 +233,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
     double& inertia = now_.covariance(Belief::kInertia, Belief::kInertia);
     if (!HAMMER_LOADS_ABLATE(relearn)) inertia = std::max(inertia, square(kRelearn));
   }
-  if (surprises_ > kManySurprises) now_.forgetInertiaCoupling();  // they would bias the inertia
+  if (gross_innovations_ > kManyGrossInnovations) now_.forgetInertiaCoupling();  // they would bias the inertia
   now_.correct(Belief::kAngle, innovation.value, innovation.variance, innovation.by_error);
 }
 
@@ -268,9 +269,9 @@ Tracking CrankFilter::ignore(const CrankBelief& last, const Innovation& innovati
 std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                                 const WeighedSample& sample) noexcept {
   const double most = kKick * std::abs(now_.state.speed) * dt + kKick * std::abs(outlier_);
-  countSurprise(true);
+  countGrossInnovation(true);
   const bool agrees = std::abs(CrankAngle::wrapToPi(innovation.value - outlier_)) < most;
-  const bool confirmed = outlier_ != 0.0 && (agrees || surprises_ < kManySurprises);
+  const bool confirmed = outlier_ != 0.0 && (agrees || gross_innovations_ < kManyGrossInnovations);
   if (!confirmed) return ignore(last, innovation);
   // Contradicted on the mirrored branch: there was contact.
   if (!agrees || mirrored_ || std::abs(innovation.value) > kSlip * std::abs(now_.state.speed)) {
@@ -292,12 +293,12 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   settleSide(last, dt, sample, struck);
   read_side_ = readSide(reading);
   applyReadSide(last, dt, struck, sample, reading);
-  if (witness_) {
+  if (comparison_) {
     const ConstantErrors::Row by_error = now_.encoderByError(Belief::kSpeed);
-    witness_->speed = now_.encoderSpeed();
-    witness_->variance = now_.encoderVariance(Belief::kSpeed) + square(settings_.speed_noise);
-    witness_->by_lag = by_error[ConstantErrors::kSpeedLag];
-    witness_->by_scale = by_error[ConstantErrors::kSpeedScale];
+    comparison_->speed = now_.encoderSpeed();
+    comparison_->variance = now_.encoderVariance(Belief::kSpeed) + square(settings_.speed_noise);
+    comparison_->by_lag = by_error[ConstantErrors::kSpeedLag];
+    comparison_->by_scale = by_error[ConstantErrors::kSpeedScale];
   }
   if (sample.speed) correctSpeed(sample, dt, struck);
   if (!mirrored_ && now_.state.position.isMirrored()) now_.stopAtBlow();  // moved there by the speed's correction
@@ -355,8 +356,8 @@ CrankEstimate CrankFilter::between(double dt) const noexcept {
   return estimateBetween(lastStep(), dt);
 }
 
-std::optional<CrankWays> CrankFilter::waysBetween(double dt) const noexcept {
-  return hammer_loads::waysBetween(lastStep(), std::min(dt, step_));
+std::optional<CrankPaths> CrankFilter::pathsBetween(double dt) const noexcept {
+  return hammer_loads::pathsBetween(lastStep(), std::min(dt, step_));
 }
 
 /// The forward prediction may reach the blow earlier than the path between both samples, with a factor not known yet.
@@ -420,10 +421,11 @@ void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept
 /// before the stamps' jitter was known.
 void CrankFilter::checkInertia(double dt) noexcept {
   unlearn_after_ -= dt;
-  if (HAMMER_LOADS_ABLATE(doubt_inertia) || !(consistency_.growth() > mismatch::kUnexplained) || unlearn_after_ > 0.0)
+  if (HAMMER_LOADS_ABLATE(contradicted_inertia) || !(consistency_.growth() > mismatch::kUnexplained) ||
+      unlearn_after_ > 0.0)
     return;
   unlearn_after_ = kUnlearnEvery;
-  doubt_load_ += 1.0;
+  contradictions_ += 1.0;
   forgetInertia();
 }
 

@@ -78,7 +78,7 @@ class CrankFilter {
   CrankEstimate between(double dt) const noexcept;
   /// Estimates at between(dt) by either sample alone; where they contradict each other, the estimate differs from both.
   /// Empty if one of the predictions diverges.
-  std::optional<CrankWays> waysBetween(double dt) const noexcept;
+  std::optional<CrankPaths> pathsBetween(double dt) const noexcept;
   /// Uncertainty of between(dt). torque_part: part of the torque's deviation that counts, see
   /// PipelineSettings::torque_std_part.
   CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept;
@@ -91,7 +91,7 @@ class CrankFilter {
   /// Factor of the last blow on the crank's speed, by all samples since.
   BlowFactor blowFactor() const noexcept;
   /// Returns true while it is uncertain whether the last passage was a blow: the estimate may be on the wrong branch.
-  bool isDoubtful() const noexcept { return hypothesis_.isDoubtful(); }
+  bool isUncertain() const noexcept { return hypothesis_.isUncertain(); }
   /// Probability of the other branch: no blow where the estimate has one, or a blow where it has none.
   double otherBranch() const noexcept;
   /// Returns true if the last reading itself determines the side of the blow, by an encoder's edge and an exact stamp.
@@ -113,7 +113,7 @@ class CrankFilter {
   /// restarts.
   void moveZero(double angle) noexcept { zero_moves_ += angle; }
   /// See ConstantErrors::setZeroContradicted().
-  void setZeroContradicted(bool doubted) noexcept { errors_.setZeroContradicted(doubted); }
+  void setZeroContradicted(bool contradicted) noexcept { errors_.setZeroContradicted(contradicted); }
 
   const ShaftState& state() const noexcept { return now_.state; }
   /// Estimate at the last accepted sample, as the filter computes it.
@@ -162,14 +162,14 @@ class CrankFilter {
   /// Returns true after so many restarts that the model does not fit: contradictions are then followed slowly.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Returns true if the innovations remain far larger than expected for any drive inertia.
-  bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
+  bool isUnexplained() const noexcept { return contradictions_ > kOftenContradicted; }
 
  private:
   static constexpr double kLearnSpeed = kSlowCrank;
   static constexpr double kToolSeen = gate::kVeryRare;  ///< gate for contact with the tool
   static constexpr double kHeld = 10.0;                 ///< times the first guess: no drive is as heavy
   // Limit: kHeld
-  static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
+  static constexpr double kLost = 5.0, kOftenContradicted = 2.0;
   static constexpr double kSteps = 20.0;  ///< samples in the mean step
   // Numerical: kSteps
 
@@ -186,7 +186,7 @@ class CrankFilter {
   std::optional<Tracking> followSensor(SampleStep& to) noexcept;
   std::optional<Tracking> judge(SampleStep& to) noexcept;
   Tracking accept(const SampleStep& to, double reading) noexcept;
-  void countSurprise(bool surprised) noexcept;
+  void countGrossInnovation(bool is_gross) noexcept;
   const CrankBelief& before() const noexcept { return earlier_[before_]; }
   /// Returns the last two samples and the step between them.
   BetweenSamples lastStep() const noexcept {
@@ -285,15 +285,15 @@ class CrankFilter {
   double stamps_off_{};               ///< standard deviation of the common shift of all stamps [s]
   SpeedTrust speed_trust_;
   AngleLag angle_lag_;
-  double zero_moves_{};                         ///< moveZero() since the last sample [rad]
-  std::optional<SpeedTrust::Witness> witness_;  ///< witness of the last sample
-  std::optional<Side> read_side_;               ///< side of the blow that the last reading shows
-  double outlier_{};                            ///< innovation of the outlier just seen [rad], 0: none
-  int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
-  double surprises_{};     ///< number of such innovations, decaying
-  double restart_load_{};  ///< number of restarts, decaying within 2 s
-  double doubt_load_{};    ///< number of times that the inertia was doubted, decaying within 30 s
-  bool speeds_wait_{};     ///< speeds are judged, but not used yet
+  double zero_moves_{};                               ///< moveZero() since the last sample [rad]
+  std::optional<SpeedTrust::Comparison> comparison_;  ///< witness of the last sample
+  std::optional<Side> read_side_;                     ///< side of the blow that the last reading shows
+  double outlier_{};                                  ///< innovation of the outlier just seen [rad], 0: none
+  int unexplained_{};  ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
+  double gross_innovations_{};  ///< number of such innovations, decaying
+  double restart_load_{};       ///< number of restarts, decaying within 2 s
+  double contradictions_{};     ///< number of times that the inertia was doubted, decaying within 30 s
+  bool speeds_wait_{};          ///< speeds are judged, but not used yet
   bool has_speed_{};
 };
 

@@ -98,9 +98,9 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
     return;
   }
   if (struck) return undoBlow(last, dt, sample);
-  const double doubt =
+  const double margin =
       kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
-  if (angle.offset > -doubt && now_.state.speed > -1.0) {
+  if (angle.offset > -margin && now_.state.speed > -1.0) {
     now_.stopAtBlow();  // it stands or moves on, within the errors of count and stamp
   } else {
     angle.side = Side::kBeforeBlow;
@@ -114,10 +114,10 @@ std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
   constexpr double kEdge = 1e-6;  // part of a count
   // Numerical: kEdge
   const double count = encoder_.resolution(), edge_tolerance = kEdge * count;
-  const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
+  const double margin = kCertain * std::abs(now_.state.speed) * timing_.deviation();
   const auto [low, high] = encoder_.edges(reading);
-  if (low - doubt > -edge_tolerance) return Side::kAfterBlow;
-  if (high + doubt < edge_tolerance) return Side::kBeforeBlow;
+  if (low - margin > -edge_tolerance) return Side::kAfterBlow;
+  if (high + margin < edge_tolerance) return Side::kBeforeBlow;
   return std::nullopt;
 }
 
@@ -167,9 +167,9 @@ void CrankFilter::checkContact() noexcept {
   if (HAMMER_LOADS_ABLATE(contact_by_torque) || !(now_.state.position.angle.offset > kRingOver)) return;
   supply_.addTorque(now_.state.torque);
   if (hypothesis_.isThere()) return;
-  const double doubt = consistency_.publishedGrowth();
-  const double variance = supply_.usual() + doubt * now_.covariance(Belief::kTorque, Belief::kTorque);
-  if (doubt > mismatch::kContradicts || !exceeds(now_.state.torque, variance, gate::kImpossible)) return;
+  const double margin = consistency_.publishedGrowth();
+  const double variance = supply_.usual() + margin * now_.covariance(Belief::kTorque, Belief::kTorque);
+  if (margin > mismatch::kContradicts || !exceeds(now_.state.torque, variance, gate::kImpossible)) return;
   CrankBelief other = now_;
   other.state.torque = 0.0;
   other.draw(Belief::kTorque, supply_.usual());
@@ -257,11 +257,11 @@ double CrankFilter::speedJump(bool struck) const noexcept {
 
 /// (8) Compares the speed with the estimate that does not contain it, except shortly after a restart.
 void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
-  if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
+  if (!comparison_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
     return speed_trust_.restart();
-  witness_->acceleration = acceleration(load_, now_.state);
-  witness_->jump = speedJump(struck);
-  speed_trust_.follow(dt, *witness_);
+  comparison_->acceleration = acceleration(load_, now_.state);
+  comparison_->jump = speedJump(struck);
+  speed_trust_.follow(dt, *comparison_);
 }
 
 /// (8)
@@ -332,7 +332,7 @@ bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
 
 /// (5) Returns true if a slip can be distinguished from the crank's motion and from the vibration of a rod.
 bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
-  const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
+  const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && gross_innovations_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
   return !HAMMER_LOADS_ABLATE(slip) && lost_time_ == 0.0 && !mayBeRod(innovation) && at_work && !mirrored_ &&
          !hypothesis_.isOpen() && nearest > kNotSlip;

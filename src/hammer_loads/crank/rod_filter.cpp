@@ -24,8 +24,8 @@ constexpr double kLongest = 5e-4, kLongestLater = 1e-3;  // [s]: longest part; n
 // Numerical: kLongest, kLongestLater
 constexpr double kNear = 0.25;  // [rad]
 // Numerical: kNear
-constexpr double kAngleDoubt = 1e-4, kSpeedDoubt = 0.02, kInertiaDoubt = 0.01;  // added to a rigid rod's estimate
-// Prior: kAngleDoubt, kSpeedDoubt, kInertiaDoubt
+constexpr double kAngleStd = 1e-4, kSpeedStd = 0.02, kInertiaStd = 0.01;  // added to a rigid rod's estimate
+// Prior: kAngleStd, kSpeedStd, kInertiaStd
 constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;  // [rad], [rad/s]
 // Prior: kSettledX, kSettledSpeed
 constexpr double kUnmodelled = 1.0;  // [rad/s/sqrt(s)] of the rocker's speed
@@ -40,8 +40,8 @@ constexpr int kEnough = 8;
 void follow(const RodMotion& of, const RodMotion& from, Eigen::Ref<RodFilter::Belief::Vector> error) noexcept {
   error[RodFilter::kAngle] = of.state.angle.offset - from.state.angle.offset;
   error[RodFilter::kSpeed] = of.state.speed - from.state.speed;
-  error[RodFilter::kBeside] = of.state.beside - from.state.beside;
-  error[RodFilter::kBesideSpeed] = of.state.beside_speed - from.state.beside_speed;
+  error[RodFilter::kDisplacement] = of.state.displacement - from.state.displacement;
+  error[RodFilter::kDisplacementRate] = of.state.displacement_rate - from.state.displacement_rate;
   error[RodFilter::kTorque] = of.torque - from.torque;
   error[RodFilter::kPlay] = of.rod.play - from.rod.play;
   error[RodFilter::kFriction] = of.rod.friction_radius - from.rod.friction_radius;
@@ -76,11 +76,11 @@ void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
   running_ = true;
   samples_ = 0;
   constexpr Eigen::Index kOf[] = {kAngle, kSpeed, kTorque, kInertia};
-  const double doubt[] = {kAngleDoubt, kSpeedDoubt, 0.0, kInertiaDoubt};
+  const double deviations[] = {kAngleStd, kSpeedStd, 0.0, kInertiaStd};
   belief_.covariance.setZero();
   for (Eigen::Index i = 0; i < 4; ++i) {
     for (Eigen::Index k = 0; k < 4; ++k) belief_.covariance(kOf[i], kOf[k]) = crank.growth() * crank.covariance()(i, k);
-    belief_.covariance(kOf[i], kOf[i]) += square(doubt[i]);
+    belief_.covariance(kOf[i], kOf[i]) += square(deviations[i]);
   }
   for (Eigen::Index i = 0; i < kLearned; ++i)
     if (learned_covariance_(i, i) > 0.0) learned_covariance_(i, i) += square(kWalks[i]);
@@ -94,8 +94,8 @@ void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
     follow(other, motion_, settled.col(i));
   }
   belief_.covariance = covarianceOf(settled);
-  belief_.addNoise(kBeside, kBeside, square(kSettledX));
-  belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kSettledSpeed));
+  belief_.addNoise(kDisplacement, kDisplacement, square(kSettledX));
+  belief_.addNoise(kDisplacementRate, kDisplacementRate, square(kSettledSpeed));
   root_ = covarianceRoot(belief_.covariance);
 }
 
@@ -103,8 +103,8 @@ RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
   RodMotion m = motion_;
   m.state.angle.offset += by[kAngle];
   m.state.speed += by[kSpeed];
-  m.state.beside += by[kBeside];
-  m.state.beside_speed += by[kBesideSpeed];
+  m.state.displacement += by[kDisplacement];
+  m.state.displacement_rate += by[kDisplacementRate];
   m.torque += by[kTorque];
   m.inertia *= hammer_loads::growth(by[kInertia]);
   m.rod.stiffness *= hammer_loads::growth(by[kStiffness]);
@@ -155,7 +155,7 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   const bool struck = there.state.angle.side == Side::kAfterBlow;
   const Eigen::Index count = struck && !hasStruck() ? kSize : kRestitution;  // number of columns that a step moves
   const TwoBodyState& last = blow_ ? blow_->before : motion_.state;
-  if (!hasStruck()) rocker_before_ = bodies_.links(last.angle).rocker.u * last.speed + last.beside_speed;
+  if (!hasStruck()) rocker_before_ = bodies_.links(last.angle).rocker.u * last.speed + last.displacement_rate;
   Belief::Matrix moved = root_;
   for (Eigen::Index i = 0; i < count; ++i) {
     if (!(root_(i, i) > 0.0)) continue;
@@ -172,7 +172,7 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   belief_.addNoise(kTorque, kTorque, torque);
   belief_.addNoise(kSpeed, kSpeed, square(walks.speed) * dt + torque * square(b * dt) / 3.0);
   belief_.addNoise(kSpeed, kTorque, 0.5 * torque * b * dt);
-  belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kUnmodelled) * dt);
+  belief_.addNoise(kDisplacementRate, kDisplacementRate, square(kUnmodelled) * dt);
   if (hasStruck()) addFriction(dt);
 }
 
@@ -185,7 +185,7 @@ void RodFilter::addFriction(double dt) noexcept {
   const double deviation = std::sqrt(belief_.covariance(kFriction, kFriction));
   const double radius = kNotCoulomb * std::hypot(motion_.rod.friction_radius, deviation, unknown_friction_);
   const double impulse = 2.0 * kHeld * square(radius * rod_force_) * dt;  // square of an impulse [(N m s)^2]
-  belief_.addNoise(kBesideSpeed, kBesideSpeed, impulse / square(inertia));
+  belief_.addNoise(kDisplacementRate, kDisplacementRate, impulse / square(inertia));
   belief_.addNoise(kSpeed, kSpeed, impulse / square(motion_.inertia));
 }
 

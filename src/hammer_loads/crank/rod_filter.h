@@ -35,8 +35,8 @@ class RodFilter {
   enum Row : Eigen::Index {
     kAngle,
     kSpeed,
-    kBeside,
-    kBesideSpeed,
+    kDisplacement,
+    kDisplacementRate,
     kTorque,
     kInertia,
     kStiffness,

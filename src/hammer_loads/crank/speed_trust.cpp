@@ -33,7 +33,7 @@ double SpeedTrust::lateBy(double dt, double acceleration, double jump) const noe
 }
 
 /// Exact solution for b = speed - y with a constant acceleration: b' = acceleration - b/lag.
-void SpeedTrust::follow(double dt, const Witness& now) noexcept {
+void SpeedTrust::follow(double dt, const Comparison& now) noexcept {
   late_ = lateBy(dt, now.acceleration, now.jump);
   const bool continues = std::exchange(begun_, true);
   const double mean = continues ? 0.5 * (acceleration_ + now.acceleration) : now.acceleration;

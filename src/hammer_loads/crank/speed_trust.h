@@ -28,7 +28,7 @@ class SpeedTrust {
   /// Restarts after a discontinuity.
   void restart() noexcept { begun_ = false; }
   /// A measured speed, and the estimate without it.
-  struct Witness {
+  struct Comparison {
     double measured{};      ///< [rad/s]
     double speed{};         ///< [rad/s]
     double acceleration{};  ///< acceleration at that instant [rad/s2]
@@ -40,7 +40,7 @@ class SpeedTrust {
   /// Reduction of the present speed by a lag of kLag, over kLag [rad/s2]; dt, acceleration, jump: as below.
   double lateBy(double dt, double acceleration, double jump) const noexcept;
   /// Adds a speed and the estimate without it, dt [s] > 0 after the sample before.
-  void follow(double dt, const Witness& now) noexcept;
+  void follow(double dt, const Comparison& now) noexcept;
   /// Updates lag and scale once a revolution.
   void endTurn() noexcept;
 

@@ -67,7 +67,7 @@ Eigen::Vector3d ofRod(const Mechanism& mechanism, const RodSpring& rod, const Wo
   const TwoBodies bodies(mechanism);
   const TwoBodyDrive drive{mechanism.parameters().drive_inertia, turn.torque, gravity};
   TwoBodyState state{{0.0, Side::kAfterBlow}, turn.speed_after, 0.0, 0.0};
-  state.beside_speed = -bodies.links(state.angle).rocker.u * turn.speed_after;
+  state.displacement_rate = -bodies.links(state.angle).rocker.u * turn.speed_after;
   const int steps = std::max(1, static_cast<int>(std::lround(interval / kStep)));
   double time = 0.0;
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();

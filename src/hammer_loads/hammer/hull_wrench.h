@@ -196,7 +196,7 @@ HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level 
 /// Level elastic, for the motion of the two bodies. links: rigid ones at the crank's angle.
 inline HullWrench hullWrenchOf(const Mechanism& mechanism, const TwoBodies& bodies, const TwoBodyState& state,
                                const TwoBodyAccelerations& a, const LinkMotion& links, Gravity gravity) noexcept {
-  const LinkMotion turned = withRocker(links, state.beside);
+  const LinkMotion turned = withRocker(links, state.displacement);
   return hullWrenchOf(mechanism, turned, bodies.linkAccelerations(state, a, turned), gravity);
 }
 

@@ -68,7 +68,7 @@ TwoBodies::TwoBodies(const Mechanism& mechanism) noexcept : mechanism_(&mechanis
 TwoBodies::Local TwoBodies::local(const TwoBodyDrive& drive, const TwoBodyState& at,
                                   const LinkMotion& links) const noexcept {
   const LinkLengths& l = mechanism_->linkage().lengths();
-  const double u = links.rocker.u, w = at.speed, x = at.beside, v = u * w + at.beside_speed, ww = w * w;
+  const double u = links.rocker.u, w = at.speed, x = at.displacement, v = u * w + at.displacement_rate, ww = w * w;
   const Planar theta = links.psi * conj(links.phi), both = coupling_ * theta;
   const double slope = -both.im;  // derivative of M12 by theta
   const auto weight = [&](Planar moment, Planar direction) {
@@ -96,7 +96,7 @@ void TwoBodies::addFriction(double moment, const TwoBodyState& s, const LinkMoti
   const LinkLengths& l = mechanism_->linkage().lengths();
   const double by_crank = -l.crank / l.rod * (conj(links.beta) * links.phi).re;  // a
   const double by_rocker = l.rocker / l.rod * links.cos_mu;                      // b
-  const double w = s.speed, v = links.rocker.u * w + s.beside_speed, rod = by_crank * w + by_rocker * v;
+  const double w = s.speed, v = links.rocker.u * w + s.displacement_rate, rod = by_crank * w + by_rocker * v;
   const auto sign = [](double speed) { return speed / std::sqrt(speed * speed + kSlides * kSlides); };
   const double at_crank = sign(rod - w), at_rocker = sign(rod - v);
   const double on_rocker = -moment * (sign(v) + at_crank * by_rocker + at_rocker * (by_rocker - 1.0));
@@ -109,16 +109,16 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   const TwoBodyState from = s;
   TwoBodyState middle = s;
   middle.angle.offset += 0.5 * dt * s.speed;
-  middle.beside += 0.5 * dt * s.beside_speed;
+  middle.displacement += 0.5 * dt * s.displacement_rate;
   if (!(middle.angle == memo.angle)) memo = {middle.angle, links(middle.angle)};
   const LinkMotion& there = memo.links;
   Local a = local(drive, middle, there);
   const double damping = rod.damping(), half = 0.5 * rod.play;
   const auto tensionAt = [&](const TwoBodyState& at) {
-    return tension(rod, -a.secant_lever * at.beside, a.by_crank * at.speed - a.lever * at.beside_speed);
+    return tension(rod, -a.secant_lever * at.displacement, a.by_crank * at.speed - a.lever * at.displacement_rate);
   };
   const auto isFree = [&](const TwoBodyState& at) {
-    return half > 0.0 && (std::abs(a.secant_lever * at.beside) < half || tensionAt(at) == 0.0);
+    return half > 0.0 && (std::abs(a.secant_lever * at.displacement) < half || tensionAt(at) == 0.0);
   };
   const bool free = isFree(middle);
   if (rod.friction_radius > 0.0 && !free)
@@ -126,17 +126,17 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   // tension = -stiff x - damped x' - apart, at the middle's levers
   const double stiff = free ? 0.0 : rod.stiffness * a.secant_lever;
   const double damped = free ? 0.0 : damping * a.lever;
-  const double to_side = half > 0.0 ? rod.stiffness * std::copysign(half, -a.secant_lever * middle.beside) : 0.0;
+  const double to_side = half > 0.0 ? rod.stiffness * std::copysign(half, -a.secant_lever * middle.displacement) : 0.0;
   const double apart = free ? 0.0 : to_side - damping * a.by_crank * s.speed;
   const double back = a.coupling * a.per_reflected;
   const double per =
       (a.lever + back * a.by_crank) * a.per_own;  // acceleration per tension, which also pulls at the crank
   const double pull = (a.on_rocker - back * a.on_crank) * a.per_own - per * apart;
-  oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.beside, s.beside_speed);
-  const double moved = s.beside - from.beside, gained = s.beside_speed - from.beside_speed;
-  const double force = -stiff * 0.5 * (from.beside + s.beside) - damped * moved / dt - apart;
+  oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.displacement, s.displacement_rate);
+  const double moved = s.displacement - from.displacement, gained = s.displacement_rate - from.displacement_rate;
+  const double force = -stiff * 0.5 * (from.displacement + s.displacement) - damped * moved / dt - apart;
   const double rate_of_crank = (a.on_crank - force * a.by_crank) * a.per_reflected;
-  s.angle.offset += dt * (s.speed + 0.5 * dt * rate_of_crank) - back * (moved - dt * from.beside_speed);
+  s.angle.offset += dt * (s.speed + 0.5 * dt * rate_of_crank) - back * (moved - dt * from.displacement_rate);
   s.speed += dt * rate_of_crank - back * gained;
   // The step is halved if pins separate or meet within it.
   if (half > 0.0 && dt > kContact && (isFree(from) != free || isFree(s) != free)) {
@@ -147,21 +147,21 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
 }
 
 void TwoBodies::settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& s) const noexcept {
-  s.beside = s.beside_speed = 0.0;
+  s.displacement = s.displacement_rate = 0.0;
   const Local a = local(drive, s, links(s.angle));
   const double pull = a.on_rocker - a.coupling * a.per_reflected * a.on_crank;
-  s.beside = pull / (rod.stiffness * a.lever * a.lever) + std::copysign(0.5 * rod.play, pull) / std::abs(a.lever);
+  s.displacement = pull / (rod.stiffness * a.lever * a.lever) + std::copysign(0.5 * rod.play, pull) / std::abs(a.lever);
 }
 
 /// Moves the state onto the branch after the blow: the rocker's speed is reversed, the crank's momentum kept.
 void TwoBodies::strike(const TwoBodyDrive& drive, double restitution, TwoBodyState& s) const noexcept {
   const LinkMotion before = links(s.angle);
-  const double v = before.rocker.u * s.speed + s.beside_speed, gained = -(1.0 + restitution) * v;
+  const double v = before.rocker.u * s.speed + s.displacement_rate, gained = -(1.0 + restitution) * v;
   s.speed -= (coupling_ * (before.psi * conj(before.phi))).re / (drive.inertia + crank_) * gained;
   s.angle.side = Side::kAfterBlow;
   const LinkMotion after = links(s.angle);
-  s.beside += rigidRockerAngle(before) - rigidRockerAngle(after);
-  s.beside_speed = v + gained - after.rocker.u * s.speed;
+  s.displacement += rigidRockerAngle(before) - rigidRockerAngle(after);
+  s.displacement_rate = v + gained - after.rocker.u * s.speed;
 }
 
 std::optional<TwoBodies::Blow> TwoBodies::moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool,
@@ -169,9 +169,9 @@ std::optional<TwoBodies::Blow> TwoBodies::moveToTool(const RodSpring& rod, const
   const TwoBodyState from = s;
   move(rod, drive, dt, s, memo);
   if (s.angle.side == Side::kAfterBlow) return std::nullopt;
-  const double there = links(s.angle).rocker.sin_psi + s.beside - tool.place;
+  const double there = links(s.angle).rocker.sin_psi + s.displacement - tool.place;
   if (there > 0.0) return std::nullopt;
-  const double here = links(from.angle).rocker.sin_psi + from.beside - tool.place;
+  const double here = links(from.angle).rocker.sin_psi + from.displacement - tool.place;
   const double part = here > 0.0 ? here / (here - there) : 0.0;
   s = from;
   if (part > 0.0) move(rod, drive, part * dt, s);
@@ -184,24 +184,26 @@ std::optional<TwoBodies::Blow> TwoBodies::moveToTool(const RodSpring& rod, const
 
 void TwoBodies::strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBodyState& s) const noexcept {
   const LinkMotion at = links(s.angle);
-  const double away = at.rocker.sin_psi + s.beside - tool.place, speed = at.rocker.u * s.speed + s.beside_speed;
+  const double away = at.rocker.sin_psi + s.displacement - tool.place,
+               speed = at.rocker.u * s.speed + s.displacement_rate;
   const double time = speed < 0.0 ? -away / speed : 0.0;
   s.angle.offset += time * s.speed;
-  s.beside += time * s.beside_speed;
+  s.displacement += time * s.displacement_rate;
   strike(drive, tool.restitution, s);
   s.angle.offset -= time * s.speed;
-  s.beside -= time * s.beside_speed;
+  s.displacement -= time * s.displacement_rate;
 }
 
 TwoBodyAccelerations TwoBodies::accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& s,
                                               const LinkMotion& links) const noexcept {
   Local a = local(drive, s, links);
-  const double force = tension(rod, -a.secant_lever * s.beside, a.by_crank * s.speed - a.lever * s.beside_speed);
+  const double force =
+      tension(rod, -a.secant_lever * s.displacement, a.by_crank * s.speed - a.lever * s.displacement_rate);
   if (rod.friction_radius > 0.0) addFriction(rod.friction_radius * std::abs(force), s, links, a);
   const double on_crank = a.on_crank - force * a.by_crank;
-  const double beside = (a.on_rocker + force * a.lever - a.coupling * a.per_reflected * on_crank) * a.per_own;
-  const double crank = (on_crank - a.coupling * beside) * a.per_reflected;
-  return {crank, links.rocker.u * crank + links.rocker.du * s.speed * s.speed + beside, force};
+  const double displacement = (a.on_rocker + force * a.lever - a.coupling * a.per_reflected * on_crank) * a.per_own;
+  const double crank = (on_crank - a.coupling * displacement) * a.per_reflected;
+  return {crank, links.rocker.u * crank + links.rocker.du * s.speed * s.speed + displacement, force};
 }
 
 double TwoBodies::rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyState& s,
@@ -212,12 +214,12 @@ double TwoBodies::rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyStat
 
 LinkAccelerations TwoBodies::linkAccelerations(const TwoBodyState& s, const TwoBodyAccelerations& a,
                                                const LinkMotion& links) const noexcept {
-  const double v = links.rocker.u * s.speed + s.beside_speed;
+  const double v = links.rocker.u * s.speed + s.displacement_rate;
   return withRod({-s.speed * s.speed, a.crank}, {-v * v, a.rocker}, links);
 }
 
 LinkAccelerations TwoBodies::linkSpeeds(const TwoBodyState& s, const LinkMotion& links) const noexcept {
-  return withRod({0.0, s.speed}, {0.0, links.rocker.u * s.speed + s.beside_speed}, links);
+  return withRod({0.0, s.speed}, {0.0, links.rocker.u * s.speed + s.displacement_rate}, links);
 }
 
 /// Completes the links by the rod, whose value follows from those of its pins.

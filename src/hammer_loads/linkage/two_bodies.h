@@ -13,14 +13,14 @@ namespace hammer_loads {
 /// Crank on a branch or its continuation past the blow, and the rocker's displacement from that with a rigid rod.
 struct TwoBodyState {
   CrankAngle angle;
-  double speed{};         ///< w [rad/s]
-  double beside{};        ///< x = psi - psi of a rigid rod [rad]
-  double beside_speed{};  ///< rate of x [rad/s]
+  double speed{};              ///< w [rad/s]
+  double displacement{};       ///< x = psi - psi of a rigid rod [rad]
+  double displacement_rate{};  ///< rate of x [rad/s]
 };
 
 /// Returns rigid links with the displaced rocker: rock of high rebound throws it back by a tenth of a radian.
-inline LinkMotion withRocker(LinkMotion rigid, double beside) noexcept {
-  const SineCosine turned = sineCosine(beside);
+inline LinkMotion withRocker(LinkMotion rigid, double displacement) noexcept {
+  const SineCosine turned = sineCosine(displacement);
   rigid.psi = rigid.psi * Planar{turned.cosine, turned.sine};
   return rigid;
 }

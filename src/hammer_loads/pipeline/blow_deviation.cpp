@@ -8,7 +8,7 @@ BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const Rocke
   BlowErrors errors;
   errors.restitution.own = blow.restitution_std;
   errors.energy.own = blow.energy_std;
-  const auto add = [&](const CrankBlow& other) { addDoubt(blow, measuredBlow(model, other), errors); };
+  const auto add = [&](const CrankBlow& other) { addDifference(blow, measuredBlow(model, other), errors); };
   CrankBlow faster = crank, rebound = crank, heavier = crank;
   faster.speed += crank.speed_std;
   rebound.factor += crank.factor_std;
@@ -17,7 +17,7 @@ BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const Rocke
   return errors;
 }
 
-void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept {
+void addDifference(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept {
   errors.tool_impulse_z.own = std::hypot(errors.tool_impulse_z.own, other.tool_impulse_z - blow.tool_impulse_z);
   errors.support_impulse_z.own =
       std::hypot(errors.support_impulse_z.own, other.support_impulse_z - blow.support_impulse_z);

@@ -19,6 +19,6 @@ BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const
 BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow) noexcept;
 
 /// Adds the difference to another possible blow to the impulse errors. It is independent of all other errors.
-void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept;
+void addDifference(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept;
 
 }  // namespace hammer_loads

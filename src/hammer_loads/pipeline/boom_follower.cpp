@@ -39,7 +39,7 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
   motion_ = {zero, zero, zero};
   torque_ = {zero, zero, zero};
   state_.frequency.resize(0), state_.frequency_std.resize(0), state_.damping.resize(0);
-  state_.contact_torque = beside_modes_ = zero;
+  state_.contact_torque = unmodelled_torque_ = zero;
   state_.deviations = unknownDeviations(boom_.chain().joints());
   state_.reduced = {kInfinity, kInfinity};
   state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
@@ -101,14 +101,14 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   if (follow_vibration_) {
     const bool swung = known_ && last_stamp_ == sample.stamp;  // the vibration is at this stamp already
     const bool continued = swung || (known_ && step.count > 0);
-    if (!continued) boom_.vibration().reset(), spread_.reset(), bound_.reset(), beside_modes_.setZero();
+    if (!continued) boom_.vibration().reset(), spread_.reset(), bound_.reset(), unmodelled_torque_.setZero();
     pose(since);
     spread_.follow(boom_.vibration());
     if (!continued) beginUnseen(sample.unseen_peak);
     followContact(sample.stamp);
     if (continued && !swung) vibrate(step, sample.displaced_links, spreadWithRock(sample.spread));
     observe(sample, since);
-    if (runsAway(since)) {
+    if (diverges(since)) {
       state_.fault = JointFault{JointFault::Kind::kRunAway, 0, withheld_for_};
       last_stamp_ = sample.stamp;
       return state_;
@@ -150,8 +150,8 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   const Wrench w_tip = onTip(rigid ? sample.motion_wrench : sample.motion_wrench + sample.displaced_links);
   const ChainLoads links = boom_.chainLoads(rigid);
   boom_.loads(w_tip, rigid, links, state_.loads);
-  beside_modes_.setZero();
-  if (!rigid) beside_modes_ = state_.loads.vibration - boom_.vibration().torque();
+  unmodelled_torque_.setZero();
+  if (!rigid) unmodelled_torque_ = state_.loads.vibration - boom_.vibration().torque();
   updateMeasured(sample, step);
   boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
@@ -168,7 +168,7 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
                            const WrenchSpread& spread) noexcept {
   const LoadSpread errors = spread_.waits() ? LoadSpread() : boom_.spreadTorque(spread);
   const auto take = [this](const HullWrench& motion, const HullWrench& displaced, JointVector& torque) {
-    torque = beside_modes_;
+    torque = unmodelled_torque_;
     addHammerTorque(motion + displaced, torque);
   };
   const double length = step.length();
@@ -193,11 +193,11 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
 
 /// Returns true if the vibration is not plausible at this sample. An implausible vibration is reset from the next
 /// sample on, together with the identified values.
-bool BoomFollower::runsAway(double step) noexcept {
+bool BoomFollower::diverges(double step) noexcept {
   if (!bound_.holds(boom_.vibration())) {
     withheld_for_ = VibrationBound::decayTime(boom_.vibration());
     boom_.vibration().startAnew();
-    ++runaways_;
+    ++divergences_;
     known_ = false;
     return true;
   }
@@ -241,7 +241,7 @@ void BoomFollower::advanceWithoutLoads(StampNs stamp, const WrenchHistory& step)
   freely.count = 1;
   state_.at_blow.reset();
   freely.pieces[0].duration = seconds(stamp - last_stamp_);
-  beside_modes_.setZero();  // no loads are computed for this sample
+  unmodelled_torque_.setZero();  // no loads are computed for this sample
   vibrate(step.count > 0 ? step : freely, displaced_links_, {});
   last_stamp_ = stamp;
   state_.stamp = stamp;

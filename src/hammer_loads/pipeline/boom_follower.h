@@ -158,7 +158,7 @@ class BoomFollower {
   std::vector<std::string> complaints() const;
   /// Returns how often the vibration was implausibly large and was reset. Its loads are withheld until the effect of
   /// the fault has decayed.
-  std::uint64_t runaways() const noexcept { return runaways_; }
+  std::uint64_t divergences() const noexcept { return divergences_; }
   /// Returns the name of the contact to which state().hold_down.least belongs, such as "front edge" or a cylinder's
   /// name; empty when unknown.
   const std::string& firstToGive() const noexcept;
@@ -172,7 +172,7 @@ class BoomFollower {
   bool usesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const HullWrench& displaced_links, const WrenchSpread& spread) noexcept;
   void strike(const HullWrench& impulse) noexcept;
-  bool runsAway(double step) noexcept;
+  bool diverges(double step) noexcept;
   void beginUnseen(double peak) noexcept;
   void pose(double since) noexcept;
   void findLoads(const BoomSample& sample, double step) noexcept;
@@ -213,14 +213,14 @@ class BoomFollower {
   JointMotion motion_;
   TorqueStep torque_;
   HullWrench displaced_links_;     ///< at the last sample
-  JointVector beside_modes_;       ///< change of inertia torque due to vibration that modes at a fixed pose neglect
+  JointVector unmodelled_torque_;  ///< change of inertia torque due to vibration that modes at a fixed pose neglect
   std::optional<InPlaneTip> tip_;  ///< at the sample; empty if the rock's force is not measured
   double unexplained_{};           ///< mean square of the force along z that would explain the IMU's readings [N2]
   double least_contact_{};         ///< force along z below which there is no contact [N]
   std::optional<StampNs> last_blow_;
   StampNs last_stamp_{};  ///< stamp of the last sample without a fault
   bool known_{};
-  std::uint64_t faults_{}, runaways_{};
+  std::uint64_t faults_{}, divergences_{};
   VibrationBound bound_;
   double withheld_for_{};            ///< remaining time without loads after a reset of the vibration [s]
   std::vector<std::string> givers_;  ///< names of edges, then of cylinders

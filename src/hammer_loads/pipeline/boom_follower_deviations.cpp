@@ -32,7 +32,7 @@ Eigen::Matrix3d BoomFollower::tipCovariance() const noexcept {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints> by_mode(3, modes.count);
   for (int row = 0; row < 3; ++row)
     by_mode.row(row) = modalForce(modes, boom_.tipJacobian().row(2 * row).transpose()).transpose();
-  JointMatrix of_modes = std::max(1.0, identifier->oilSurprise()) * identifier->accelerationCovariance();
+  JointMatrix of_modes = std::max(1.0, identifier->oilInnovationRatio()) * identifier->accelerationCovariance();
   if (state_.useless) {  // the vibration is as uncertain as its torques
     const JointVector usual = boom_.vibration().usualSwing().cwiseProduct(modes.omega.cwiseAbs2());
     of_modes.diagonal() += square(std::min(1.0, worth_.ratio())) * usual.cwiseAbs2();

@@ -45,7 +45,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!pressuresCount()) return;
   observer_.pressures(boom_, held_, sample.stamp, pressures_);
   const ModeIdentifier& found = *boom_.vibration().identifier();
-  trust_.followDelay(found.delay(Clock::kPressures), found.oilSurprise(), step);
+  trust_.followDelay(found.delay(Clock::kPressures), found.oilInnovationRatio(), step);
 }
 
 /// Attributes to the rock the difference between measured forces, which balance all loads, and the model.

@@ -28,7 +28,7 @@ std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept {
   health.oil_explains = modeOfOddDamping(follower.boom()) < 0;
   for (int i = 0; i < health.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const auto found = vibration.oilFound(at);
+    const auto found = vibration.identifiedOil(at);
     if (!found) return std::nullopt;
     BoomHealth::OfCylinder& c = health.cylinder[at];
     c.joint_angle = follower.jointAngle(at);

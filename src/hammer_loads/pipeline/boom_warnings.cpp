@@ -63,17 +63,17 @@ void warnOfImuClock(const ModeIdentifier& identifier, std::vector<Warning>& warn
 
 /// Warns of late pressures or of a poor fit. explained: apparent delay due to the boom's damping [s].
 void warnOfPressures(const ModeIdentifier& identifier, double explained, std::vector<Warning>& warnings) {
-  const double surprise = identifier.oilSurprise();
+  const double ratio = identifier.oilInnovationRatio();
   if (isOff(identifier, Clock::kPressures, explained)) {
     warnings.push_back({"pressure stamps",
                         "cylinder_pressures: stamps are about " + laterOrEarlier(identifier.delay(Clock::kPressures)) +
                             " than the crank's. The boom's loads correct up to 2 ms; correct the stamps.",
                         true});
-  } else if (surprise > MeasuredTorques::kSurprised) {
+  } else if (ratio > MeasuredTorques::kContradicted) {
     warnings.push_back({"pressure fit",
                         format("cylinder_pressures: errors are %.2g times the expected variance, deviations are "
                                "inflated. %s.",
-                               surprise,
+                               ratio,
                                identifier.isLagKnown() ? "Check boom file and robot description"
                                                        : "Their delay is not known: add hull_imu"),
                         true});
@@ -181,9 +181,9 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
                         true});
   const bool fault = boom != nullptr && boom->fault,
              runs_away = fault && boom->fault->kind == JointFault::Kind::kRunAway;
-  if (follower.runaways() > 0)
+  if (follower.divergences() > 0)
     warnings.push_back({"boom vibration",
-                        "boom: the vibration estimate diverged " + std::to_string(follower.runaways()) +
+                        "boom: the vibration estimate diverged " + std::to_string(follower.divergences()) +
                             " times; its loads are withheld after that. Check boom file and hull_imu.",
                         runs_away});
   if (!fault || runs_away) return;

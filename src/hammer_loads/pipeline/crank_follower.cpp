@@ -66,8 +66,8 @@ CrankStep::Passage CrankStep::passageOf(std::int64_t blow, bool forward) const n
   p.time = timeOfBlow(blow);
   p.blow = blow;
   p.forward = forward;
-  const CrankEstimate before = at(std::max(0.0, p.time - kBesideBlow)),
-                      after = at(std::min(length_, p.time + kBesideBlow));
+  const CrankEstimate before = at(std::max(0.0, p.time - kBlowMargin)),
+                      after = at(std::min(length_, p.time + kBlowMargin));
   p.smooth = before.position.isMirrored() || after.position.isMirrored();
   p.speed_before = before.speed;
   p.speed_after = after.speed;
@@ -102,27 +102,27 @@ double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
   return f_high <= -f_low ? high : low;
 }
 
-double CrankStep::timeBesides(const Passage& passage, Side side) const noexcept {
-  return isEarlier(passage, side) ? std::max(0.0, passage.time - kBesideBlow) : passage.time + kBesideBlow;
+double CrankStep::timeAtSide(const Passage& passage, Side side) const noexcept {
+  return isEarlier(passage, side) ? std::max(0.0, passage.time - kBlowMargin) : passage.time + kBlowMargin;
 }
 
 CrankEstimate CrankStep::atSide(const Passage& passage, Side side) const noexcept {
-  CrankEstimate estimate = at(timeBesides(passage, side));
+  CrankEstimate estimate = at(timeAtSide(passage, side));
   estimate.position = {passage.blow, {0.0, side}};
   estimate.speed = isEarlier(passage, side) ? passage.speed_before : passage.speed_after;
   return estimate;
 }
 
 double CrankStep::timeDeviation(const Passage& passage) const noexcept {
-  const CrankUncertainty there = tracker_->uncertaintyBetween(timeBesides(passage, Side::kBeforeBlow), 1.0);
+  const CrankUncertainty there = tracker_->uncertaintyBetween(timeAtSide(passage, Side::kBeforeBlow), 1.0);
   return std::sqrt(there.covariance()(CrankUncertainty::kAngle, CrankUncertainty::kAngle)) /
          std::abs(passage.speed_before);
 }
 
-std::optional<CrankWays> CrankStep::waysBesides(const Passage& passage, Side side) const noexcept {
-  std::optional<CrankWays> ways = tracker_->waysBetween(timeBesides(passage, side));
-  if (ways) ways->forward.position = ways->back.position = {passage.blow, {0.0, side}};
-  return ways;
+std::optional<CrankPaths> CrankStep::pathsAtSide(const Passage& passage, Side side) const noexcept {
+  std::optional<CrankPaths> paths = tracker_->pathsBetween(timeAtSide(passage, side));
+  if (paths) paths->forward.position = paths->back.position = {passage.blow, {0.0, side}};
+  return paths;
 }
 
 CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& settings)

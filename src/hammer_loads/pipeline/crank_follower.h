@@ -19,8 +19,8 @@ namespace hammer_loads {
 
 constexpr double kPulseStep = 1.25e-3;  ///< [s] between points of a path at most: 15 of them in the MO-100's pulse
 // Numerical: kPulseStep
-constexpr double kBesideBlow = 1e-7;  ///< [s] before and after the blow where its two sides are looked at
-// Numerical: kBesideBlow
+constexpr double kBlowMargin = 1e-7;  ///< [s] before and after the blow where its two sides are looked at
+// Numerical: kBlowMargin
 
 /// Returns the part of an estimate that determines a load.
 inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {
@@ -80,13 +80,13 @@ class CrankStep {
   double timeDeviation(const Passage& passage) const noexcept;
   /// Returns at(time), or atSide(passage, side), as each of the samples at the step's ends predicts it. Empty where one
   /// of them does not reach that far.
-  std::optional<CrankWays> ways(double time) const noexcept { return tracker_->waysBetween(time); }
-  std::optional<CrankWays> waysBesides(const Passage& passage, Side side) const noexcept;
+  std::optional<CrankPaths> paths(double time) const noexcept { return tracker_->pathsBetween(time); }
+  std::optional<CrankPaths> pathsAtSide(const Passage& passage, Side side) const noexcept;
 
  private:
   Passage passageOf(std::int64_t blow, bool forward) const noexcept;
   double timeOfBlow(std::int64_t blow) const noexcept;
-  double timeBesides(const Passage& passage, Side side) const noexcept;
+  double timeAtSide(const Passage& passage, Side side) const noexcept;
 
   const CrankFilter* tracker_;
   const HullModel* model_;
@@ -127,7 +127,7 @@ class CrankFollower {
   /// CrankFilter::moveZero().
   void moveZero(double angle) noexcept { tracker_->moveZero(angle); }
   /// CrankFilter::setZeroContradicted().
-  void setZeroContradicted(bool doubted) noexcept { tracker_->setZeroContradicted(doubted); }
+  void setZeroContradicted(bool contradicted) noexcept { tracker_->setZeroContradicted(contradicted); }
   double reading() const noexcept { return measured_.angle; }  ///< angle of the judged sample [rad]
   /// Returns true if angle or speed may be in another unit that is not recognised yet.
   bool suspectsUnit() const noexcept { return unit_check_.suspects(); }

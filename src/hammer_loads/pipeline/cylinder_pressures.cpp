@@ -22,7 +22,7 @@ bool CylinderPressures::update(StampNs stamp, std::size_t cylinder, Chamber cham
   }
   track.rewound.reset();
   const bool goes_on = !late && track.readings > 0 && seconds(stamp - track.now.stamp) <= max_age_;
-  if (goes_on && !track.guard.believes(std::abs(pressure - track.now.pressure))) {
+  if (goes_on && !track.guard.accepts(std::abs(pressure - track.now.pressure))) {
     ++refused_;
     return false;
   }

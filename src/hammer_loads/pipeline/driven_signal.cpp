@@ -132,11 +132,11 @@ void DrivenSignal::carry(const Step& step, double slope_step, double walk, doubl
   P.diagonal().tail<9>() += h * square(kComplianceWalk) / unit * prior_;
 }
 
-void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Doubt& doubt, bool counts,
+void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const UncertainSide& uncertain_side, bool counts,
                           Candidate& c) noexcept {
   const bool itself = settings_.reads == Reads::kItself;
   const State PH = itself ? signalsOf(c.P, load) : State(c.P.col(kIntegral));
-  const double p = doubt.probability, jump = c.x.segment<3>(kCompliance).dot(doubt.added);
+  const double p = uncertain_side.probability, jump = c.x.segment<3>(kCompliance).dot(uncertain_side.added);
   const double S = 1.0 + readOf(PH, load) + p * (1.0 - p) * square(jump) / c.variance;
   const double off = reading - readOf(c.x, load) - p * jump;
   const State gain = PH / std::sqrt(S);  // products of its elements keep the covariance symmetric to the bit
@@ -167,11 +167,11 @@ void DrivenSignal::advance(const Step& step) noexcept {
   for (Candidate& c : candidates_) carry(step, step.length, walkOf(c), c.variance, c.x, c.P);
 }
 
-void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load, const Doubt& doubt,
+void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load, const UncertainSide& uncertain_side,
                         bool counts) noexcept {
   if (!begun_) return begin(reading, load);
   interval_ = interval_ > 0.0 ? interval_ + kOfInterval * (step - interval_) : step;
-  for (Candidate& c : candidates_) update(reading, load, doubt, counts, c);
+  for (Candidate& c : candidates_) update(reading, load, uncertain_side, counts, c);
   if (settings_.reads == Reads::kItself)
     steady_ += std::min(1.0, step / steady_time_) * (readOf(best().x, load) - steady_);
   steady_time_ = std::min(steady_time_ + step, look_back::kTenTurns);

@@ -40,7 +40,7 @@ class DrivenSignal {
   };
   /// Uncertain side of a blow, for a reading closer to it than the uncertainty of its instant. With this probability
   /// `added` is a part of the load (if the signal is measured) or of its impulse (if its integral is measured).
-  struct Doubt {
+  struct UncertainSide {
     double probability{};
     Eigen::Vector3d added = Eigen::Vector3d::Zero();
   };
@@ -71,7 +71,8 @@ class DrivenSignal {
   void advance(const Step& step) noexcept;
   /// Updates with a reading at the present load. step: time since the last reading [s]. counts: the reading enters the
   /// likelihoods, as while the hammer works.
-  void read(double reading, double step, const Eigen::Vector3d& load, const Doubt& doubt, bool counts) noexcept;
+  void read(double reading, double step, const Eigen::Vector3d& load, const UncertainSide& uncertain_side,
+            bool counts) noexcept;
 
   /// Change of the signal's integral over a future step, and the integral of that change from 0.
   struct Swing {
@@ -125,7 +126,7 @@ class DrivenSignal {
   void carry(const Step& step, double slope_step, double walk, double unit, State& x, Covariance& P) const noexcept;
   Swing swing(const State& x, double length, const Eigen::Vector3d& impulse,
               const Eigen::Vector3d& lasting) const noexcept;
-  void update(double reading, const Eigen::Vector3d& load, const Doubt& doubt, bool counts,
+  void update(double reading, const Eigen::Vector3d& load, const UncertainSide& uncertain_side, bool counts,
               Candidate& candidate) noexcept;
   void keepPrior(Candidate& candidate) const noexcept;
   double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: predicted reading

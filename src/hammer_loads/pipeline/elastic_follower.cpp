@@ -41,7 +41,7 @@ ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
 bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept {
   const CrankPosition& at = crank.estimate().position;
   return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && crank.estimate().speed > kSlowCrank &&
-         filter.hasSpeed() && filter.driveInertia() > 0.0 && filter.isPlausible() && !filter.isDoubtful() &&
+         filter.hasSpeed() && filter.driveInertia() > 0.0 && filter.isPlausible() && !filter.isUncertain() &&
          filter.readingDeviation() < RodEvidence::kCoarsest;
 }
 
@@ -96,8 +96,8 @@ void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) no
 const RodFilter& ElasticFollower::likelier() const noexcept {
   const RodFilter &tight = filters_[0], &play = filters_[1];
   if (!play.isProven()) return tight;
-  const double doubt = square(play.deviation(RodFilter::kPlay));
-  return !tight.isProven() || exceeds(play.motion().rod.play, doubt, gate::kImpossible) ? play : tight;
+  const double variance = square(play.deviation(RodFilter::kPlay));
+  return !tight.isProven() || exceeds(play.motion().rod.play, variance, gate::kImpossible) ? play : tight;
 }
 
 /// Judges the rod after a blow. Level linkage applies to a rod stiffer than the sample rate can show.
@@ -123,7 +123,7 @@ CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {
 
 LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const LinkMotion& rigid,
                                       const DriveReaction& drive) const noexcept {
-  const LinkMotion links = withRocker(rigid, s.beside);
+  const LinkMotion links = withRocker(rigid, s.displacement);
   const HullWrench minus = hullWrenchOf(model_->mechanism(), links, filter().bodies().linkSpeeds(s, links), Gravity{});
   const double drive_y = drive.by_crank * s.speed;
   return {-1.0 * minus + HullWrench{0.0, 0.0, drive_y}, drive_y};
@@ -141,7 +141,7 @@ ElasticFollower::Impulse ElasticFollower::impulse(const DriveReaction& drive, do
   const LoadImpulse jump = lost(blow->before, blow->after);
   result.motion = {result.motion.all + -1.0 * jump.all, result.motion.drive_y - jump.drive_y};
   const double restitution = filter().deviation(RodFilter::kRestitution);
-  result.doubt = wrenchOf(restitution / (1.0 + filter().motion().restitution) * vectorOf(jump.all).cwiseAbs());
+  result.deviation = wrenchOf(restitution / (1.0 + filter().motion().restitution) * vectorOf(jump.all).cwiseAbs());
   return result;
 }
 
@@ -184,8 +184,8 @@ bool ElasticFollower::isBesideBlowAt(double time) const noexcept {
 
 bool ElasticFollower::mayTouch(const RodMotion& m) const noexcept {
   const LinkMotion links = filter().bodies().links(m.state.angle);
-  const double way = links.rocker.sin_psi + m.state.beside - m.place;
-  const double speed = -(links.rocker.u * m.state.speed + m.state.beside_speed);
+  const double way = links.rocker.sin_psi + m.state.displacement - m.place;
+  const double speed = -(links.rocker.u * m.state.speed + m.state.displacement_rate);
   const double of_angle = speed / m.state.speed * filter().deviation(RodFilter::kAngle);
   // The place is that of the middle of a contact, which has begun before it.
   return way < 0.5 * kContact * speed + gate::kUsual * std::hypot(of_angle, filter().deviation(RodFilter::kPlace));

@@ -85,7 +85,7 @@ class ElasticFollower {
   }
   /// Returns the instant from the two bodies alone, unweighted; at the step's end the state before the sample there.
   /// The uncertain moment of an impact affects the force at a given time, but not its extreme.
-  Instant onItsWay(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
+  Instant byBodies(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
     return instantOf(filter().between(time), false, drive, hull);
   }
   bool isBesideBlowAt(double time) const noexcept;
@@ -95,7 +95,7 @@ class ElasticFollower {
   /// uncertain restitution.
   struct Impulse {
     LoadImpulse motion;
-    HullWrench doubt;
+    HullWrench deviation;
   };
   Impulse impulse(const DriveReaction& drive, double from, double to) const noexcept;
   /// Returns the standard deviation of the momentum of links and drive at the sample [N s, N s, N m s].
@@ -108,7 +108,7 @@ class ElasticFollower {
   /// [rad/s2].
   using Loads = Eigen::Matrix<double, 5, 1>;
   using LoadCovariance = Eigen::Matrix<double, 5, 5>;
-  enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
+  enum : Eigen::Index { kCrank = 3, kDisplacementAcceleration = 4 };
   RodMotion motionAt(double time) const noexcept { return time < length_ ? filter().between(time) : filter().motion(); }
   CrankEstimate crankOf(const RodMotion& motion) const noexcept;
   Instant instantOf(const RodMotion& motion, bool weighed, const DriveReaction& drive,

@@ -11,7 +11,8 @@ namespace hammer_loads {
 namespace {
 
 /// Returns the rocker's acceleration relative to that of a rigid rod at the crank's acceleration [rad/s2].
-double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
+double displacementAcceleration(const TwoBodyState& s, const TwoBodyAccelerations& a,
+                                const LinkMotion& links) noexcept {
   return a.rocker - links.rocker.u * a.crank - links.rocker.du * s.speed * s.speed;
 }
 
@@ -24,7 +25,8 @@ ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const LinkMoti
   const TwoBodyAccelerations a = bodies.accelerations(m.rod, by, m.state, links);
   const HullWrench w = hullWrenchOf(model_->mechanism(), bodies, m.state, a, links, by.gravity);
   Loads loads;
-  loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank, besideRigidly(m.state, a, links);
+  loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank,
+      displacementAcceleration(m.state, a, links);
   return loads;
 }
 
@@ -47,8 +49,8 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
   LoadCovariance sum = LoadCovariance::Zero();
   const double turned = errors.row(RodFilter::kAngle).norm();
   if (!(turned > 0.0)) return sum;
-  const CrankAngle beside{now.state.angle.offset + turned, now.state.angle.side};
-  const Loads by_angle = (loads(now, filter().bodies().links(beside), drive) - here) / turned;
+  const CrankAngle relative{now.state.angle.offset + turned, now.state.angle.side};
+  const Loads by_angle = (loads(now, filter().bodies().links(relative), drive) - here) / turned;
   const auto add = [&](const RodFilter::Belief::Vector& error, double weight) {
     const Loads off = loads(filter().displaced(error), links, drive) - here + error[RodFilter::kAngle] * by_angle;
     sum += weight * off * off.transpose();
@@ -80,45 +82,46 @@ ElasticFollower::RodLoads ElasticFollower::rodLoads(const DriveReaction& drive, 
   Loads mean = loads(now, links, drive);
   const LoadCovariance errors = covariance(drive, links, mean);
   if (!filter().hasStruck()) squares_ = {};
-  vibration_ = mean[kBesideRigid];
+  vibration_ = mean[kDisplacementAcceleration];
   squares_.add(square(vibration_));
   gain_.setZero();
   if (filter().hasStruck()) {
     const double expected = std::max({square(ring), squares_.mean(), std::numeric_limits<double>::min()});
-    gain_ = errors.col(kBesideRigid) / (errors(kBesideRigid, kBesideRigid) + expected);
+    gain_ = errors.col(kDisplacementAcceleration) /
+            (errors(kDisplacementAcceleration, kDisplacementAcceleration) + expected);
   }
   const Eigen::Matrix3d covariance =
-      errors.topLeftCorner<3, 3>() - gain_.head<3>() * errors.col(kBesideRigid).head<3>().transpose();
+      errors.topLeftCorner<3, 3>() - gain_.head<3>() * errors.col(kDisplacementAcceleration).head<3>().transpose();
   weightVibration(now, mean);
   mean -= rigidLoads(now, links, drive);
   return {wrenchOf(mean.head<3>()), covariance, mean[kCrank]};
 }
 
 void ElasticFollower::weightVibration(const RodMotion& m, Loads& loads) const noexcept {
-  if (m.state.angle.side == Side::kAfterBlow) loads -= (gain_ * loads[kBesideRigid]).eval();
+  if (m.state.angle.side == Side::kAfterBlow) loads -= (gain_ * loads[kDisplacementAcceleration]).eval();
 }
 
 ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, bool weighed, const DriveReaction& drive,
                                                     const HullMotion& hull) const noexcept {
   const LinkMotion links = filter().bodies().links(there.state.angle);
   const Loads rigid = rigidLoads(there, links, drive);
-  Loads beside = loads(there, links, drive);
-  if (weighed) weightVibration(there, beside);
-  beside -= rigid;
+  Loads relative = loads(there, links, drive);
+  if (weighed) weightVibration(there, relative);
+  relative -= rigid;
   Instant instant{{{blow_, there.state.angle}, there.state.speed, rigid[kCrank]}, {}, there.state, links};
-  instant.wrench = hullWrench(*model_, drive, links, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());
-  instant.crank.acceleration += beside[kCrank];
+  instant.wrench = hullWrench(*model_, drive, links, motionOf(instant.crank), hull) + wrenchOf(relative.head<3>());
+  instant.crank.acceleration += relative[kCrank];
   return instant;
 }
 
 PinReactions ElasticFollower::pins(const HullMotion& hull, const NearBlow& near) const noexcept {
   const RodMotion& m = filter().motion();
   const TwoBodies& bodies = filter().bodies();
-  const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
+  const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.displacement);
   TwoBodyAccelerations a = bodies.accelerations(m.rod, filter().drive(m), m.state, rigid);
-  const double beside = besideRigidly(m.state, a, rigid);
-  a.crank -= gain_[kCrank] * beside;
-  a.rocker -= (rigid.rocker.u * gain_[kCrank] + gain_[kBesideRigid]) * beside;
+  const double relative = displacementAcceleration(m.state, a, rigid);
+  a.crank -= gain_[kCrank] * relative;
+  a.rocker -= (rigid.rocker.u * gain_[kCrank] + gain_[kDisplacementAcceleration]) * relative;
   PinReactions pins =
       pinForcesOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), hull.gravity, near);
   if (hull.turns()) addTurningLinkage(model_->mechanism(), rigid, m.state.speed, hull, near, pins);

@@ -27,15 +27,15 @@ CrankAngle nudged(CrankAngle angle) noexcept {
 
 /// Returns the gradient; at_angle(links) returns the wanted value as a function of speed and acceleration.
 template <typename AtAngle>
-Gradient gradient(const CrankEstimate& crank, const LinksBeside& links, const AtAngle& at_angle) noexcept {
+Gradient gradient(const CrankEstimate& crank, const LinksForGradient& links, const AtAngle& at_angle) noexcept {
   const double speed = crank.speed, acceleration = crank.acceleration;
-  const auto here = at_angle(links.here), beside = at_angle(links.beside);
+  const auto here = at_angle(links.here), stepped = at_angle(links.stepped);
   const Eigen::Vector3d value = vectorOf(here(speed, acceleration));
   const auto slope = [&](const HullWrench& moved, double step) {
     return Eigen::Vector3d((vectorOf(moved) - value) * (1.0 / step));
   };
   Gradient result;
-  result << slope(beside(speed, acceleration), kAngleStep), slope(here(speed + kSpeedStep, acceleration), kSpeedStep),
+  result << slope(stepped(speed, acceleration), kAngleStep), slope(here(speed + kSpeedStep, acceleration), kSpeedStep),
       slope(here(speed, acceleration + kAccelerationStep), kAccelerationStep);
   return result;
 }
@@ -64,11 +64,11 @@ Eigen::Vector3d HullDeviation::correlationOf(const Eigen::Matrix3d& covariance) 
   return {coefficient(0, 1), coefficient(0, 2), coefficient(1, 2)};
 }
 
-LinksBeside::LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept
-    : here(at), beside(linksAt(model, nudged(at.angle))) {}
+LinksForGradient::LinksForGradient(const HullModel& model, const LinksAtAngle& at) noexcept
+    : here(at), stepped(linksAt(model, nudged(at.angle))) {}
 
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                            const LinksBeside& links, const HullMotion& hull,
+                            const LinksForGradient& links, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept {
   if (!(covariance(1, 1) > 0.0)) return unknownDeviation();
   const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) { return wrenchAt(model, drive, hull, at); });
@@ -77,7 +77,7 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
 }
 
 HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
-                            const CrankEstimate& crank, const LinksBeside& links, const HullMotion& hull,
+                            const CrankEstimate& crank, const LinksForGradient& links, const HullMotion& hull,
                             const CrankUncertainty& uncertainty, LoadColumns& columns) noexcept {
   columns.setZero();
   if (!(uncertainty.own(1, 1) > 0.0)) return unknownDeviation();
@@ -120,7 +120,7 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                             const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept {
+                             const LinksForGradient& links, const Eigen::Matrix3d& covariance) noexcept {
   const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) {
     return [&](double speed, double) {
       const LinkMomentum p = linkMomentum(model, at.links, at.angle, speed);
@@ -164,7 +164,8 @@ MomentumColumns weightColumns(const WrenchColumns& hammer, const HullModel& mode
 }
 
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                          const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept {
+                          const LinksForGradient& links, const Eigen::Matrix3d& own,
+                          const LoadColumns& columns) noexcept {
   if (!(own(1, 1) > 0.0)) return {};
   const HullMotion at_rest;
   const Gradient g =

@@ -39,19 +39,20 @@ struct HullDeviation {
 };
 
 /// Motion of the links at a crank angle and slightly beside it, for gradients with respect to the angle.
-struct LinksBeside {
-  LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept;
-  LinksAtAngle here, beside;
+struct LinksForGradient {
+  LinksForGradient(const HullModel& model, const LinksAtAngle& at) noexcept;
+  LinksAtAngle here, stepped;
 };
 
 /// Returns the standard deviations, linearised at the estimate (differences, good to some 1e-5), with the drive's
 /// reaction. covariance: of (angle, speed, acceleration). The model's own error is not included. Some 0.3 us.
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                            const LinksBeside& links, const HullMotion& hull,
+                            const LinksForGradient& links, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept;
 inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                                    const HullMotion& hull, const Eigen::Matrix3d& covariance) noexcept {
-  return hullDeviation(model, drive, crank, LinksBeside(model, linksAt(model, crank.position.angle)), hull, covariance);
+  return hullDeviation(model, drive, crank, LinksForGradient(model, linksAt(model, crank.position.angle)), hull,
+                       covariance);
 }
 
 /// Independent errors of a wrench, one standard deviation each, equal in all samples. Their columns: constants of
@@ -63,7 +64,7 @@ using LoadColumns = ByConstants<3, kLoadColumns>;
 
 /// Returns errors by samples and constants: J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).
 HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
-                            const CrankEstimate& crank, const LinksBeside& links, const HullMotion& hull,
+                            const CrankEstimate& crank, const LinksForGradient& links, const HullMotion& hull,
                             const CrankUncertainty& uncertainty, LoadColumns& columns) noexcept;
 
 /// Adds the hull's motion to the covariance of the load. It is linear, as the load is in all but the rate. Errors of
@@ -73,7 +74,7 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
 
 /// Returns the standard deviation of the momentum with the drive's, for one end of an impulse [N s, N s, N m s].
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                             const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
+                             const LinksForGradient& links, const Eigen::Matrix3d& covariance) noexcept;
 
 /// Independent errors of the momentum, one standard deviation each, in the order of LoadColumns. Rows: x, z [N s].
 using MomentumColumns = ByConstants<2, kLoadColumns, double>;
@@ -88,7 +89,8 @@ MomentumColumns weightColumns(const WrenchColumns& hammer, const HullModel& mode
 /// the hull. Empty without a covariance. The boom's filters treat them as noise. Errors of the hammer's constants are
 /// equal in all samples, are no noise, and are not included.
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                          const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept;
+                          const LinksForGradient& links, const Eigen::Matrix3d& own,
+                          const LoadColumns& columns) noexcept;
 
 /// Returns the errors of constants as three independent ones, one per column (rows as LoadColumns): of all constants,
 /// or of the hammer's alone.

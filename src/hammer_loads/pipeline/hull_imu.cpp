@@ -83,8 +83,8 @@ std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& readi
   if (readings_ > 0 && seconds(stamp - now_.stamp) > settings_.max_age) readings_ = 0;
   const Sample next{stamp, settings_.rotation * reading.specific_force, settings_.rotation * reading.rate};
   if (readings_ > 0) {
-    const bool force = force_guard_.believes((next.force - now_.force).norm());
-    const bool rate = rate_guard_.believes((next.rate - now_.rate).norm());
+    const bool force = force_guard_.accepts((next.force - now_.force).norm());
+    const bool rate = rate_guard_.accepts((next.rate - now_.rate).norm());
     if (!force || !rate) return ImuRefusal::kJump;
   }
   const bool first = readings_ == 0;

@@ -104,14 +104,14 @@ void HullMotionFilter::forgetMotion() noexcept {
   readings_ = 0;
 }
 
-void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
+void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& other_load) noexcept {
   if (step.count == 0) {
     path_.forget();
     forgetMotion();
   } else {
-    path_.add(sample, step, path_.known() ? beside_ : beside, beside);
+    path_.add(sample, step, path_.known() ? other_load_ : other_load, other_load);
   }
-  beside_ = beside;
+  other_load_ = other_load;
   if (step.length() > 0.0) load_square_.add(path_.at(sample).load.cwiseAbs2(), step.length());
   waiting_.takeUpTo(sample, [this](const StampedImuReading& reading) {
     if (path_.covers(reading.stamp)) update(reading);
@@ -173,7 +173,7 @@ void HullMotionFilter::update(const StampedImuReading& next) noexcept {
   const bool counts = works(now.load);
   const ImuReading& r = next.reading;
   const WrenchPath::OtherSide other = path_.otherSide(next.stamp);
-  const DrivenSignal::Doubt by_load{other.probability, other.load}, by_blow{other.probability, other.blow};
+  const DrivenSignal::UncertainSide by_load{other.probability, other.load}, by_blow{other.probability, other.blow};
   x_.read(r.specific_force.x(), step, now.load, by_load, counts);
   z_.read(r.specific_force.z(), step, now.load, by_load, counts);
   turning_.read(r.rate.y(), step, now.load, by_blow, counts);

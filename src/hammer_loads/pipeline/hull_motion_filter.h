@@ -67,7 +67,7 @@ class HullMotionFilter {
   void add(const StampedImuReading& reading) noexcept { waiting_.add(reading); }
   /// Takes a crank sample and the load of the step that it ends. beside: other loads on the hull at the sample. A step
   /// without pieces resets the motion.
-  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
+  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& other_load) noexcept;
   /// Returns the motion at a stamp, from the second reading with a known load until the last one is max_age old. The
   /// slow part is predicted until the next reading is overdue and then held, since a longer prediction diverges.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
@@ -94,7 +94,7 @@ class HullMotionFilter {
   WaitingReadings waiting_;
   StampedImuReading last_;
   WrenchPath::Instant at_last_;
-  HullWrench beside_;
+  HullWrench other_load_;
   RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< mean square
   int readings_{};
   double interval_{};  ///< time between the last two readings [s]

@@ -20,13 +20,13 @@ HullMotion vibrationOf(const BoomState& boom) noexcept {
 }
 
 /// Returns the covariance of that motion. The angular velocity is negligible and has none.
-HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
-  HullMotionCovariance doubt = HullMotionCovariance::Zero();
-  doubt.topLeftCorner<2, 2>() = tip.topLeftCorner<2, 2>();
-  doubt(3, 3) = tip(2, 2);
-  doubt.topRightCorner<2, 1>() = -tip.topRightCorner<2, 1>();
-  doubt.bottomLeftCorner<1, 2>() = -tip.bottomLeftCorner<1, 2>();
-  return doubt;
+HullMotionCovariance motionCovariance(const Eigen::Matrix3d& tip) noexcept {
+  HullMotionCovariance covariance = HullMotionCovariance::Zero();
+  covariance.topLeftCorner<2, 2>() = tip.topLeftCorner<2, 2>();
+  covariance(3, 3) = tip(2, 2);
+  covariance.topRightCorner<2, 1>() = -tip.topRightCorner<2, 1>();
+  covariance.bottomLeftCorner<1, 2>() = -tip.bottomLeftCorner<1, 2>();
+  return covariance;
 }
 
 }  // namespace
@@ -226,13 +226,13 @@ void HullState::findByBoom() noexcept {
   const HullMotion v = vibration_.value_or(HullMotion{});
   now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration},
           vibration_.has_value(),
-          vibration_doubt_.value_or(HullMotionCovariance::Zero())};
-  if (source_ == HullMotionSource::kImu && !vibration_doubt_) now_.covariance = usualMotion();
+          vibration_covariance_.value_or(HullMotionCovariance::Zero())};
+  if (source_ == HullMotionSource::kImu && !vibration_covariance_) now_.covariance = usualMotion();
 }
 
-void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
+void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& other_load) noexcept {
   if (!followsLoad()) return;
-  filter_.follow(sample, step, beside);
+  filter_.follow(sample, step, other_load);
   find(sample);
 }
 
@@ -255,7 +255,7 @@ void HullState::vibrates(const BoomFollower* boom) noexcept {
   const bool proven = followed && state->choice.compliant && state->identified;
   if (source_ == HullMotionSource::kModel ? followed : proven) {
     vibration_ = vibrationOf(*state);
-    if (!by_imu_) vibration_doubt_ = doubtOf(boom->tipCovariance());
+    if (!by_imu_) vibration_covariance_ = motionCovariance(boom->tipCovariance());
   }
   if (source_ == HullMotionSource::kModel) known_ = vibration_.has_value();
   if (!by_imu_) findByBoom();

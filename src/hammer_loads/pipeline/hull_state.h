@@ -163,7 +163,7 @@ class HullState {
   /// Notes a blow within the step to a sample. Call before follow().
   void struck(StampNs blow) noexcept { imu_.struck(blow); }
   /// Updates the motion after a sample was processed, with the step's load. beside: DisplacedLinks at the sample.
-  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
+  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& other_load) noexcept;
   /// Returns the prior of the motion where nothing measures it; null: the hull is held.
   const UnmeasuredHull* prior() const noexcept { return source_ == HullMotionSource::kFixed ? nullptr : &prior_; }
   bool followsLoad() const noexcept { return source_ == HullMotionSource::kImu; }  ///< follow() has an effect
@@ -180,7 +180,7 @@ class HullState {
   /// Takes the vibration of the boom at the sample; null: not known. Call after carry().
   void vibrates(const BoomFollower* boom) noexcept;
   /// Notes a gap before the coming samples; the boom is at rest.
-  void clearVibration() noexcept { vibration_.reset(), vibration_doubt_.reset(); }
+  void clearVibration() noexcept { vibration_.reset(), vibration_covariance_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
@@ -210,7 +210,7 @@ class HullState {
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
   std::optional<HullMotion> vibration_;  ///< motion of the boom's tip at the last sample without weight; empty: unknown
-  std::optional<HullMotionCovariance> vibration_doubt_;  ///< none: not requested while an IMU was in use
+  std::optional<HullMotionCovariance> vibration_covariance_;  ///< none: not requested while an IMU was in use
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
   /// known_: false if the IMU is rejected, or if the motion is to come from IMU or boom and is unknown. Then the weight

@@ -123,7 +123,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   const StepEnd end(result);
   std::array<double, kHullChannels> expected;
-  wrenchValues(rod.onItsWay(step.length(), drive, result.hull.motion).wrench, expected.data());
+  wrenchValues(rod.byBodies(step.length(), drive, result.hull.motion).wrench, expected.data());
   const int count = partsOf(step.length(), kRingStep);
   const bool strikes = rod.filter().blowOfStep().has_value();
   const CrankStep::Passage* passage = step.begin();
@@ -135,7 +135,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
     const double time = step.length() * i / count;
     endTurnsUntil(time);
     if (rod.isBesideBlowAt(time)) continue;
-    const ElasticFollower::Instant there = rod.onItsWay(time, drive, result.hull.motion);
+    const ElasticFollower::Instant there = rod.byBodies(time, drive, result.hull.motion);
     wrenchValues(there.wrench, between_.data());
     const bool in_front = strikes && there.bodies.angle.side == Side::kBeforeBlow;
     for (std::size_t k = 0; k < kHullChannels; ++k) {
@@ -183,16 +183,16 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   wrenchValues(there.wrench(), deviations_there_.data());
   wrenchValues(there.common(), common_there_.data());
   std::array<double, kHullChannels> forward, back;
-  const std::optional<CrankWays> ways = place.ways(step);
-  if (ways) {
-    wrenchValues(load.at(ways->forward), forward.data());
-    wrenchValues(load.at(ways->back), back.data());
+  const std::optional<CrankPaths> paths = place.paths(step);
+  if (paths) {
+    wrenchValues(load.at(paths->forward), forward.data());
+    wrenchValues(load.at(paths->back), back.data());
   }
   for (std::size_t i = 0; i < kHullChannels; ++i) {
     const auto [least, greatest] = std::minmax(values_[i], end.value[i]);
-    if (ways && std::abs(forward[i] - back[i]) <= ownOfBoth(i, end)) continue;
-    const double above = ways ? std::max(0.0, std::min(forward[i], back[i]) - greatest) : 0.0;
-    const double below = ways ? std::max(0.0, least - std::max(forward[i], back[i])) : 0.0;
+    if (paths && std::abs(forward[i] - back[i]) <= ownOfBoth(i, end)) continue;
+    const double above = paths ? std::max(0.0, std::min(forward[i], back[i]) - greatest) : 0.0;
+    const double below = paths ? std::max(0.0, least - std::max(forward[i], back[i])) : 0.0;
     between_[i] = std::clamp(between_[i], least - below, greatest + above);
   }
 }

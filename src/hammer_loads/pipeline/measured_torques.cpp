@@ -83,10 +83,10 @@ MeasuredTorques::StampUncertainty MeasuredTorques::stampUncertainty(const Vibrat
   if (!identifier) return stamps;
   stamps.delay = identifier->delay(Clock::kPressures);
   stamps.delay_std = identifier->delayDeviation(Clock::kPressures);
-  const double surprise = identifier->oilSurprise();
+  const double ratio = identifier->oilInnovationRatio();
   // If the delay of the stamps is identified, a residual that does not fit is not due to a delay.
-  stamps.misfit = surprise > kSurprised && identifier->isLagKnown();
-  if (surprise > kSurprised && !stamps.misfit) stamps.lag = square(kLag) * surprise;
+  stamps.misfit = ratio > kContradicted && identifier->isLagKnown();
+  if (ratio > kContradicted && !stamps.misfit) stamps.lag = square(kLag) * ratio;
   return stamps;
 }
 
@@ -169,7 +169,7 @@ void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motio
                         square(torque.value * torque.at.arm_rate / arm * p.joint_zero_std);
   torque.value += rubbed.torque;
   torque.constant =
-      std::sqrt(square(rubbed.deviation) + offset + (identifier ? square(identifier->dampingBesideOil(i)) : 0.0));
+      std::sqrt(square(rubbed.deviation) + offset + (identifier ? square(identifier->dampingWithoutOil(i)) : 0.0));
   torque.lasting = std::sqrt(square(rubbed.lasting) + offset);
 }
 

@@ -17,16 +17,17 @@ namespace hammer_loads {
 /// file, the vibration if readings are rare or the hull lands on rock. No allocation.
 class MeasuredTorques {
  public:
-  /// ModeIdentifier::oilSurprise() from which on the readings do not follow the boom's motion, as when stamps lag.
-  static constexpr double kSurprised = 1.0;
+  /// ModeIdentifier::oilInnovationRatio() from which on the readings do not follow the boom's motion, as when stamps
+  /// lag.
+  static constexpr double kContradicted = 1.0;
 
   struct Torque {
     double value{};      ///< torque of the load on the cylinder's joint [N m]
     double deviation{};  ///< standard deviation from errors of the last predictions; larger if the readings
-                         ///< contradict the vibration (kSurprised), by their difference or as for an unknown lag, or if
-                         ///< the next reading is overdue [N m]
-    double constant{};   ///< further standard deviation due to constants: seal friction, offsets [N m]
-    double lasting{};    ///< part of `constant` that stays while the operator drives the joint one way [N m]
+                         ///< contradict the vibration (kContradicted), by their difference or as for an unknown lag, or
+                         ///< if the next reading is overdue [N m]
+    double constant{};    ///< further standard deviation due to constants: seal friction, offsets [N m]
+    double lasting{};     ///< part of `constant` that stays while the operator drives the joint one way [N m]
     CylinderPosition at;  ///< position from the joint's sensor
   };
 

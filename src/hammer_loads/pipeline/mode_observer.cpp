@@ -9,26 +9,26 @@ namespace hammer_loads {
 namespace {
 
 /// Standard deviations of one reading, of its initial offset, and of the offset's random walk in a second.
-struct Doubt {
+struct SensorNoise {
   double noise, offset, walk;
 };
-constexpr Doubt kAcceleration{0.3, 0.3, 0.05};  // [m/s2]
+constexpr SensorNoise kAcceleration{0.3, 0.3, 0.05};  // [m/s2]
 // Prior: kAcceleration, kLinksInHull
-constexpr Doubt kRate{0.005, 0.02, 0.005};  // [rad/s]
+constexpr SensorNoise kRate{0.005, 0.02, 0.005};  // [rad/s]
 // Prior: kRate
-constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
+constexpr SensorNoise kAngle{2e-4, 0.01, 0.002};  // [rad]
 // Prior: kAngle
-constexpr Doubt kTorque{0.004, 0.02, 0.002};  // parts of the torque that the cylinder's relief valve allows
-constexpr double kLinksInHull = 1.0;          // [m/s2]: modes assume the links at their mean position
+constexpr SensorNoise kTorque{0.004, 0.02, 0.002};  // parts of the torque that the cylinder's relief valve allows
+constexpr double kLinksInHull = 1.0;                // [m/s2]: modes assume the links at their mean position
 // Prior: kTorque
 constexpr double kMoved = 0.02;  // [rad]: a jump
 // Limit: kMoved
 constexpr double kOfSample = 0.75;  // part of the step between samples, within which a reading belongs to one
 
-void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {
-  reading.noise = size * doubt.noise;
-  reading.offset_std = size * doubt.offset;
-  reading.offset_walk = size * doubt.walk;
+void setNoise(const SensorNoise& sensor, double size, VibrationReading& reading) noexcept {
+  reading.noise = size * sensor.noise;
+  reading.offset_std = size * sensor.offset;
+  reading.offset_walk = size * sensor.walk;
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void ModeObserver::update(Boom& boom, const HeldPose& held, double ahead, const 
     one.ahead = ahead;
     one.clock = Clock::kImu;
     one.neglected = turns ? 0.0 : kLinksInHull;
-    setDoubt(turns ? kRate : kAcceleration, 1.0, one);
+    setNoise(turns ? kRate : kAcceleration, 1.0, one);
   }
   boom.vibration().observe(seen.data(), seen.size());
 }
@@ -78,9 +78,9 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
     if (jumped || held.isDriven() || std::abs(ahead) > kOfSample * step) continue;
     VibrationReading reading = jointAngleReading(joint, now->position - held.slowAngle()[joint]);
     reading.velocity[joint] = ahead;
-    Doubt doubt = kAngle;
-    doubt.walk += std::abs(slow_rate[joint]);
-    setDoubt(doubt, 1.0, reading);
+    SensorNoise sensor = kAngle;
+    sensor.walk += std::abs(slow_rate[joint]);
+    setNoise(sensor, 1.0, reading);
     boom.vibration().observe(kImuChannels + static_cast<int>(i), reading);
   }
 }
@@ -109,7 +109,7 @@ void ModeObserver::pressures(Boom& boom, const HeldPose& held, StampNs sample,
     reading.ahead = ahead;
     reading.clock = Clock::kPressures;
     boom.vibration().setSeals(i, sealsOf(cylinder, at.arm, by_oil, held.motion().velocity[j]));
-    setDoubt(kTorque, cylinder.greatestPush() * std::abs(at.arm), reading);
+    setNoise(kTorque, cylinder.greatestPush() * std::abs(at.arm), reading);
   }
   take();
 }

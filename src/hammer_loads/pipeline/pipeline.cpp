@@ -110,7 +110,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   // With a followed elastic rod, crank, links, deviation and vibration are those of its spring.
   if (elastic_.runs()) result_.crank = elastic_.crank();
   const CrankMotion motion = motionOf(result_.crank);
-  const LinksBeside links(model_, elastic_.runs() ? linksAt(model_, motion.angle) : crank_.step().links());
+  const LinksForGradient links(model_, elastic_.runs() ? linksAt(model_, motion.angle) : crank_.step().links());
   settled_ = isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion));
   if (!settled_) return withhold(Refusal::kImplausible);
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
@@ -160,7 +160,7 @@ void Pipeline::follow(CrankFollower::Outcome outcome) noexcept {
 
 /// Returns the reason against publishing; empty if the estimate allows it.
 std::optional<Refusal> Pipeline::whyWithheld() noexcept {
-  settled_ = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
+  settled_ = !crank_.tracker().isUncertain() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
   if (const auto distrust = trust_.refusal()) return distrust;
   if (zero_.withholds()) return Refusal::kInconsistent;
   if (hull_.anglesLookLikeDegrees()) return Refusal::kDegrees;
@@ -168,7 +168,7 @@ std::optional<Refusal> Pipeline::whyWithheld() noexcept {
 }
 
 /// Fills in hull, links, wrench and pin forces.
-void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive,
+void Pipeline::fill(const LinksForGradient& links, const DriveReaction& drive,
                     const ElasticFollower::RodLoads& rod) noexcept {
   const CrankMotion motion = motionOf(result_.crank);
   result_.level = elastic_.isWanted() && !elastic_.isUsed() ? Level::kLinkage : settings_.level;
@@ -176,8 +176,8 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive,
   result_.pitch_known = hull_.pitchKnown();
   result_.links = links.here.links;
   const TwoBodyState& bodies = elastic_.filter().motion().state;
-  result_.rocker_beside = elastic_.runs() ? bodies.beside : 0.0;
-  result_.rocker_beside_speed = elastic_.runs() ? bodies.beside_speed : 0.0;
+  result_.rocker_displacement = elastic_.runs() ? bodies.displacement : 0.0;
+  result_.rocker_displacement_rate = elastic_.runs() ? bodies.displacement_rate : 0.0;
   result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
   result_.crank.acceleration += rod.crank;
   const NearBlow near = near_blow_.withAngleError(result_.deviation.angle);
@@ -256,7 +256,7 @@ WrenchSampler Pipeline::meansAt(double rate) const {
 
 void Pipeline::sample(WrenchSampler& sampler, std::vector<WrenchOutput>& outputs) const noexcept {
   const CrankAngle angle = result_.crank.position.angle;
-  sampler.sample(LinksBeside(model_, elastic_.runs() ? linksAt(model_, angle) : crank_.step().links()), result_,
+  sampler.sample(LinksForGradient(model_, elastic_.runs() ? linksAt(model_, angle) : crank_.step().links()), result_,
                  outputs);
 }
 

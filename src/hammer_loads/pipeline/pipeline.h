@@ -83,10 +83,10 @@ class Pipeline {
   void restart(bool revised) noexcept;
   void follow(CrankFollower::Outcome outcome) noexcept;
   std::optional<Refusal> whyWithheld() noexcept;
-  Eigen::Matrix3d contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
-  Eigen::Matrix3d zeroDoubt(const DriveReaction& drive) const noexcept;
-  ElasticFollower::RodLoads computeDeviations(const LinksBeside& links, const DriveReaction& drive) noexcept;
-  void fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::RodLoads& rod) noexcept;
+  Eigen::Matrix3d contactCovariance(const LinkMotion& links, const DriveReaction& drive) const noexcept;
+  Eigen::Matrix3d zeroCovariance(const DriveReaction& drive) const noexcept;
+  ElasticFollower::RodLoads computeDeviations(const LinksForGradient& links, const DriveReaction& drive) noexcept;
+  void fill(const LinksForGradient& links, const DriveReaction& drive, const ElasticFollower::RodLoads& rod) noexcept;
   double speedScale() const noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
   bool isKnown() const noexcept;
@@ -94,7 +94,7 @@ class Pipeline {
   void hullMovedAtBlow() noexcept;
   double stampNoise() const noexcept;
   CrankLead crankLead(double speed) const noexcept;
-  void followBoom(const LinksBeside& links, const DriveReaction& drive) noexcept;
+  void followBoom(const LinksForGradient& links, const DriveReaction& drive) noexcept;
   void followMisuse() noexcept;
   void passBlows() noexcept;
   void followHull() noexcept;

@@ -19,7 +19,7 @@ constexpr double kLateImu = 5e-3;    // [s]: with pressures, older readings of t
 /// Returns the covariance due to the probability that the last blow was a blank firing, or that the estimate missed a
 /// blow. A slow crank may also land on the tool, leave it or rest there. Then the tool stops the links and carries the
 /// rocker.
-Eigen::Matrix3d Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept {
+Eigen::Matrix3d Pipeline::contactCovariance(const LinkMotion& links, const DriveReaction& drive) const noexcept {
   const bool lands = std::abs(result_.crank.speed) < kSlowCrank && transmissionAngle(links) < settings_.near_blow;
   const double probability = lands ? 1.0 : crank_.tracker().otherBranch();
   if (!(probability > 0.0)) return Eigen::Matrix3d::Zero();
@@ -33,14 +33,14 @@ Eigen::Matrix3d Pipeline::contactDoubt(const LinkMotion& links, const DriveReact
   }
   HullWrench there = hullWrench(model_, drive, other, hull);
   if (lands) there = there + rockerOnTool(mechanism_, links, hull.gravity);
-  const Eigen::Vector3d doubt = vectorOf(there) - vectorOf(here);
-  return probability * doubt * doubt.transpose();
+  const Eigen::Vector3d change = vectorOf(there) - vectorOf(here);
+  return probability * change * change.transpose();
 }
 
 /// Returns the covariance due to a zero that no revolution has shown yet. It follows from the wrench at both ends of
 /// the zero's range, as it is not linear. It includes the weight of a slow rocker, which the tool may carry, and the
 /// error of the drive inertia.
-Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
+Eigen::Matrix3d Pipeline::zeroCovariance(const DriveReaction& drive) const noexcept {
   const ConstantErrors& errors = crank_.tracker().constantErrors();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   if (errors.isKnown() && errors.zeroIsShown()) return covariance;
@@ -58,18 +58,19 @@ Eigen::Matrix3d Pipeline::zeroDoubt(const DriveReaction& drive) const noexcept {
   for (const double sign : {-1.0, 1.0}) {
     CrankMotion other = motion;
     other.angle.offset = CrankAngle::wrapToPi(motion.angle.offset + sign * gate::kUsual * errors.zeroDeviation());
-    const Eigen::Vector3d beside = (vectorOf(hullWrench(model_, drive, other, hull)) - here) / gate::kUsual;
-    covariance += 0.5 * beside * beside.transpose();
+    const Eigen::Vector3d change = (vectorOf(hullWrench(model_, drive, other, hull)) - here) / gate::kUsual;
+    covariance += 0.5 * change * change.transpose();
   }
   return covariance;
 }
 
 /// Finds the standard deviations and whether the blow's side is certain. Returns the loads that an elastic rod adds.
-ElasticFollower::RodLoads Pipeline::computeDeviations(const LinksBeside& links, const DriveReaction& drive) noexcept {
+ElasticFollower::RodLoads Pipeline::computeDeviations(const LinksForGradient& links,
+                                                      const DriveReaction& drive) noexcept {
   const bool follows_rod = elastic_.runs();
-  result_.doubt = crank_.tracker().uncertainty(settings_.torque_std_part);
+  result_.uncertainty = crank_.tracker().uncertainty(settings_.torque_std_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
-                                    hull_.motion().motion, result_.doubt, result_.load_columns);
+                                    hull_.motion().motion, result_.uncertainty, result_.load_columns);
   if (follows_rod) result_.deviation.covariance = result_.deviation.common_covariance;
   const ElasticFollower::RodLoads rod =
       follows_rod ? elastic_.rodLoads(drive, rod_.acceleration())
@@ -80,9 +81,9 @@ ElasticFollower::RodLoads Pipeline::computeDeviations(const LinksBeside& links, 
   const UnknownForce::Errors unknown = unknown_.errors(links.here.links);
   result_.unknown = unknown.squares;
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
-  const Eigen::Matrix3d contact = contactDoubt(links.here.links, drive);
-  result_.beside = rod.covariance + contact + zeroDoubt(drive) + unknown.covariance;
-  result_.deviation.covariance += result_.beside;
+  const Eigen::Matrix3d contact = contactCovariance(links.here.links, drive);
+  result_.other_covariance = rod.covariance + contact + zeroCovariance(drive) + unknown.covariance;
+  result_.deviation.covariance += result_.other_covariance;
   const CrankFilter& tracker = crank_.tracker();
   // An encoder's edge shows the side of the blow as far as the zero is known.
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
@@ -108,13 +109,13 @@ CrankLead Pipeline::crankLead(double speed) const noexcept {
   return {by_angle * errors.estimate()[0], by_angle * errors.deviation()[0]};
 }
 
-void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) noexcept {
+void Pipeline::followBoom(const LinksForGradient& links, const DriveReaction& drive) noexcept {
   const CrankMotion crank = motionOf(result_.crank);
   const HullWrench motion = hullWrench(model_, drive, links.here.links, crank, Gravity{});
   const HullWrench displaced = displaced_links_.wrench(links.here.links, crank.speed, hull_.motion().motion);
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   const WrenchSpread spread =
-      wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
+      wrenchSpread(model_, drive, result_.crank, links, result_.uncertainty.own, result_.load_columns);
   const bool at_work = std::abs(crank.speed) > kSlowCrank;
   const double most_age = boom_->pressuresCount() ? kLateImu : look_back::kLine;
   const std::optional<StampedImuReading> imu = hull_.newImuReading(result_.stamp, boom_->imuStampsJitter(), most_age);

@@ -37,7 +37,7 @@ class JumpGuard {
   explicit JumpGuard(double least) noexcept : least_(least) {}
 
   /// Returns true if a reading is accepted. jump: from the last accepted reading, >= 0.
-  bool believes(double jump) noexcept {
+  bool accepts(double jump) noexcept {
     const double limit = std::max(least_, kFactor * std::sqrt(square_));
     const bool far = jump > limit;
     square_ += kShare * (square(std::min(jump, limit)) - square_);

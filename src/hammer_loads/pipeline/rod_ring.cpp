@@ -16,9 +16,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLongest = 1e-3;           // [s] over which the lever is taken as constant
-constexpr double kRestitutionDoubt = 0.05;  // error due to an elastic rod: 0.03 to 0.08, with worn pins to 0.14
-// Prior: kRestitutionDoubt
+constexpr double kLongest = 1e-3;         // [s] over which the lever is taken as constant
+constexpr double kRestitutionStd = 0.05;  // error due to an elastic rod: 0.03 to 0.08, with worn pins to 0.14
+// Prior: kRestitutionStd
 constexpr double kMeanRestitution = 0.5,
                  kAnyRestitution = 0.29;  // mean and deviation of a restitution uniform from 0 to 1
 constexpr double kOtherBlow = 0.08;       // scatter of a restitution from blow to blow
@@ -82,11 +82,11 @@ RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   rods_ = rodsOf(prior);
 }
 
-void RodRing::begin(double beside_speed) noexcept {
+void RodRing::begin(double displacement_rate) noexcept {
   moves_ = true;
   settles_ = false;
   acceleration_ = 0.0;
-  states_.fill({0.0, beside_speed});
+  states_.fill({0.0, displacement_rate});
 }
 
 void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
@@ -102,9 +102,9 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
     deviation = std::hypot(measured, by_rod);
   }
   const double rocker = -restitution * at.u_before * speed_before;  // rocker's speed as it leaves the tool
-  const double doubt = deviation * at.u_before * speed_before;
+  const double of_restitution = deviation * at.u_before * speed_before;
   const double missing = rocker - at.u_after * factor * speed_before;
-  struck_ = std::hypot(missing, doubt);
+  struck_ = std::hypot(missing, of_restitution);
   begin(std::copysign(struck_, missing));
 }
 
@@ -217,10 +217,10 @@ void RodRing::setEvidence(const CrankFilter& filter, bool lost, std::optional<do
 }
 
 double RodRing::deviationOf(double restitution) const noexcept {
-  return lost_ ? std::hypot(kAnyRestitution, restitution - kMeanRestitution) : kRestitutionDoubt;
+  return lost_ ? std::hypot(kAnyRestitution, restitution - kMeanRestitution) : kRestitutionStd;
 }
 
-double RodRing::restitutionDoubt(double restitution) const noexcept {
+double RodRing::restitutionDeviation(double restitution) const noexcept {
   return is_elastic_ ? std::max(share_, released_) * deviationOf(restitution) : 0.0;
 }
 
@@ -232,7 +232,8 @@ double RodRing::speed() const noexcept {
 }
 
 Eigen::Matrix3d RodRing::covariance(const LinkMotion& links, double crank) const noexcept {
-  const double beside = speed(), square_of_speed = std::hypot(2.0 * links.rocker.u * crank * beside, square(beside));
+  const double relative = speed(),
+               square_of_speed = std::hypot(2.0 * links.rocker.u * crank * relative, square(relative));
   const double along = model_->mechanism().rockerFirstMoment() * square_of_speed;
   const Eigen::Vector3d across = vectorOf(rockerWrench(model_->mechanism(), links, acceleration()));
   const Eigen::Vector3d inward = along * Eigen::Vector3d(links.rocker.cos_psi, -links.rocker.sin_psi, 0.0);

@@ -47,7 +47,7 @@ class RodRing {
   /// Returns the rms over the phase of the rocker's angular acceleration relative to the rigid links' [rad/s2].
   double acceleration() const noexcept { return moves_ ? share_ * acceleration_ : 0.0; }
   /// Returns the standard deviation of a restitution computed from the crank as if the rod were rigid [-].
-  double restitutionDoubt(double restitution) const noexcept;
+  double restitutionDeviation(double restitution) const noexcept;
   /// Returns the standard deviation by which the crank's speed at the last blow may be too large [rad/s]. Reference is
   /// the speed with which a rigid mechanism's rocker strikes as fast. A rocker at one side of its joint clearance is
   /// slower than in the linkage, increasingly so towards the dead centre. Nothing brakes it within the clearance, so
@@ -60,7 +60,7 @@ class RodRing {
 
  private:
   void stop() noexcept { moves_ = approaches_ = false, driven_ = 0.0; }
-  void begin(double beside_speed) noexcept;
+  void begin(double displacement_rate) noexcept;
   void strike(double speed_before, const BlowFactor& blow) noexcept;
   void move(const CrankStep& step, double from, double to) noexcept;
   void moveThrough(const CrankAngle& angle, double speed, double acceleration, double time) noexcept;

@@ -61,7 +61,7 @@ struct SampleResult {
 
   LinkState linkState() const noexcept {
     LinkState state = hammer_loads::linkState(links, crank.position.angle, crank.speed);
-    state.rocker_angle += rocker_beside, state.rocker_speed += rocker_beside_speed;
+    state.rocker_angle += rocker_displacement, state.rocker_speed += rocker_displacement_rate;
     return state;
   }
 
@@ -77,21 +77,21 @@ struct SampleResult {
   bool isPublished() const noexcept { return !refusal && !beside_blow && !uncertain; }
   Level level{};  ///< level of the model that gave the wrench: linkage where `elastic` is not confirmed by the readings
   CrankEstimate crank;
-  CrankUncertainty doubt;    ///< uncertainty of the crank's motion
-  LoadColumns load_columns;  ///< errors of the wrench
-  HullWrench rod_momentum;   ///< possible momentum of the rocker relative to a rigid rod's, without a followed spring
+  CrankUncertainty uncertainty;  ///< uncertainty of the crank's motion
+  LoadColumns load_columns;      ///< errors of the wrench
+  HullWrench rod_momentum;  ///< possible momentum of the rocker relative to a rigid rod's, without a followed spring
   /// Covariance of the wrench's errors other than those of the crank's motion: rod, contact and unknown forces, in
   /// products of [N], [N], [N m].
-  Eigen::Matrix3d beside{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d other_covariance{Eigen::Matrix3d::Zero()};
   HullWrench rod_ring;  ///< part of the deviation due to the rod's spring, which the level neglects
   UnknownForce::Squares unknown{UnknownForce::Squares::Zero()};  ///< squares of forces that no level models, by source
-  bool rod_followed{};           ///< if false, rod_ring is a root mean square over an unknown phase
-  HullDeviation deviation;       ///< at the sample, including the hull's motion
-  double consistency{};          ///< CrankFilter::consistency()
-  bool inconsistent{};           ///< readings contradict the model, but not enough to withhold samples
-  LinkMotion links;              ///< links as with a rigid rod
-  double rocker_beside{};        ///< angle of the rocker minus that with a rigid rod [rad]
-  double rocker_beside_speed{};  ///< rate of that angle [rad/s]
+  bool rod_followed{};                ///< if false, rod_ring is a root mean square over an unknown phase
+  HullDeviation deviation;            ///< at the sample, including the hull's motion
+  double consistency{};               ///< CrankFilter::consistency()
+  bool inconsistent{};                ///< readings contradict the model, but not enough to withhold samples
+  LinkMotion links;                   ///< links as with a rigid rod
+  double rocker_displacement{};       ///< angle of the rocker minus that with a rigid rod [rad]
+  double rocker_displacement_rate{};  ///< rate of that angle [rad/s]
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has been received; else the weight follows from hull_pitch_rad
   HullWrench wrench;   ///< at the sample, of links and drive

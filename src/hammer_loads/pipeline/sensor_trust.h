@@ -92,7 +92,7 @@ class PressureTrust {
     const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
     lost_.follow(off);
   }
-  /// Takes the delay of the stamps in the boom's vibration [s]. misfit: ModeIdentifier::oilSurprise().
+  /// Takes the delay of the stamps in the boom's vibration [s]. misfit: ModeIdentifier::oilInnovationRatio().
   void followDelay(double delay, double misfit, double step) noexcept {
     late_left_ -= step;
     beyond_for_ = delay > kLongestHose && misfit > mismatch::kContradicts ? beyond_for_ + step : 0.0;

@@ -46,8 +46,8 @@ bool risesOrFalls(const Components& from, const Components& after, const Compone
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double slope_0 = (after[i] - from[i]) / kNear, slope_1 = (to[i] - before[i]) / kNear;
     const double rise = to[i] - from[i], corrected = rise - 0.5 * (slope_0 + slope_1);
-    const double doubt = std::abs(slope_1 - slope_0) + std::abs(corrected) + kHardly * std::abs(to[i]);
-    if (!(std::abs(rise) >= kClearly * doubt)) return false;
+    const double uncertainty = std::abs(slope_1 - slope_0) + std::abs(corrected) + kHardly * std::abs(to[i]);
+    if (!(std::abs(rise) >= kClearly * uncertainty)) return false;
   }
   return true;
 }

@@ -44,8 +44,8 @@ struct StepPlace {
   const CrankStep::Passage* passage{};  ///< null: at the time
   Side side{};                          ///< side of the passage
 
-  std::optional<CrankWays> ways(const CrankStep& step) const noexcept {
-    return passage != nullptr && !passage->smooth ? step.waysBesides(*passage, side) : step.ways(time);
+  std::optional<CrankPaths> paths(const CrankStep& step) const noexcept {
+    return passage != nullptr && !passage->smooth ? step.pathsAtSide(*passage, side) : step.paths(time);
   }
 };
 

@@ -41,7 +41,7 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
 /// Returns the instant while the rod's spring is followed. origin: time of the step's start [s].
 TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
   const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
-  const ElasticFollower::Instant there = elastic_->onItsWay(time, drive, hull_);
+  const ElasticFollower::Instant there = elastic_->byBodies(time, drive, hull_);
   const HullWrench momentum = elastic_->momentum(there.bodies, there.links, drive).all;
   const HullWrench added = frameWrench(*model_, there.links, there.crank.speed, hull_);
   return {origin + time,
@@ -87,13 +87,13 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
     if (!passage.forward) turn_.abandon();
     countBackward(passage);
     if (!passage.may_strike) continue;
-    recordTo(from, std::max(from, passage.time - kBesideBlow));
+    recordTo(from, std::max(from, passage.time - kBlowMargin));
     finishBlow(result);
     if (run_up_)
       endTurn(passage);
     else
       restart();  // the speeds at the blow are too uncertain to be published
-    from = passage.time + kBesideBlow;
+    from = passage.time + kBlowMargin;
   }
   recordTo(from, step_->length());
   if (pending_.isWaiting()) pending_.follow(tracker_->blowFactor());
@@ -105,14 +105,14 @@ void TurnFollower::trackErrors(const SampleResult& result) noexcept {
   const CrankEstimate& crank = result.crank;
   if (errors_.rises(result.wrench.force_z))
     errors_.rose(result.stamp, momentumColumns(*columns_, *model_, crank.position.angle, crank.speed,
-                                               result.doubt.speedAtAngle(crank.acceleration / crank.speed)));
+                                               result.uncertainty.speedAtAngle(crank.acceleration / crank.speed)));
   const SampleResult::OfExtreme extreme = result.ofExtreme();
   errors_.sample(result.wrench.force_z, extreme.deviation.force_z, result.deviation.common().force_z,
                  extreme.ring.force_z, result.load_columns);
 }
 
 /// Ends the pulse. by_readings: covariance of the crank without the part of an elastic rod.
-void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& doubt,
+void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& uncertainty,
                             const Eigen::Matrix3d& by_readings, TurnEnd& end) noexcept {
   end.pulse = turn_.end(at);
   const auto [published, withheld, of_step, of_strike, of_ring] = std::exchange(peak_, {});
@@ -120,12 +120,12 @@ void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, 
   if (!end.pulse) return;
   const bool is_rings = of_ring > of_strike;
   peak_force_ = is_rings && of_strike > 0.0 ? of_strike : end.pulse->amplitude;
-  const LinksBeside links(*model_, linksAt(*model_, before.position.angle));
+  const LinksForGradient links(*model_, linksAt(*model_, before.position.angle));
   const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
   const MomentumColumns columns = momentumColumns(*columns_, *model_, before.position.angle, before.speed,
-                                                  doubt.speedAtAngle(before.acceleration / before.speed));
+                                                  uncertainty.speedAtAngle(before.acceleration / before.speed));
   end.pulse_errors = errors_.end(end.stamp, *end.pulse,
-                                 {momentumDeviation(*model_, drive, before, links, doubt.own),
+                                 {momentumDeviation(*model_, drive, before, links, uncertainty.own),
                                   momentumDeviation(*model_, drive, before, links, by_readings)},
                                  columns, weightColumns(*columns_, *model_, hull_.gravity));
   if (is_rings) errors_.addPeakBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
@@ -140,15 +140,16 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const double time = seconds(step_->start() - epoch_) + passage.time;
   CrankEstimate before = step_->atSide(passage, Side::kBeforeBlow);
   if (elastic_->runs()) before.speed = elastic_->strikingSpeed();
-  CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
-  const Eigen::Matrix3d by_readings = doubt.own;
-  if (!elastic_->runs()) doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed) += square(rod_->lackingSpeed());
+  CrankUncertainty uncertainty = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBlowMargin), 1.0);
+  const Eigen::Matrix3d by_readings = uncertainty.own;
+  if (!elastic_->runs())
+    uncertainty.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed) += square(rod_->lackingSpeed());
   const double rate = before.acceleration / before.speed;
-  endPulse(instant(time, before), before, doubt, by_readings, end);
+  endPulse(instant(time, before), before, uncertainty, by_readings, end);
   errors_.begin(end.stamp);
   end.mean_hold_down_force =  // multiplied by the impulse once that is known
       last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
-  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, rate, doubt);
+  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, rate, uncertainty);
   pending_.follow(tracker_->blowFactor());
   last_blow_ = end.stamp;
   turn_.begin(instant(time, step_->atSide(passage, Side::kAfterBlow)));
@@ -186,7 +187,7 @@ void TurnFollower::inflateImpossible(CrankBlow crank, bool early, TurnEnd& end) 
     other.support_impulse_z += (nearest - 1.0) * other.tool_impulse_z;
     other.tool_impulse_z *= nearest;
   }
-  addDoubt(end.blow, other, end.blow_errors);
+  addDifference(end.blow, other, end.blow_errors);
 }
 
 /// Adds the effects of a yielding hull: less effective inertia of the rocker, and an acceleration of the crank.
@@ -227,14 +228,15 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   CrankBlow crank = elastic.value_or(measured);
   if (!elastic) {
     const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
-    crank.factor_std = std::hypot(
-        crank.factor_std, rod_->restitutionDoubt(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
-        crank.factor * rod_->lackingSpeed() / crank.speed);
+    crank.factor_std =
+        std::hypot(crank.factor_std,
+                   rod_->restitutionDeviation(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
+                   crank.factor * rod_->lackingSpeed() / crank.speed);
   }
   if (prior_ != nullptr && !result.hull.moves) addHullDeviation(result.hull.covariance, crank);
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
-  const double doubt = std::hypot(measured.speed_std / measured.speed, measured.factor_std / measured.factor);
-  const HullWrench read{std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0};
+  const double uncertainty = std::hypot(measured.speed_std / measured.speed, measured.factor_std / measured.factor);
+  const HullWrench read{std::abs(after.x) * uncertainty, std::abs(after.z) * uncertainty, 0.0};
   errors_.momentumAfterBlow({{read.force_x, std::hypot(read.force_z, taken_up), 0.0}, read},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
                                             pending_.columnsAfter()));

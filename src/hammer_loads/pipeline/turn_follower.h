@@ -119,7 +119,8 @@ class PendingBlow {
  public:
   /// Begins with a passage. time: of the blow [s]; speed: of the crank at the dead centre [rad/s]; rate: acceleration
   /// over speed there [1/s]; doubt: uncertainty of the crank there.
-  void begin(double time, const CrankPosition& at, double speed, double rate, const CrankUncertainty& doubt) noexcept {
+  void begin(double time, const CrankPosition& at, double speed, double rate,
+             const CrankUncertainty& uncertainty) noexcept {
     waiting_ = true;
     time_ = time;
     position_ = at;
@@ -128,8 +129,8 @@ class PendingBlow {
     early_ = false;
     published_ = withheld_ = 0;
     blow_.speed = speed;
-    blow_.speed_std = std::sqrt(doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed));
-    columns_.row(0) = doubt.speedAtAngle(rate).cast<double>();
+    blow_.speed_std = std::sqrt(uncertainty.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed));
+    columns_.row(0) = uncertainty.speedAtAngle(rate).cast<double>();
   }
   bool isWaiting() const noexcept { return waiting_; }
   bool isEarly() const noexcept { return early_; }  ///< the tool was met before the dead centre
@@ -250,7 +251,7 @@ class TurnFollower {
   double partOfStep(bool rings) const noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
-  void endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& doubt,
+  void endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& uncertainty,
                 const Eigen::Matrix3d& by_readings, TurnEnd& end) noexcept;
   void trackErrors(const SampleResult& result) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;

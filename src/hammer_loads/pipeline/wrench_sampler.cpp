@@ -43,13 +43,13 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
   origin_ = last_output_ = result.stamp;
   index_ = kind_ == OutputKind::kMean ? 1 : 0;
   impulse_ = {};
-  momentum_std_ = blow_doubt_ = {};
+  momentum_std_ = blow_deviation_ = {};
   column_impulse_.setZero();
   columns_ = result.load_columns;
   return kind_ != OutputKind::kMean;
 }
 
-void WrenchSampler::sample(const LinksBeside& links, const SampleResult& result,
+void WrenchSampler::sample(const LinksForGradient& links, const SampleResult& result,
                            std::vector<WrenchOutput>& outputs) noexcept {
   added_up_to_ = 0.0;
   drive_ = driveReaction(*model_, tracker_->driveInertia());
@@ -88,7 +88,7 @@ bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
 LoadImpulse WrenchSampler::motionTo(double time) noexcept {
   if (!elastic_->ranOverStep()) return motionImpulse(*model_, drive_, *step_, added_up_to_, time);
   const ElasticFollower::Impulse impulse = elastic_->impulse(drive_, added_up_to_, time);
-  blow_doubt_ = blow_doubt_ + impulse.doubt;
+  blow_deviation_ = blow_deviation_ + impulse.deviation;
   return impulse.motion;
 }
 
@@ -106,8 +106,8 @@ void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
 
 /// Takes the hull's motion over the step that the sample ends, and the errors at the sample that are not the crank's.
 void WrenchSampler::followStep(const SampleResult& result) noexcept {
-  beside_before_ = beside_;
-  beside_ = result.beside;
+  other_covariance_before_ = other_covariance_;
+  other_covariance_ = result.other_covariance;
   hull_.from = hull_.to;
   hull_.to = result.hull.motion;
   hull_.length = step_->length();
@@ -116,7 +116,7 @@ void WrenchSampler::followStep(const SampleResult& result) noexcept {
     if (passage.strikes) hull_.blow = passage.time;
 }
 
-WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept {
+WrenchOutput WrenchSampler::output(StampNs stamp, const LinksForGradient& links, const SampleResult& result) noexcept {
   ++index_;
   const bool at_sample = stamp == result.stamp;
   const double time = at_sample ? step_->length() : seconds(stamp - step_->start());
@@ -141,14 +141,14 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   if (at_sample) {
     output.near_blow = near_blow_(links.here.links);
     output.deviation = result.deviation;
-    boundMean(links, result.doubt.own, result, output);
+    boundMean(links, result.uncertainty.own, result, output);
     return output;
   }
-  const CrankUncertainty doubt = tracker_->uncertaintyBetween(time, torque_part_);
-  const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
+  const CrankUncertainty uncertainty = tracker_->uncertaintyBetween(time, torque_part_);
+  const LinksForGradient there(*model_, linksAt(*model_, output.crank.position.angle));
   output.near_blow = near_blow_(there.here.links);
-  output.deviation = deviation(output.crank, doubt, there, hull, result);
-  boundMean(there, doubt.own, result, output);
+  output.deviation = deviation(output.crank, uncertainty, there, hull, result);
+  boundMean(there, uncertainty.own, result, output);
   return output;
 }
 
@@ -162,26 +162,26 @@ void WrenchSampler::setInstant(double time, const HullMotion& hull, WrenchOutput
   output.crank = instant.crank, output.wrench = instant.wrench;
 }
 
-HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUncertainty& doubt,
-                                       const LinksBeside& there, const HullMotion& hull,
+HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUncertainty& uncertainty,
+                                       const LinksForGradient& there, const HullMotion& hull,
                                        const SampleResult& result) const noexcept {
   LoadColumns unused;
-  HullDeviation of = hullDeviation(*hammer_, *model_, step_->driveInertia(), crank, there, hull, doubt, unused);
+  HullDeviation of = hullDeviation(*hammer_, *model_, step_->driveInertia(), crank, there, hull, uncertainty, unused);
   addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of);
   // Errors by rod and unknown forces change at a blow; before it they are those of the previous sample.
   const bool before_blow = hull_.blow && crank.position.angle.side == Side::kBeforeBlow;
-  of.covariance += before_blow ? beside_before_ : beside_;
+  of.covariance += before_blow ? other_covariance_before_ : other_covariance_;
   return of;
 }
 
 HullDeviation WrenchSampler::deviation(double time, const CrankEstimate& crank,
                                        const SampleResult& result) const noexcept {
   return deviation(crank, tracker_->uncertaintyBetween(time, torque_part_),
-                   LinksBeside(*model_, linksAt(*model_, crank.position.angle)), result.hull.motion, result);
+                   LinksForGradient(*model_, linksAt(*model_, crank.position.angle)), result.hull.motion, result);
 }
 
 /// Bounds the error of a mean. Readings enter through the momenta at both ends, a constant by the mean of its errors.
-void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const SampleResult& result,
+void WrenchSampler::boundMean(const LinksForGradient& links, const Eigen::Matrix3d& own, const SampleResult& result,
                               WrenchOutput& output) noexcept {
   if (kind_ != OutputKind::kMean) return;
   HullDeviation& deviation = output.deviation;
@@ -190,9 +190,9 @@ void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& o
                                                             wrenchOf(vectorOf(result.rod_momentum).cwiseAbs());
   const HullWrench momentum =
       modelled + wrenchOf(UnknownForce::kKeepsSign * result.unknown.rowwise().sum().cwiseSqrt());
-  const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_std_ + momentum + blow_doubt_);
+  const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_std_ + momentum + blow_deviation_);
   momentum_std_ = momentum;
-  blow_doubt_ = {};
+  blow_deviation_ = {};
   const Eigen::Vector3d of_end = (deviation.covariance - deviation.common_covariance).diagonal().cwiseMax(0.0);
   const Eigen::Vector3d common =
       (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm().cast<double>();

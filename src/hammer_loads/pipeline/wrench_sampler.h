@@ -25,7 +25,7 @@ class WrenchSampler {
   void forget() noexcept { begun_ = false; }
   /// Appends the outputs up to the result's sample, with which the step ended; links: at the sample. No allocation once
   /// the outputs have the room of mostOutputs().
-  void sample(const LinksBeside& links, const SampleResult& result, std::vector<WrenchOutput>& outputs) noexcept;
+  void sample(const LinksForGradient& links, const SampleResult& result, std::vector<WrenchOutput>& outputs) noexcept;
   /// Returns the standard deviations of the wrench at an instant of the last sample's step, for the given crank. time:
   /// after its start [s].
   HullDeviation deviation(double time, const CrankEstimate& crank, const SampleResult& result) const noexcept;
@@ -36,14 +36,15 @@ class WrenchSampler {
   bool begin(const SampleResult& result) noexcept;
   bool isDue(StampNs sample, StampNs& stamp) const noexcept;
   bool isKnown(double time, const WrenchOutput& output, const SampleResult& result) const noexcept;
-  HullDeviation deviation(const CrankEstimate& crank, const CrankUncertainty& doubt, const LinksBeside& there,
-                          const HullMotion& hull, const SampleResult& result) const noexcept;
-  WrenchOutput output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept;
+  HullDeviation deviation(const CrankEstimate& crank, const CrankUncertainty& uncertainty,
+                          const LinksForGradient& there, const HullMotion& hull,
+                          const SampleResult& result) const noexcept;
+  WrenchOutput output(StampNs stamp, const LinksForGradient& links, const SampleResult& result) noexcept;
   LoadImpulse motionTo(double time) noexcept;
   void addUpTo(double time, const SampleResult& result) noexcept;
   void setInstant(double time, const HullMotion& hull, WrenchOutput& output) const noexcept;
   void followStep(const SampleResult& result) noexcept;
-  void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const SampleResult& result,
+  void boundMean(const LinksForGradient& links, const Eigen::Matrix3d& own, const SampleResult& result,
                  WrenchOutput& output) noexcept;
 
   const HullModel* model_;
@@ -63,13 +64,13 @@ class WrenchSampler {
   double added_up_to_{};  ///< part of the step whose impulse is in impulse_ [s]
   HullPath hull_;         ///< over the step to the sample
   /// SampleResult::beside at the sample and at the one before.
-  Eigen::Matrix3d beside_{Eigen::Matrix3d::Zero()}, beside_before_{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d other_covariance_{Eigen::Matrix3d::Zero()}, other_covariance_before_{Eigen::Matrix3d::Zero()};
   DriveReaction drive_;                              ///< at the sample
   LoadImpulse impulse_;                              ///< since the last output
   LoadColumns columns_{LoadColumns::Zero()};         ///< columns up to which the mean is summed
   LoadColumns column_impulse_{LoadColumns::Zero()};  ///< since the last output, of a mean
   HullWrench momentum_std_;                          ///< at the last output
-  HullWrench blow_doubt_;                            ///< ElasticFollower::Impulse::doubt since the last output
+  HullWrench blow_deviation_;                        ///< ElasticFollower::Impulse::doubt since the last output
 };
 
 }  // namespace hammer_loads

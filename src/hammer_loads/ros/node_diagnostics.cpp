@@ -34,7 +34,7 @@ void NodeDiagnostics::warnOnConsole() {
   for (const Warning& warning : warnings()) {
     if (warning.awaited) awaited.insert(warning.key);
     if (warning.awaited && awaited_.count(warning.key) == 0) continue;
-    if (said_.insert(warning.key).second) ROS_WARN("%s", warning.text.c_str());
+    if (stated_.insert(warning.key).second) ROS_WARN("%s", warning.text.c_str());
   }
   awaited_ = std::move(awaited);
   const LogHealth health = log_.health();
@@ -226,7 +226,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
   }
   status.add("samples without known joints", boom.faults());
   status.add("samples whose joint loads are withheld", boom.useless());
-  status.add("vibration ran away", boom.runaways());
+  status.add("vibration ran away", boom.divergences());
   status.add("error of a rigid boom for the last pulse [-]", state.choice.rigid_error);
   status.add("tolerance for it [-]", state.choice.rigid_tolerance);
   status.add("pulse length [s]", state.choice.pulse_length);

@@ -55,7 +55,7 @@ class NodeDiagnostics {
   Clock::time_point last_report_{Clock::now()};
   SampleCounts last_counts_;
   ImuCounts last_imu_counts_;
-  std::set<std::string> said_;     ///< keys of warnings already on the console
+  std::set<std::string> stated_;   ///< keys of warnings already on the console
   std::set<std::string> awaited_;  ///< keys of inputs that were missing at the last report
   LogState log_state_{LogState::kOff};
   DiagnosticsPublisher publisher_;
