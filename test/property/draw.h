@@ -15,7 +15,7 @@ class Draw {
   explicit Draw(unsigned seed) : random_(seed) {}
   double between(double low, double high) { return std::uniform_real_distribution<>(low, high)(random_); }
   std::size_t index(std::size_t size) { return std::uniform_int_distribution<std::size_t>(0, size - 1)(random_); }
-  /// Its rod misses the change-point condition by as much as is allowed.
+  /// Returns parameters whose rod deviates from the change-point condition by up to the permitted tolerance.
   HammerParameters parameters() {
     HammerParameters p = randomParameters(random_);
     p.lengths.rod += 0.999e-3 * between(-1.0, 1.0) * p.lengths.crank;

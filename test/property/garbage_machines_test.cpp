@@ -1,4 +1,4 @@
-// A machine of absurd parameters is refused with reasons, or every number that it gives is finite.
+// A machine with absurd parameters is refused with reasons, or all its results are finite.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -21,7 +21,7 @@ bool allFinite(Values... values) {
   return (std::isfinite(values) && ...);
 }
 
-/// Whether every number that a mechanism gives at a state of the crank is finite.
+/// Returns true if all results of a mechanism at a state of the crank are finite.
 bool isFinite(const Mechanism& mechanism, Level level, const CrankMotion& crank, Gravity gravity) {
   const HullWrench w = hullWrench(mechanism, level, crank, gravity);
   const LinkMomentum m = linkMomentum(mechanism, level, crank.angle, crank.speed);
@@ -36,13 +36,13 @@ bool isFinite(const Mechanism& mechanism, Level level, const CrankMotion& crank,
                    b.tool_impulse_x, b.tool_impulse_z, b.support_impulse_x, b.support_impulse_z);
 }
 
-/// A length, an inertia, any constant of the hammer file.
+/// Returns a random field: any constant of the hammer file, or the inertia of the drive.
 double& garbled(HammerParameters& p, Draw& draw) {
   const std::size_t which = draw.index(kHammerConstants.size() + 1);
   return which < kHammerConstants.size() ? kHammerConstants[which].field(p) : p.drive_inertia;
 }
 
-/// One to three fields of a good machine become garbage; lengths at times keep the change-point condition.
+/// Replaces one to three fields of a valid machine by garbage; some lengths still meet the change-point condition.
 HammerParameters garbage(Draw& draw) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   constexpr double kValues[] = {kNan,  kInf,   -kInf,  1e308,  -1e308, 1e300,  1e200,   1e155, 1e100, 1e30, 1e12, 1e-12,

@@ -1,4 +1,4 @@
-// Laws of mechanics that every machine must keep, on a hundred thousand random ones.
+// Laws of mechanics that every machine must obey, on a hundred thousand random ones.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,12 +24,12 @@ constexpr Complex kI{0.0, 1.0};
 
 Complex complex(Planar a) { return {a.re, a.im}; }
 
-/// Worst of many errors and where it was.
+/// Largest of many errors, with the index of its machine.
 struct Worst {
   double error{};
   int machine{-1};
   void take(double candidate, int i) {
-    if (candidate <= error) return;  // a NaN is taken
+    if (candidate <= error) return;  // a NaN is kept
     error = candidate;
     machine = i;
   }
@@ -47,7 +47,7 @@ TEST(RandomMachines, LoopStaysClosedAndLinksKeepTheirLengths) {
     loop.take(std::abs(b + l.rod * complex(m.beta) - c) / size, i);
     rod.take(std::abs(std::abs(c - b) - l.rod) / size, i);
     for (Planar direction : {m.phi, m.beta, m.psi}) unit.take(std::abs(std::abs(complex(direction)) - 1.0), i);
-    // The loop's rate per crank angle: i l1 e^(i phi) + i l2 v e^(i beta) = i l3 u e^(i psi).
+    // Derivative of the loop by the crank angle: i l1 e^(i phi) + i l2 v e^(i beta) = i l3 u e^(i psi).
     const Complex closing = b + m.v * l.rod * complex(m.beta) - m.rocker.u * l.rocker * complex(m.psi);
     rate.take(std::abs(closing) / (l.crank + l.rod * std::abs(m.v) + l.rocker * std::abs(m.rocker.u)), i);
   }
@@ -58,7 +58,7 @@ TEST(RandomMachines, LoopStaysClosedAndLinksKeepTheirLengths) {
   EXPECT_LE(rate.error, kRounding) << rate.machine;
 }
 
-/// Momentum, energy and weight power from each link's own mass and motion.
+/// Momentum and kinetic energy from the mass and motion of each link.
 struct Links {
   Complex momentum;       ///< mechanism frame [N s]
   double kinetic_energy;  ///< [J]
@@ -83,7 +83,7 @@ Links linksOf(const Mechanism& mechanism, CrankAngle angle, double speed) {
   return links;
 }
 
-/// Power of the weight of moving links with a momentum in the mechanism frame (model.md 1: a mirror) [W].
+/// Returns the power of the links' weight [W] for a momentum in the mechanism frame (model.md 1: a reflection).
 double weightPower(const Mechanism& mechanism, Complex momentum, Gravity gravity) {
   const double c = mechanism.cosComAngle(), s = mechanism.sinComAngle();
   return -(c * momentum.real() + s * momentum.imag()) * gravity.x +
@@ -99,7 +99,7 @@ TEST(RandomMachines, DrivePowerIsTheRateOfEnergyLessThePowerOfWeight) {
     crank.speed += std::copysign(1.0, crank.speed);
     const Gravity gravity = draw.gravity();
     const double h = 2e-4 / std::max(std::abs(crank.speed), std::sqrt(std::abs(crank.acceleration)));  // [s]
-    crank.angle.offset *= 0.999;  // the stencil stays within half a turn
+    crank.angle.offset *= 0.999;  // the stencil stays within half a revolution
     const auto energy = [&](double t) {
       CrankAngle angle = crank.angle;
       angle.offset += t * (crank.speed + 0.5 * t * crank.acceleration);
@@ -114,7 +114,7 @@ TEST(RandomMachines, DrivePowerIsTheRateOfEnergyLessThePowerOfWeight) {
         pinForces(mechanism, Level::kLinkage, crank, gravity, NearBlow(0.01)).drive_torque * crank.speed;
     const double shaft = crank.speed * test::driveTorque(shaftLoad(mechanism, Level::kLinkage, crank.angle, gravity),
                                                          crank.speed, crank.acceleration);
-    // Next to the blow the pin forces lose digits with the sine of half the crank angle.
+    // Pin forces lose digits near the blow, as the sine of half the crank angle vanishes.
     const double sine = std::abs(std::sin(0.5 * crank.angle.offset));
     from_pins.take(std::abs(pins - expected) / size * std::min(1.0, 100.0 * sine), i);
     from_shaft.take(std::abs(shaft - expected) / size, i);
@@ -141,7 +141,7 @@ TEST(RandomMachines, ImpulseIsMinusTheChangeOfMomentum) {
             {start + t * (speed + 0.5 * t * acceleration), side}, speed + t * acceleration, acceleration};
       };
       const auto impulse = [&](double HullWrench::*component) {
-        double sum = 0.0;  // in pieces: the sharpest machine changes within some 0.1 rad
+        double sum = 0.0;  // in pieces, since the sharpest machine changes within some 0.1 rad
         constexpr int kPieces = 4;
         for (int k = 0; k < kPieces; ++k) {
           sum +=

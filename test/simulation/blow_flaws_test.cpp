@@ -1,4 +1,4 @@
-// Flaws of the simulated machine's blow and drive: each does what its key says, energy and momentum balance.
+// Flaws of the simulated machine's blow and drive: specified effect of each, balance of energy and momentum.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -25,7 +25,7 @@ MachineSettings heavyLinks() {
   return s;
 }
 
-/// Within the integration's error, 1e-10 of the energy that went through.
+/// Expects a balance within the integration's error, 1e-10 of the transferred energy.
 void expectAllAccountedFor(const EnergyAccount& e) {
   EXPECT_NEAR(e.kinetic + e.blows + e.losses + e.stops, e.motor - e.friction + e.weight, 1e-6 + 1e-10 * e.motor);
   EXPECT_NEAR(e.stored, e.supply - e.motor - e.valves, 1e-6 + 1e-10 * e.motor);
@@ -37,7 +37,7 @@ TEST(Blows, EveryWayOfMeetingTheToolBalancesItsEnergy) {
       s.blow = {true, 0.0, 0.3, 0.1, 0.0, 50.0, 0.1};
       s.drive.coupling_frequency = 80.0;
       if (early) s.blow.tool_early = 0.3 * kTwoPi / 360.0;
-      s.step = 5e-5;  // for the account's tenth digit
+      s.step = 5e-5;  // for a balance to ten digits
       WorkingMachine machine(s);
       machine.advanceTo(s.duration);
       expectAllAccountedFor(machine.energy());
@@ -50,7 +50,7 @@ TEST(Blows, EveryWayOfMeetingTheToolBalancesItsEnergy) {
   }
 }
 
-/// Rocker and rod as particles on massless bars: positions and velocities from pins, momenta by sums, no mass matrix.
+/// Models rocker and rod as particles on massless bars. Momenta are sums over the particles, without a mass matrix.
 TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
   const MachineSettings s = heavyLinks();
   const HammerParameters& p = s.hammer;
@@ -59,7 +59,7 @@ TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
   const Strike strike = links.strike(w, restitution, drive);
   EXPECT_NEAR(strike.rocker_speed_after, -restitution * strike.rocker_speed_before, 1e-12);
 
-  // Transverse velocities along the line; the rod as two masses with its inertia, its mass off the line moves along.
+  // Transverse velocities of the pins. The rod is two masses with its inertia, including that of its offset.
   struct Speeds {
     double b, c;
   };
@@ -67,7 +67,7 @@ TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
   const double about = p.rod_inertia_about_com + p.rod_mass * p.rod_com_across * p.rod_com_across;
   const double arm = std::sqrt(about / p.rod_mass);  // two half masses at com +- arm
   const double crank = drive + p.crank_inertia_about_com + p.crank_mass * p.crank_com_along * p.crank_com_along;
-  // Moment on crank (about A) and on rocker (about D) that bring it to these speeds from rest.
+  // Returns the angular impulses on crank (about A) and rocker (about D) that give these speeds from rest.
   const auto moments = [&](Speeds v) {
     double at_b = 0.0, at_c = 0.0;
     for (const double place : {p.rod_com_along - arm, p.rod_com_along + arm}) {
@@ -77,7 +77,7 @@ TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
     }
     return Eigen::Vector2d{crank * v.b / l1 + l1 * at_b, p.rocker_inertia_about_pivot * v.c / l3 + l3 * at_c};
   };
-  // Speeds of the pins from moments, by the columns that unit speeds need.
+  // Returns the speeds of the pins from moments, by inverting the moments of unit speeds.
   Eigen::Matrix2d columns;
   columns << moments({1.0, 0.0}), moments({0.0, 1.0});
   const auto speeds = [&](const Eigen::Vector2d& m) { return Eigen::Vector2d(columns.inverse() * m); };
@@ -85,7 +85,7 @@ TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
   const Eigen::Vector2d before = moments({l1 * w, l3 * strike.rocker_speed_before});
   const Eigen::Vector2d free = speeds(before + Eigen::Vector2d{0.0, strike.tool_impulse * p.striking_distance});
   EXPECT_NEAR(free[1] / l3, strike.rocker_speed_after, 1e-9 * w);
-  // The loop closes: some moments (-u, 1) of the pins' forces, which do no work, give rocker = u crank.
+  // The loop closes by moments (-u, 1) of the pins' forces, which do no work on a motion with rocker = u crank.
   const double u = links.rockerAngle({0.0, false}).first;
   const Eigen::Vector2d pull = speeds({-u, 1.0});
   const double size = (u * free[0] / l1 - free[1] / l3) / (pull[1] / l3 - u * pull[0] / l1);
@@ -153,7 +153,7 @@ TEST(Blows, EarlyToolSlowsTheCrankBeforeTheDeadCentre) {
   }
 }
 
-/// Without a tool and friction nothing tells one branch from the other: the energy stays, turn after turn.
+/// Without tool and friction both branches are equivalent, and energy is conserved over all revolutions.
 TEST(Blows, BlankTurnGoesThroughTheMirroredBranchSmoothly) {
   MachineSettings s = flawedRun();
   s.blow.blank_share = 1.0;
@@ -186,7 +186,7 @@ TEST(Coupling, MotorSwingsAgainstTheCrankAtItsFrequency) {
   s.drive.coupling_frequency = 60.0;
   s.drive.coupling_damping = 0.0;
   s.drive.motor_share = 0.3;
-  // A rocker of next to no inertia leaves two discs on a spring.
+  // A rocker of negligible inertia leaves two discs on a spring.
   s.hammer.rocker_mass = 1e-3;
   s.hammer.rocker_inertia_about_pivot = 1.2e-5;
   s.gravity = 0.0;
@@ -196,7 +196,7 @@ TEST(Coupling, MotorSwingsAgainstTheCrankAtItsFrequency) {
   WorkingMachine machine(s);
   std::vector<double> rising;
   double last = 0.0, last_slope = 0.0;
-  for (int i = 2000; i < 6000; ++i) {  // least twisting speeds: its slow part falls out of the slope
+  for (int i = 2000; i < 6000; ++i) {  // minima of the twisting speed; its slow part cancels in the slope
     machine.advanceTo(1e-4 * i);
     const double twisting = machine.truth().motor_speed - machine.truth().speed, slope = twisting - last;
     if (i > 2001 && last_slope < 0.0 && slope >= 0.0) rising.push_back(1e-4 * (i - slope / (slope - last_slope)));

@@ -1,4 +1,4 @@
-/// A run of the simulated machine with its hull on its boom.
+/// Run of the simulated machine with its hull on its boom.
 #pragma once
 
 #include "hammer_loads/simulation/session.h"

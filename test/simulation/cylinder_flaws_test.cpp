@@ -1,4 +1,4 @@
-// What a cylinder and its sensors have that an ideal one has not: air, a leak, loose pins; hoses, counts, a bus.
+// Flaws of cylinders and their sensors: air, leakage, joint clearance; hoses, resolution, bus delay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using test::onBoom;
 
 constexpr double kBulk = 1e9, kAir = 0.01;
 
-/// A hammer that never starts, on a boom that the operator lets swing.
+/// Returns a hammer that never starts, on a boom that the operator swings.
 MachineSettings swungBoom() {
   MachineSettings m = onBoom();
   m.drive.start_time = 90.0, m.drive.stop_time = 100.0;
@@ -23,7 +23,7 @@ MachineSettings swungBoom() {
   return m;
 }
 
-/// Volume over that at ambient pressure, by the laws of liquid and gas: a sum of two volumes.
+/// Returns the volume relative to that at ambient pressure, as the sum of liquid and gas.
 double volumeBySum(double absolute) {
   const double liquid = (1.0 - kAir) * (1.0 - (absolute - 1.013e5) / kBulk);
   const double gas = kAir * std::exp(std::log(1.013e5 / absolute) / 1.4);
@@ -48,11 +48,11 @@ TEST(ChamberOil, IsLiquidAndGas) {
   EXPECT_NEAR(ChamberOil(kBulk, 0.0).compressed(6e6, 1e-3), 6e6 + 1e6, 6e3);
 }
 
-/// Two chambers a cylinder that have no flaw worth mentioning move as linear springs do, but for how places change.
+/// Two chambers per cylinder with a negligible leak move as linear springs do, except for the change of geometry.
 TEST(CylinderFlaws, ChambersWithoutFlawsAreTheSpringsTheyStandFor) {
   MachineSettings m = onBoom();
-  m.on_boom.pressures.preload = 2e7;  // else the oil boils where a rod is pulled out
-  m.on_boom.oil_stiffness = 50.0;     // so that it hardly moves
+  m.on_boom.pressures.preload = 2e7;  // otherwise the oil boils where a rod is pulled out
+  m.on_boom.oil_stiffness = 50.0;     // for small displacements
   m.on_boom.step = 1e-4;
   HammerOnBoom springs(m);
   m.on_boom.leak = 1e-30;
@@ -69,7 +69,7 @@ TEST(CylinderFlaws, ChambersWithoutFlawsAreTheSpringsTheyStandFor) {
   EXPECT_GT(off, 0.0);
 }
 
-/// What passes a piston is energy that is lost: a boom comes to rest sooner.
+/// Leakage past a piston dissipates energy, so that the boom comes to rest sooner.
 TEST(CylinderFlaws, ALeakTakesEnergyOutOfASwing) {
   std::array<double, 2> left{};
   for (const double leak : {0.0, 2e-11}) {
@@ -87,7 +87,7 @@ TEST(CylinderFlaws, ALeakTakesEnergyOutOfASwing) {
   EXPECT_LT(left[1], 0.8 * left[0]);
 }
 
-/// A force that turns around finds the pins loose: none while the rod goes through their play.
+/// A force that reverses is zero while the rod passes through the clearance of its pins.
 TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirClearance) {
   const OilBoom boom = oilBoomEo2621();
   std::array<int, 2> idle{};
@@ -95,7 +95,7 @@ TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirClearance) {
   for (const double play : {0.0, 3e-4}) {
     MachineSettings m = onBoom();
     m.on_boom.pin_play = play;
-    m.on_boom.damping = 0.0;  // else the modes' dampers carry something
+    m.on_boom.damping = 0.0;  // otherwise the modal dampers carry a force
     HammerOnBoom machine(m);
     std::array<double, 3> least{}, most{};
     for (int i = 1000; i <= 3000; ++i) {
@@ -114,7 +114,7 @@ TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirClearance) {
   EXPECT_GT(idle[1], 5 * idle[0] + 50);
 }
 
-/// Until 2.5 s, and the largest difference of their joints [rad].
+/// Returns the largest difference of the joints until 2.5 s [rad]; `largest` is the largest rigid displacement.
 double bentAgainstRigid(double frequency, double& largest) {
   MachineSettings m = onBoom();
   HammerOnBoom rigid(m);
@@ -131,7 +131,7 @@ double bentAgainstRigid(double frequency, double& largest) {
   return off;
 }
 
-/// What is left of it falls with the square of the frequency.
+/// The remaining difference is inversely proportional to the square of the frequency.
 TEST(SimulatedBending, StiffOnesAreRigidOnes) {
   double largest = 0.0;
   const double off_100 = bentAgainstRigid(100.0, largest), off_200 = bentAgainstRigid(200.0, largest);
@@ -140,8 +140,8 @@ TEST(SimulatedBending, StiffOnesAreRigidOnes) {
   EXPECT_NEAR(off_200, off_100 / 4.0, 0.1 * off_100);
 }
 
-/// Sums of squares from 5 to 15 s and from 15 to 25 s, a beat of two modes each, of a swing that no oil and no link
-/// damps: joints' rates, and what the hull turns beside them.
+/// Sums of squares from 5 to 15 s and from 15 to 25 s, one beat of two modes each, without damping by oil or links.
+/// They are those of the joints' rates and of the hull's additional rate of rotation.
 struct Swing {
   std::array<double, 2> joints{}, bent{};
 };
@@ -163,7 +163,7 @@ Swing swingOf(double frequency) {
   return swing;
 }
 
-/// A crank that hangs free takes what it takes; links that bend take nothing beside, and turn the hull.
+/// A freely hanging crank dissipates equally in both cases. Bending links dissipate nothing more and rotate the hull.
 TEST(SimulatedBending, TakesNoEnergyAndTurnsTheHull) {
   const Swing rigid = swingOf(0.0), bends = swingOf(15.0);
   EXPECT_GT(rigid.joints[0] / 10000.0, 1e-4);
@@ -172,13 +172,13 @@ TEST(SimulatedBending, TakesNoEnergyAndTurnsTheHull) {
   EXPECT_GT(bends.bent[0], 1e-3 * bends.joints[0]);
 }
 
-/// What holds a joint is what moves all beyond it: Newton for all bodies against the equations of the coordinates.
+/// The torque that holds a joint moves all bodies beyond it: Newton's law against the equations of the coordinates.
 TEST(SimulatedBending, HoldsWhatIsBeyond) {
   for (const double frequency : {0.0, 15.0}) {
     MachineSettings m = onBoom();
     m.on_boom.bending_frequency = frequency;
     OilBoom boom = oilBoomEo2621();
-    boom.cuts[0] = {0, {0.0, 0.0}, boom.links[0]};  // at the joint, whose pin bears no moment
+    boom.cuts[0] = {0, {0.0, 0.0}, boom.links[0]};  // cut at the joint, whose pin transmits no moment
     HammerOnBoom machine(m, boom);
     for (int i = 1; i <= 2500; ++i) {
       machine.advanceTo(1e-3 * i);
@@ -197,7 +197,7 @@ TEST(CylinderFlaws, AHoseShowsThePressureLate) {
   const Session late = recordSession(m);
   ASSERT_EQ(at_once.pressures.size(), late.pressures.size());
   double worst = 0.0, largest = 0.0, shown = at_once.pressures[0].bore[0];
-  for (std::size_t i = 1; i < late.pressures.size(); ++i) {  // its own low-pass, a step of the readings at a time
+  for (std::size_t i = 1; i < late.pressures.size(); ++i) {  // separate low-pass, one step per reading
     const double was = at_once.pressures[i - 1].bore[0], is = at_once.pressures[i].bore[0];
     shown += (0.5 * (was + is) - shown) * (1.0 - std::exp(-1e-3 / 5e-3));
     if (i < 100) continue;
@@ -208,7 +208,7 @@ TEST(CylinderFlaws, AHoseShowsThePressureLate) {
   EXPECT_LT(worst, 0.02 * largest);
 }
 
-/// In their order, each up to the delay late, and as often by little as by much.
+/// Stamps keep their order. Their delays are distributed uniformly up to the maximum.
 TEST(CylinderFlaws, ABusHoldsUpStamps) {
   MachineSettings m = swungBoom();
   const Session at_once = recordSession(m);

@@ -18,7 +18,7 @@ MachineSettings elastic(double stiffness, double damping_ratio, double play = 0.
   return s;
 }
 
-/// With masses of crank and rod that no symmetry hides.
+/// Adds asymmetric masses of crank and rod.
 MachineSettings heavy(MachineSettings s) {
   s.level = Level::kLinkage;
   HammerParameters& p = s.hammer;
@@ -71,13 +71,13 @@ TEST(ElasticMachine, WorkOfTheDriveIsKineticElasticAndLost) {
   }
 }
 
-/// The force on the hull has taken from the links what their momentum changed by, and from the tool what it gave.
+/// The impulse on the hull equals the links' loss of momentum plus the impulse of the tool.
 TEST(ElasticMachine, ImpulseOfTheHullIsTheChangeOfMomentum) {
   for (const NamedMachine& named : elasticMachines()) {
     MachineSettings settings = named.settings;
     settings.gravity = 0.0;
     ElasticMachine machine(settings);
-    // Momentum by differences of the centre of mass, from angles alone: rocker only.
+    // Momentum from angle and speed of the rocker, whose mass alone is considered.
     if (settings.level != Level::kRocker || settings.rod.damping_ratio > 0.2) continue;
     const HammerParameters& p = settings.hammer;
     const auto momentum = [&](const CrankTruth& t) {
@@ -88,7 +88,7 @@ TEST(ElasticMachine, ImpulseOfTheHullIsTheChangeOfMomentum) {
     const auto before = momentum(machine.truth());
     std::array<double, 2> hull{}, tool{};
     constexpr int kSteps = 80000;
-    constexpr double kStep = 5e-6;  // Simpson's, across some blows
+    constexpr double kStep = 5e-6;  // step of Simpson's rule, across some blows [s]
     CrankTruth last = machine.truth();
     for (int i = 0; i < kSteps; ++i) {
       machine.advanceTo(2.4 + (i + 0.5) * kStep);
@@ -108,8 +108,8 @@ TEST(ElasticMachine, ImpulseOfTheHullIsTheChangeOfMomentum) {
   }
 }
 
-/// Away from the dead centre, where a rigid rod in line with the crank would carry any force, the difference to the
-/// independent rigid machine falls as one over the stiffness.
+/// The difference from the independent rigid machine is inversely proportional to the stiffness, except near the dead
+/// centre. There a rigid rod in line with the crank would carry any force.
 TEST(ElasticMachine, BecomesTheRigidOneWithAStiffRod) {
   for (const bool masses : {false, true}) {
     double last = 0.0;
@@ -137,8 +137,8 @@ TEST(ElasticMachine, BecomesTheRigidOneWithAStiffRod) {
   }
 }
 
-/// With the crank held by a large inertia the rocker, which its weight sets swinging, swings on the rod at the
-/// frequency of k (dl/dpsi)^2 over I.
+/// A large inertia holds the crank. The rocker, which its weight excites, vibrates on the rod at the frequency of
+/// k (dl/dpsi)^2 over I.
 TEST(ElasticMachine, VibratesAtTheFrequencyOfMassAndStiffness) {
   MachineSettings settings = elastic(1e9, 0.01);
   settings.drive.inertia = 1e6, settings.start_angle = 0.5, settings.drive.start_time = 1.0;
@@ -160,7 +160,7 @@ TEST(ElasticMachine, VibratesAtTheFrequencyOfMassAndStiffness) {
               0.01 / period);
 }
 
-/// Without a tool the retainer, which is of the hull, takes the blow: nothing of it is booked to the tool.
+/// Without a tool the hull's retainer takes the blow, and no impulse is attributed to the tool.
 TEST(ElasticMachine, RetainerTakesTheBlowWithoutATool) {
   MachineSettings settings = elastic(1e9, 0.4);
   settings.strike.retainer_stiffness = 3e8, settings.strike.no_tool_from = 3.0, settings.strike.no_tool_to = 4.0;
@@ -182,8 +182,8 @@ TEST(ElasticMachine, RetainerTakesTheBlowWithoutATool) {
   EXPECT_GT(on_retainer, 2);
 }
 
-/// The supply opens after 1.4 s: the crank swings and the rocker falls onto the tool some ten times, at 0.3 m/s at
-/// most.
+/// The supply opens after 1.4 s. Until then the crank swings and the rocker falls onto the tool some ten times, at
+/// 0.3 m/s at most.
 TEST(ElasticMachine, StrikesNothingBeforeItIsDriven) {
   MachineSettings settings = elastic(7e8, 0.4, 1e-4);
   ElasticMachine machine(settings);
@@ -196,7 +196,7 @@ TEST(ElasticMachine, StrikesNothingBeforeItIsDriven) {
   EXPECT_TRUE(machine.takeBlows().empty());
 }
 
-/// The hull's motion is slow against a blow: the same contact on a boom and on a hull that is held.
+/// The hull's motion is slow compared with a blow, so that the contact is the same on a boom and with a fixed hull.
 TEST(ElasticMachine, StrikesOnItsBoomAsHeld) {
   MachineSettings settings = elastic(7e8, 0.4, 1e-4);
   ElasticMachine held(settings);
@@ -213,7 +213,7 @@ TEST(ElasticMachine, StrikesOnItsBoomAsHeld) {
   EXPECT_TRUE(b.back().whole_turn);
 }
 
-/// Second touches are chaotic: a look more must not be a machine that is another one.
+/// Second contacts are chaotic, so that the motion must not depend on the requested times.
 TEST(ElasticMachine, MovesTheSameWhoeverLooks) {
   ElasticMachine seldom(elastic(1e9, 0.2)), often(elastic(1e9, 0.2));
   seldom.advanceTo(6.0);

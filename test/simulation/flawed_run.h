@@ -1,4 +1,4 @@
-/// A run of the simulated machine that tests give flaws.
+/// Run of the simulated machine to which tests add flaws.
 #pragma once
 
 #include "hammer_loads/simulation/session.h"
@@ -10,7 +10,7 @@ inline MachineSettings flawedRun() {
   s.duration = 8.0;
   s.drive.start_time = 0.7;
   s.drive.stop_time = 20.0;
-  s.step = 1e-4;  // for the accounts' tenth digit
+  s.step = 1e-4;  // for a balance to ten digits
   return s;
 }
 

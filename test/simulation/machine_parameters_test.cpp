@@ -120,7 +120,7 @@ TEST(MachineParameters, EveryKeyReachesItsSetting) {
   EXPECT_EQ(play.clock_factor, 4.0);
 }
 
-/// Rules of a rigid blow go with neither an elastic rod nor a hull on its boom.
+/// Settings of a rigid blow are compatible with neither an elastic rod nor a hull on its boom.
 TEST(MachineParameters, RefusesWhatDoesNotGoTogether) {
   const auto expectRefused = [](const std::string& yaml, const std::vector<std::string>& beginnings) {
     const Checked<SimulatorSettings> wrong = loadSimulator(configDirectory(), given(yaml));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Gravity kTilted{0.8, -9.7};
 
-/// MO-100 with plausible masses of crank and rod.
+/// Returns an MO-100 with plausible masses of crank and rod.
 HammerParameters heavy() {
   HammerParameters p = workingMo100().hammer;
   p.crank_mass = 6.0;
@@ -31,7 +31,7 @@ HammerParameters heavy() {
 
 MovingLinks make(const HammerParameters& p, Level level) { return {*Mechanism::make(p).value, level}; }
 
-/// Within the turn (0, 2 pi), and close to both of its ends.
+/// Returns angles within the revolution (0, 2 pi) and close to both of its ends.
 std::vector<TurnAngle> angles() {
   std::vector<TurnAngle> all{{0.0, false}, {0.0, true}};
   for (int i = 1; i < 72; ++i) {
@@ -72,8 +72,8 @@ TEST(MovingLinks, ShaftAgreesWithShaftLoad) {
   }
 }
 
-/// Lagrange's equation of the shaft must follow from Newton-Euler: the drive torque that the hull's load implies by
-/// power balance, for a hull at rest, is d/dt(kinetic) - weight power.
+/// Lagrange's equation of the shaft must follow from energy: without weight, the power of the drive torque is the rate
+/// of the kinetic energy.
 TEST(MovingLinks, ShaftEquationFollowsFromEnergy) {
   const MovingLinks links = make(heavy(), Level::kLinkage);
   const double w = 25.0, e = 300.0, dt = 1e-6;

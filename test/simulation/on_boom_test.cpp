@@ -1,4 +1,4 @@
-// Hull and boom on oil: against the machine with a hull at rest, against statics by hand, and what its sensors say.
+// Hull and boom on oil: against the machine with a hull at rest, against statics by hand, and readings of the sensors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ void holdStill(MachineSettings& m) {
   for (JointMotion& joint : m.boom) joint.amplitude = 0.0;
 }
 
-/// Natural frequencies times 50, 0.2 to 1.4 kHz: nearly at rest.
+/// Returns a boom with natural frequencies 50 times as high, 0.2 to 1.4 kHz, so that it is nearly at rest.
 MachineSettings onSteel() {
   MachineSettings m = onBoom();
   holdStill(m);
@@ -37,7 +37,7 @@ TEST(OnBoom, OilAsStiffAsSteelIsAHullAtRest) {
     at_rest.advanceTo(0.001 * i);
     const OnBoomTruth a = on_oil.truth();
     const CrankTruth b = at_rest.truth();
-    if (std::abs(std::remainder(b.angle, 6.283185307179586)) < 0.3) continue;  // the blow shakes the stiff oil too
+    if (std::abs(std::remainder(b.angle, 6.283185307179586)) < 0.3) continue;  // the blow excites the stiff oil too
     peak = std::max(peak, std::abs(b.load.force_z)), drive = std::max(drive, std::abs(b.drive_reaction_y));
     worst = std::max(worst, std::abs(a.load.force_z - b.load.force_z));
     worst_drive = std::max(worst_drive, std::abs(a.drive_reaction_y - b.drive_reaction_y));
@@ -54,7 +54,7 @@ TEST(OnBoom, OilAsStiffAsSteelIsAHullAtRest) {
   EXPECT_LT(worst_drive, 0.02 * drive);
 }
 
-/// Links' masses and places as in the robot description, arms of the cylinders from triangles.
+/// Masses and positions of the links are those of the robot description.
 TEST(OnBoom, HoldsItsWeightAtRest) {
   MachineSettings m = onBoom();
   holdStill(m);
@@ -112,7 +112,7 @@ TEST(OnBoomSession, GivesEqualReadingsForOneSeedHoweverTimeIsCut) {
   for (std::size_t i = 0; i < whole.joints.size(); ++i) ASSERT_EQ(whole.joints[i].position, again.joints[i].position);
 }
 
-/// The unit is turned by 0.3 rad; force less force of the chambers is what holds the joint.
+/// The unit is rotated by 0.3 rad. The difference of the chambers' forces holds the joint.
 TEST(OnBoomSession, SensorsAtRestShowTheWeight) {
   MachineSettings m = onBoom();
   holdStill(m);
@@ -138,7 +138,7 @@ TEST(OnBoomSession, SensorsAtRestShowTheWeight) {
   EXPECT_NEAR(std::sqrt(squares), 0.01, 0.004);
 }
 
-/// Where the operator holds the joints and what the vibration adds: the sensors of the joints see both.
+/// The joint sensors measure the operator's pose and the vibration about it.
 TEST(OnBoomSession, JointSensorsSeeTheVibration) {
   MachineSettings m = onBoom();
   m.joint_rate = 400.0;
@@ -153,7 +153,7 @@ TEST(OnBoomSession, JointSensorsSeeTheVibration) {
   EXPECT_LT(largest, 1e-2);
 }
 
-/// Seals against the motion of their rods: what pressures show and what holds the joints differ by them.
+/// Seals oppose the motion of their rods. The force that holds a joint differs from that of the pressures by theirs.
 TEST(OnBoom, SealsRubAndOnlyTakeEnergy) {
   const OilBoom boom = oilBoomEo2621();
   for (const double friction : {0.0, 0.03}) {
@@ -170,7 +170,7 @@ TEST(OnBoom, SealsRubAndOnlyTakeEnergy) {
         const OilCylinder& c = boom.cylinders[k];
         const double arm = c.arm(t.angles[j]), speed = arm * t.rates[j];
         const double oil = c.bore_area * t.bore_pressure[k] - c.rod_area * t.rod_pressure[k];
-        const double rubbing = t.hold[j] / arm - oil;  // BY the seals on the rod
+        const double rubbing = t.hold[j] / arm - oil;  // force BY the seals ON the rod
         ASSERT_LE(rubbing * speed, 1e-6) << i;
         ASSERT_LE(std::abs(rubbing), 1.4 * friction * std::abs(oil) + 1e-6) << i;
         taken -= rubbing * speed * 1e-3, most = std::max(most, std::abs(rubbing));
@@ -185,15 +185,15 @@ TEST(OnBoom, SealsRubAndOnlyTakeEnergy) {
   }
 }
 
-/// Seals with a constant friction that yield over 0.05 mm: never above the one of Stribeck, full where the rod has slid
-/// ten times as far one way, and hardly changed just after it turns back.
+/// Seals with a constant friction and 0.05 mm of presliding. Their friction never exceeds the Stribeck curve, is full
+/// once the rod has slid ten times as far in one direction, and hardly changes just after a reversal.
 TEST(OnBoom, SealsYieldBeforeTheySlide) {
   constexpr double kYielding = 5e-5, kConstant = 0.013;
   const OilBoom boom = oilBoomEo2621();
   MachineSettings m = onBoom();
   m.on_boom.seals.constant = kConstant, m.on_boom.seals.presliding = kYielding;
   HammerOnBoom machine(m);
-  std::array<double, 3> slid{}, before{};  // one way [m]; friction a step earlier [N]
+  std::array<double, 3> slid{}, before{};  // slide in one direction [m]; friction a step earlier [N]
   double taken = 0.0;
   int full = 0, turns = 0;
   for (int i = 1; i <= 20000; ++i) {

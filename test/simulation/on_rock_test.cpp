@@ -1,4 +1,4 @@
-// A hull that stands on rock: statics by hand, and what a one-sided contact never does.
+// Hull standing on rock: statics by hand, and the limits of a unilateral contact.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ MachineSettings atRest(double stiffness) {
 
 double cross(PlanePoint r, PlanePoint f) { return r.imag() * f.real() - r.real() * f.imag(); }
 
-/// But for what the lift does to the weight's levers.
+/// The tolerance covers the change of the weight's lever arms by the lift.
 TEST(OnRock, StandsStillWithTheHoldDownForce) {
   HammerOnBoom machine(atRest(3e7));
   for (int i = 0; i < 50; ++i) {
@@ -40,7 +40,7 @@ TEST(OnRock, StandsStillWithTheHoldDownForce) {
   }
 }
 
-/// Joints, and a cut of the boom: a force at the foot, its levers from the joints' places by hand.
+/// Loads of joints and of a cut of the boom by a force at the foot, with lever arms by hand.
 TEST(OnRock, LoadsCylindersAndSections) {
   HammerOnBoom pressed(atRest(3e7));
   pressed.advanceTo(kSettled);
@@ -86,7 +86,7 @@ TEST(OnRock, NeverPullsAndLetsGoAtEachRecoil) {
   EXPECT_LT(mean, 1.2 * kPress);
 }
 
-/// A step of a fifth as long gives the same: landings are followed finely enough.
+/// A fifth of the step gives the same result, so that landings are resolved.
 TEST(OnRock, StepsAreShortEnough) {
   MachineSettings m = onRock(1e8);
   m.drive.start_time = 0.2;

@@ -1,4 +1,4 @@
-// Flaws of the simulated machine's crank sensor: each does what its key says, and nothing else changes.
+// Flaws of the simulated machine's crank sensor: each has its specified effect, and nothing else changes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ TEST(Stamps, FlawsOfTheMessagesLeaveMachineAndReadingsAsTheyAre) {
   }
 }
 
-/// The truth of a header stamp is that of a reading really taken then.
+/// The truth of a header stamp is that of a reading actually taken then.
 TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
   MachineSettings s = flawedRun();
   s.crank.stamp_noise = 3e-4;
@@ -47,7 +47,7 @@ TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
   for (std::size_t i = 3000; i < session.crank.size(); ++i) {
     const double t = since(s, session.crank[i]) - s.crank.latency;
     ASSERT_NEAR(session.truth[i].time, t, 2e-9);
-    // From the reading's own truth by its speed and acceleration, away from the blow.
+    // Extrapolated from the reading's own truth by its speed and acceleration, away from the blow.
     const CrankTruth& at = taken.truth[i];
     const double dt = t - at.time;
     if (session.truth[i].turn != at.turn || std::abs(std::remainder(at.angle, kTwoPi)) < 0.1) continue;
@@ -57,8 +57,8 @@ TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
   EXPECT_LT(largest, 1e-4);
 }
 
-/// A Husky's odometry (robot_localization, test/test1.bag; 3952 messages at 10 Hz) about its own line, in intervals:
-/// standard deviation 0.0314, quantiles of 1, 50 and 99 % -0.057, 0.000 and 0.053.
+/// Stamps of a Husky's odometry (robot_localization, test/test1.bag; 3952 messages at 10 Hz) about their own line, in
+/// intervals: standard deviation 0.0314; quantiles of 1, 50 and 99 %: -0.057, 0.000 and 0.053.
 TEST(Stamps, EqualThoseOfARealPolledDriver) {
   MachineSettings s = flawedRun();
   s.crank.rate = 1000.0;
@@ -99,7 +99,7 @@ TEST(Stamps, AreLateNowAndThenOnEveryTopic) {
   check(session.joints, plain.joints);
 }
 
-/// The mean of the last readings of a controller's task, at the instants of that task.
+/// The encoder shows the mean of the last readings of a controller's task, at the instants of that task.
 TEST(Encoder, ShowsTheLastMeanOfAController) {
   MachineSettings s = flawedRun();
   s.crank.rate = 100.0;
@@ -173,7 +173,7 @@ TEST(Encoder, GearedOneCountsItsOwnTurns) {
   }
 }
 
-/// y by the equation itself, lag y' = speed - y, in small steps of Euler's.
+/// Integrates the filter's equation, lag y' = speed - y, in small Euler steps.
 TEST(Encoder, FilteredSpeedsObeyTheFiltersEquation) {
   MachineSettings s = flawedRun();
   s.crank.speed_noise = 0.0;
@@ -195,7 +195,7 @@ TEST(Encoder, FilteredSpeedsObeyTheFiltersEquation) {
     }
     y += 2e-5 / s.crank.speed_lag * (plain.truth[i].speed - y);
   }
-  EXPECT_LT(largest, 0.05);  // Euler's own: half a step of 800 rad/s2, and what a step of it moves
+  EXPECT_LT(largest, 0.05);  // error of Euler's method: half a step at 800 rad/s2, and the change in a step
   EXPECT_GT(next, 2000U);
 }
 

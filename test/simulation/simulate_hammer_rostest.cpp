@@ -35,7 +35,7 @@ const Session& expected() {
   return kSession;
 }
 
-/// Everything on the node's topics from its start to its end.
+/// Messages on the node's topics from its start to its end.
 class Heard : public testing::Environment {
  public:
   void SetUp() override {
@@ -55,7 +55,7 @@ class Heard : public testing::Environment {
 
   std::vector<sensor_msgs::JointState> cranks, joints;
   std::vector<ros::Time> clock;
-  ros::Time stood;  ///< when the machine stood first; 0: it has not
+  ros::Time stood;  ///< time at which the machine first paused; 0: it has not
 
  private:
   void report(const ros::Time& taken) {
@@ -70,7 +70,7 @@ class Heard : public testing::Environment {
     return cranks.size() >= expected().crank.size() && joints.size() >= expected().joints.size() && !clock.empty() &&
            clock.back() >= ros::Time(1700000006, 0);
   }
-  /// As a node that takes nothing until the machine stands.
+  /// Acts as a node that processes nothing until the machine pauses.
   void onCrank(const sensor_msgs::JointState& message) {
     cranks.push_back(message);
     if (!stood.isZero()) report(message.header.stamp);
@@ -100,7 +100,7 @@ TEST(SimulateHammer, EverySampleArrivesOnceAndInOrder) {
   }
 }
 
-/// The batches cut the integration elsewhere, so speeds agree to its error.
+/// The batches divide the integration differently, so that speeds agree only within its error.
 TEST(SimulateHammer, ReadingsAreTheSessions) {
   ASSERT_EQ(heard().cranks.size(), expected().crank.size());
   std::size_t other_count = 0;
@@ -112,7 +112,7 @@ TEST(SimulateHammer, ReadingsAreTheSessions) {
     ASSERT_NEAR(message.velocity[0], *expected().crank[i].speed, 1e-3);
     if (message.position[0] != expected().crank[i].angle) ++other_count;
   }
-  EXPECT_LE(other_count, heard().cranks.size() / 1000);  // on the edge of an encoder count
+  EXPECT_LE(other_count, heard().cranks.size() / 1000);  // angles at the edge of an encoder count
 }
 
 TEST(SimulateHammer, BoomJointsAreTheSessions) {
@@ -127,7 +127,7 @@ TEST(SimulateHammer, BoomJointsAreTheSessions) {
   }
 }
 
-/// Two seconds at a clock_factor of 2, and a batch.
+/// The machine pauses after two seconds at a clock_factor of 2, and a batch.
 TEST(SimulateHammer, WaitsForANodeThatIsBehind) {
   ASSERT_FALSE(heard().stood.isZero());
   EXPECT_NEAR((heard().stood - kStart).toSec(), 4.0, 0.02);
@@ -139,7 +139,7 @@ TEST(SimulateHammer, ClockRunsForwardToTheEnd) {
   EXPECT_EQ(heard().clock.back(), ros::Time(1700000006, 0));
 }
 
-/// Exit code and output of a second simulate_hammer.
+/// Returns exit code and output of a second simulate_hammer.
 std::pair<int, std::string> runWith(const std::string& arguments) {
   const auto beside = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const std::string command = (beside / "simulate_hammer").string() + " __name:=another " + arguments + " 2>&1";

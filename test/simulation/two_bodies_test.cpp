@@ -1,4 +1,4 @@
-// Crank and rocker with a rod that gives, against the simulated machine's own equations, energy and the rigid
+// Crank and rocker with an elastic connecting rod, against the simulated machine's own equations, energy and the rigid
 // mechanism.
 #include "hammer_loads/linkage/two_bodies.h"
 
@@ -19,7 +19,7 @@ namespace {
 constexpr double kJc = 0.6, kTorque = 150.0;
 constexpr Gravity kWeight{2.0, -9.5};
 
-/// Of a rod whose turning has no inertia of its own: there both models of it are the same.
+/// Returns a hammer whose rod has no rotational inertia about its centre of mass; for it both rod models are the same.
 HammerParameters heavy() {
   HammerParameters p = simulation::workingMo100().hammer;
   p.crank_mass = 6.0, p.crank_com_along = 0.015, p.crank_com_across = 0.004, p.crank_inertia_about_com = 0.01;
@@ -27,7 +27,7 @@ HammerParameters heavy() {
   return p;
 }
 
-/// psi of the rocker [rad].
+/// Returns psi of the rocker [rad].
 double rockerOf(const TwoBodies& bodies, const TwoBodyState& s) {
   const Motion m = bodies.links(s.angle).rocker;
   return std::atan2(m.sin_psi, m.cos_psi) + s.displacement;
@@ -56,7 +56,7 @@ TEST(TwoBodies, AccelerationsAndWrenchAreThoseOfFreeLinks) {
                                          (M[0] * on_rocker - M[1] * on_crank) / det};
     const TwoBodyAccelerations a = bodies.accelerations(rod, {kJc, kTorque, kWeight}, s, l);
     const double scale = std::abs(expected[0]) + std::abs(expected[1]);
-    EXPECT_NEAR(a.crank, expected[0], 1e-3 * scale) << offset;  // x^2 and x times the speeds are left out
+    EXPECT_NEAR(a.crank, expected[0], 1e-3 * scale) << offset;  // terms in x^2 and in x times the speeds are neglected
     EXPECT_NEAR(a.rocker, expected[1], 1e-3 * scale) << offset;
     const simulation::Load load = links.load(view, expected, kWeight, 0.0);
     const HullWrench wrench = hullWrenchOf(mechanism, l, bodies.linkAccelerations(s, a, l), kWeight);
@@ -67,7 +67,7 @@ TEST(TwoBodies, AccelerationsAndWrenchAreThoseOfFreeLinks) {
   }
 }
 
-/// Far from the rigid place, where a blow on lively rock throws the rocker, the rod pulls at the crank as well.
+/// Far from the rigid position, where a blow on elastic rock throws the rocker, the rod pulls at the crank as well.
 TEST(TwoBodies, AStepFollowsTheAccelerations) {
   const Mechanism mechanism = test::mechanismOf(heavy());
   const TwoBodies bodies(mechanism);
@@ -90,7 +90,7 @@ TEST(TwoBodies, AStepFollowsTheAccelerations) {
     }
 }
 
-/// Kinetic energy of drive and links and that of the spring [J], by the simulated machine's links.
+/// Returns the energy of drive, links and spring [J], by the simulated machine's links.
 double energyOf(const TwoBodies& bodies, const simulation::ElasticLinks& links, double stiffness,
                 const TwoBodyState& s) {
   const LinkMotion l = bodies.links(s.angle);
@@ -102,7 +102,7 @@ double energyOf(const TwoBodies& bodies, const simulation::ElasticLinks& links, 
          simulation::RodSpring({stiffness, 0.0, 0.0}).energy(view.rod.stretch);
 }
 
-/// No drive, no weight, no damping.
+/// Energy is conserved without drive, weight and damping.
 TEST(TwoBodies, AVibrationKeepsItsEnergy) {
   const Mechanism mechanism = test::mechanismOf(heavy());
   const TwoBodies bodies(mechanism);
@@ -118,8 +118,8 @@ TEST(TwoBodies, AVibrationKeepsItsEnergy) {
     }
     return worst;
   };
-  EXPECT_LT(drift(1e-5), 0.15);   // [J] of 70; a stretch of third order in x is left out
-  EXPECT_LT(drift(2.5e-4), 0.3);  // as the filter goes
+  EXPECT_LT(drift(1e-5), 0.15);   // [J] of 70; the third order of the stretch in x is neglected
+  EXPECT_LT(drift(2.5e-4), 0.3);  // step of the filter
 }
 
 /// Each pin dissipates its moment r |T| times the rotation of the links that it joins, by differences of their angles.
@@ -179,8 +179,8 @@ TEST(TwoBodies, AStiffRodIsTheRigidMechanism) {
   }
 }
 
-/// What the links lose of their momentum in ten microseconds is the wrench without weight, a fiftieth of a radian
-/// beside the rigid place as well.
+/// The rate at which the links lose momentum in ten microseconds is the wrench without weight. This also holds a
+/// fiftieth of a radian beside the rigid position.
 TEST(TwoBodies, MomentumIsWhatTheWrenchTakes) {
   const Mechanism mechanism = test::mechanismOf(heavy());
   const TwoBodies bodies(mechanism);
@@ -210,7 +210,7 @@ TEST(TwoBodies, MomentumIsWhatTheWrenchTakes) {
   }
 }
 
-/// At the tool the rocker's speed turns, the momentum that the crank has stays, and nothing of the place is lost.
+/// At the tool the rocker's speed reverses, the crank keeps its momentum, and the position is continuous.
 TEST(TwoBodies, ABlowActsOnTheRockerAlone) {
   const Mechanism mechanism = test::mechanismOf(heavy());
   const TwoBodies bodies(mechanism);

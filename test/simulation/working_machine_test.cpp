@@ -11,13 +11,13 @@
 namespace hammer_loads::simulation {
 namespace {
 
-/// Shorter than the standard session: 6 s, stop at 5 s.
+/// Returns a session shorter than the standard one: 6 s, stop at 5 s.
 MachineSettings shortRun() {
   MachineSettings s = workingMo100();
   s.duration = 6.0;
   s.drive.start_time = 0.9;
   s.drive.stop_time = 5.0;
-  s.step = 1e-4;  // for the accounts' tenth digit
+  s.step = 1e-4;  // for a balance to ten digits
   return s;
 }
 
@@ -46,7 +46,7 @@ TEST(WorkingMachine, WorksLikeTheMachineInTheField) {
 
 TEST(WorkingMachine, FallsBackStartsWorksAndStops) {
   MachineSettings s = workingMo100();
-  s.step = 1e-4;  // for the accounts' tenth digit
+  s.step = 1e-4;  // for a balance to ten digits
   WorkingMachine machine(s);
   EXPECT_EQ(machine.truth().angle, 1.0);
   machine.advanceTo(0.3);
@@ -67,7 +67,7 @@ TEST(WorkingMachine, FallsBackStartsWorksAndStops) {
   expectBalanced(machine.energy());
 }
 
-/// Largest difference of the force, over its peak.
+/// Returns the largest difference of the force, relative to its peak.
 double changeByAFifthOfTheStep(MachineSettings s) {
   WorkingMachine as_shipped(s);
   s.step *= 0.2;
@@ -90,7 +90,7 @@ TEST(WorkingMachine, AFifthOfTheShippedStepGivesTheSame) {
   EXPECT_LT(changeByAFifthOfTheStep(s), 5e-5);
 }
 
-/// Impulse of the wrench = -(change of the rocker's momentum) + weight x time: the integral must give it.
+/// The integral must give the impulse of the wrench = -(change of the rocker's momentum) + weight x time.
 TEST(WorkingMachine, TurnImpulseIsTheMomentumDifference) {
   MachineSettings s = shortRun();
   for (JointMotion& joint : s.boom) joint = {0.0, 0.0, 1.0, 0.0};
@@ -125,8 +125,8 @@ TEST(WorkingMachine, AccelerationIsTheSpeedsDerivative) {
   }
 }
 
-/// The rocker's centre of mass has a low point at the far end of its swing: without drive and friction the crank
-/// swings about it for ever.
+/// The rocker's centre of mass has a low point at the far end of its swing. Without drive and friction the crank
+/// oscillates about it for ever.
 TEST(WorkingMachine, SwingsByWeightWithoutLoss) {
   MachineSettings s = shortRun();
   s.drive.motor_displacement = s.drive.coulomb_friction = s.drive.viscous_friction = 0.0;

@@ -1,4 +1,4 @@
-// Readings of a session's sensors on hull and boom: joints, inertial unit, pressures, and the bus they wait for.
+// Readings of a session's sensors on hull and boom: joints, inertial unit, pressures, and the delay of their bus.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ OnBoomSensors SessionStream::onBoomAt(double time) {
   return std::get<HammerOnBoom>(machine_).sensors();
 }
 
-/// The sensors of a boom on its oil see it vibrate.
+/// Includes the vibration of a boom on its oil.
 JointReading SessionStream::readJoints(double time) {
   JointReading reading;
   reading.stamp = busStamp(time, last_joints_);
@@ -57,7 +57,7 @@ PressureReading SessionStream::readPressures(double time) {
   return reading;
 }
 
-/// Later than the one before.
+/// Returns a stamp later than the last one.
 std::int64_t SessionStream::busStamp(double time, std::int64_t& last) noexcept {
   const double delay = settings_.on_boom.on ? settings_.on_boom.bus_delay : 0.0;
   const double bus = delay > 0.0 ? delay * bus_draws_.uniform() : 0.0;

@@ -8,7 +8,7 @@
 namespace hammer_loads::simulation {
 namespace {
 
-/// 0 before, 1 after, with a continuous slope in between.
+/// Rises from 0 before to 1 after, with a continuous slope.
 double rise(double time, double from, double length) noexcept {
   const double x = std::clamp((time - from) / length, 0.0, 1.0);
   return x * x * (3.0 - 2.0 * x);

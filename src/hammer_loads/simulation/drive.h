@@ -5,11 +5,11 @@
 
 namespace hammer_loads::simulation {
 
-/// Flow of the pump at a time since the start [m3/s].
+/// Returns the flow of the pump at a time since the start [m3/s].
 double supplyFlow(const DriveSettings& drive, double time) noexcept;
-/// Leakage, relief valve, bypass at a pressure [Pa]; below zero a check valve refills the line [m3/s].
+/// Returns the flow [m3/s] of leakage, relief valve and bypass; below zero pressure a check valve refills the line.
 double valveFlow(const DriveSettings& drive, double time, double pressure) noexcept;
-/// Motor less friction at a shaft speed [rad/s], on the shaft [N m].
+/// Returns the motor torque less friction on the shaft [N m], at a shaft speed [rad/s].
 double netTorque(const DriveSettings& drive, double pressure, double speed) noexcept;
 
 }  // namespace hammer_loads::simulation

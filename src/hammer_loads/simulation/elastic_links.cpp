@@ -10,7 +10,7 @@ namespace {
 using Place = std::complex<double>;
 constexpr Place kTurned{0.0, 1.0};
 constexpr double kRatioAt = 200.0;  // frequency of the damping ratio [Hz] (RodSettings)
-constexpr double kFilm = 5e-6;      // pressing at which the damper of a pin with joint clearance is whole [m]
+constexpr double kFilm = 5e-6;      // compression at which the damper of a pin with joint clearance acts fully [m]
 
 double dot(Place a, Place b) { return a.real() * b.real() + a.imag() * b.imag(); }
 double cross(Place a, Place b) { return a.real() * b.imag() - a.imag() * b.real(); }
@@ -76,7 +76,7 @@ ElasticLinks::View ElasticLinks::at(const TwoBodies& angle, const TwoBodies& spe
   crank = {p_.crank_mass, p_.crank_inertia_about_com, com, {}, {}, -ww * com, 0.0};
   crank.slope[0] = kTurned * com, crank.turn[0] = 1.0;
 
-  const Place share = Place(p_.rod_com_along, p_.rod_com_across) / p_.lengths.rod;  // part of the way from B to C
+  const Place share = Place(p_.rod_com_along, p_.rod_com_across) / p_.lengths.rod;  // relative to BC
   const Place along = c + p_.lengths.pivot_distance - b, by_crank = -kTurned * b, by_rocker = kTurned * c;
   const Place moving = speed[0] * by_crank + speed[1] * by_rocker, bending = ww * b - vv * c;
   const double square = std::norm(along);

@@ -16,7 +16,7 @@ namespace hammer_loads::simulation {
 /// Angles, speeds or accelerations of crank and rocker, or forces on them.
 using TwoBodies = std::array<double, 2>;
 
-/// Stretch of the rod between its pins against its nominal length, with its derivatives by both angles.
+/// Stretch of the rod relative to its nominal length, with its derivatives by both angles.
 struct RodStretch {
   double stretch{};   ///< [m]
   TwoBodies slope{};  ///< [m/rad]
@@ -30,7 +30,7 @@ class RodSpring {
  public:
   explicit RodSpring(const RodSettings& rod) noexcept;
 
-  /// Force that pulls the pins together, at a stretch [m] and its rate [m/s]; negative: pushes them apart [N].
+  /// Returns the tension [N] at a stretch [m] and its rate [m/s]; negative in compression.
   double tension(double stretch, double rate) const noexcept;
   double energy(double stretch) const noexcept;   ///< [J]
   double pressed(double stretch) const noexcept;  ///< part of a stretch beyond the joint clearance, with its sign [m]
@@ -39,49 +39,49 @@ class RodSpring {
   double stiffness_, damping_, half_play_;  ///< [N/m], [N s/m], [m]
 };
 
-/// Rocker, and at level linkage crank and rod, as rigid bodies in the plane of the mechanism frame (model.md 1), places
-/// as complex numbers from A. The rod's centre of mass keeps its place relative to both pins, so that its mass and
-/// inertia enter as they are. Motor and flywheel are not part of it.
+/// Rocker, and at level linkage crank and rod, as rigid bodies in the plane of the mechanism frame (model.md 1).
+/// Positions are complex numbers from A. The rod's centre of mass keeps its position relative to both pins, so that its
+/// mass and inertia enter unchanged. Motor and flywheel are not part of it.
 class ElasticLinks {
  public:
   struct Body {
     double mass{}, inertia{};        ///< [kg], about the centre of mass [kg m2]
     std::complex<double> place;      ///< centre of mass [m]
     std::complex<double> slope[2];   ///< derivatives of the place by crank and rocker angle [m/rad]
-    double turn[2]{};                ///< derivatives of the body's angle by them [-]
-    std::complex<double> by_speeds;  ///< acceleration of the place at constant speeds of both [m/s2]
-    double turn_by_speeds{};         ///< [rad/s2]
+    double turn[2]{};                ///< derivatives of the body's angle by these angles [-]
+    std::complex<double> by_speeds;  ///< acceleration of the place at constant crank and rocker speeds [m/s2]
+    double turn_by_speeds{};         ///< angular acceleration at constant speeds [rad/s2]
   };
   struct View {
     Body body[3];
     int count{};
     RodStretch rod;
-    std::complex<double> rocker;  ///< cosine and sine of its angle
+    std::complex<double> rocker;  ///< cosine and sine of the rocker's angle
   };
 
   ElasticLinks(const HammerParameters& parameters, Level level);
 
   View at(const TwoBodies& angle, const TwoBodies& speed) const noexcept;
   RodStretch rod(const TwoBodies& angle) const noexcept;
-  /// Inertia matrix of both coordinates: [0] of the crank, [1] between them, [2] of the rocker [kg m2].
+  /// Returns the inertia matrix of both coordinates: [0] crank, [1] coupling term, [2] rocker [kg m2].
   std::array<double, 3> inertia(const View& view) const noexcept;
-  /// On crank and rocker by weight [N m].
+  /// Returns the torques on crank and rocker by weight [N m].
   TwoBodies weight(const View& view, Gravity gravity) const noexcept;
-  /// On crank and rocker by the inertia of what moves at constant speeds [N m].
+  /// Returns the torques on crank and rocker by inertia at constant speeds [N m].
   TwoBodies inertiaOfSpeeds(const View& view) const noexcept;
-  /// Momentum theorem; tool_force [N]: along +z at the striking point, from outside of hammer and hull.
+  /// Applies the momentum theorem. tool_force [N] acts along +z at the striking point, from outside hammer and hull.
   Load load(const View& view, const TwoBodies& acceleration, Gravity gravity, double tool_force) const noexcept;
-  /// Cosine and sine of the rocker's angle, as in a View.
+  /// Returns cosine and sine of the rocker's angle, as in a View.
   static std::complex<double> rockerAt(double angle) noexcept { return {std::cos(angle), std::sin(angle)}; }
-  /// Depth of the striking point below its place at the dead centre [m] and what the rocker's angle does to it.
+  /// Return the depth [m] of the striking point below its position at the dead centre, and its slope by the angle.
   double depth(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.imag(); }
   double depthSlope(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.real(); }
-  /// Rocker angle with a rod of nominal length, on the branch of the working revolution, crank angle in [0, 2 pi]
-  /// [rad].
+  /// Returns the rocker angle [rad] with a rod of nominal length, on the branch of the working revolution. The crank
+  /// angle is in [0, 2 pi].
   double rockerAngle(double crank_angle) const noexcept;
 
  private:
-  /// Stretch of the rod between pins at these places, from A and from D.
+  /// Returns the stretch of the rod between pin b, from A, and pin c, from D.
   RodStretch rodBetween(std::complex<double> b, std::complex<double> c) const noexcept;
   std::complex<double> inMechanism(Gravity gravity) const noexcept;
   HammerParameters p_;

@@ -10,10 +10,10 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kLongestStep = 1e-4;  // step that no contact begins and ends in [s]
+constexpr double kLongestStep = 1e-4;  // step that is shorter than any contact [s]
 constexpr double kShortest = 1e-8;     // step in which a contact may begin or end [s]
-/// Error of a step at most: angles [rad], their speeds [rad/s], tool's way and speed [m], [m/s], yielded [m], pressure
-/// [Pa]. 1e-11 rad are 0.5 N in a rod of 1e9 N/m.
+/// Largest error of a step: angles [rad], their speeds [rad/s], tool's way and speed [m], [m/s], yielded [m], pressure
+/// [Pa]. 1e-11 rad corresponds to 0.5 N in a rod of 1e9 N/m.
 constexpr double kError[] = {1e-11, 1e-11, 1e-6, 1e-6, 1e-11, 1e-6, 1e-11, 10.0};
 
 }  // namespace
@@ -82,7 +82,7 @@ void ElasticMachine::rate(const State& y, State& r, double time) const noexcept 
   r[kRetainerImpulse] = a.struck.retainer;
 }
 
-/// Contacts of tool, retainer, rock and the sides of the joint clearance.
+/// Returns a code of the contacts at tool, retainer, rock and the two sides of the joint clearance.
 int ElasticMachine::contacts(const State& y) const noexcept {
   const int ground = struck_.contacts(striker(y), tool(y));
   if (settings_.rod.play == 0.0) return ground;
@@ -114,7 +114,7 @@ void ElasticMachine::step() {
   }
 }
 
-/// Within the last step.
+/// Returns the state at a time within the last step.
 ElasticMachine::State ElasticMachine::stateAt(double time) const {
   if (time == time_) return now_;
   boost::numeric::odeint::runge_kutta_dopri5<State> stepper;
@@ -146,7 +146,7 @@ void ElasticMachine::accept(const State& next, const State& slope, double dt, in
   if (put_back) putToolBack();
 }
 
-/// The turn is counted where the crank passes; its angle stays within half a turn of the nearest dead centre.
+/// Keeps the crank angle within half a revolution of the nearest dead centre, whose number is turn_.
 void ElasticMachine::passDeadCentre() noexcept {
   if (now_[kCrank] > kPi) {
     now_[kCrank] -= kTwoPi, ++turn_;
@@ -202,7 +202,7 @@ void ElasticMachine::followBlow() {
   current_ = {time_, now_[kImpulseX], now_[kImpulseZ], slope_[kImpulseZ], true};
 }
 
-/// Resets the tool, as the hull follows or the tool slides back; its remaining energy is counted as the rock's.
+/// Resets the tool, as the hull follows or the tool slides back. Its remaining energy is counted as lost in the blow.
 void ElasticMachine::putToolBack() {
   const auto energy = [this] { return struck_.energy(striker(now_), tool(now_)); };
   const double before = energy();

@@ -14,7 +14,7 @@ namespace hammer_loads::simulation {
 /// friction + weight.
 struct ElasticEnergy {
   double motor{};     ///< work of the pressure on the shaft
-  double friction{};  ///< lost in it
+  double friction{};  ///< dissipated on the shaft
   double weight{};    ///< work of the weight of links and tool
   double kinetic{};   ///< present energy of links and drive
   double elastic{};   ///< present energy of the rod
@@ -23,14 +23,14 @@ struct ElasticEnergy {
   double blow{};      ///< dissipated in contacts, rock and retainer, and removed when the tool is reset
 };
 
-/// Crank with drive and rocker as two bodies, the rod a spring between their pins, the tool a third body. The dead
-/// centre is no special case: without a blow the rocker passes it by its inertia. A blow is not a rule; its effect
-/// follows from the contact force. Neglects: motion of the hull but its pitch, a flexible coupling, bending of the
+/// Crank with drive and rocker are two bodies, the rod is a spring between their pins, the tool is a third body. The
+/// dead centre is no special case: without a blow the rocker passes it by its inertia. A blow follows from the contact
+/// force, without an impact law. Neglects: motion of the hull except its pitch, a flexible coupling, bending of the
 /// links. Integration by Dormand-Prince of order 5 with error control; no step exceeds a change of contact by more than
 /// 10 ns. A machine with repeated contacts is chaotic. The steps are therefore independent of the requested times, so
-/// that equal settings give equal motions. settings.rod.stiffness > 0. BlowTruth has the following meaning: `time` is
-/// the first touch, speeds after are those at the last parting, energy and impulse those through the tool, a turn lasts
-/// from one first touch to the next.
+/// that equal settings give equal motions. settings.rod.stiffness > 0. In BlowTruth, `time` is the first contact, and
+/// the speeds after are those at the last separation. Energy and impulse are those through the tool, and a revolution
+/// lasts from one first contact to the next.
 class ElasticMachine {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
@@ -39,16 +39,16 @@ class ElasticMachine {
   /// time >= now [s].
   void advanceTo(double time);
   double time() const noexcept { return asked_; }
-  /// load: by the momentum theorem, including the tool's force and without the drive; the retainer is a part of the
-  /// hull.
+  /// Returns the present state. The load follows from the momentum theorem, with the tool's force and without the
+  /// drive; the retainer is a part of the hull.
   CrankTruth truth() const noexcept;
   ElasticEnergy energy() const noexcept;
-  /// Hands over the blows that ended since the last call.
+  /// Removes and returns the blows that ended since the last call.
   std::vector<BlowTruth> takeBlows() { return follower_.take(); }
 
  private:
   enum Index {
-    kCrank,  // from the nearest dead centre
+    kCrank,  // angle from the nearest dead centre
     kRocker,
     kCrankSpeed,
     kRockerSpeed,
@@ -56,7 +56,7 @@ class ElasticMachine {
     kToolSpeed,
     kYielded,
     kPressure,
-    kControlled,  // what follows are integrals of these
+    kControlled,  // the elements from here on are integrals
     kImpulseX = kControlled,
     kImpulseZ,
     kMotor,
@@ -71,11 +71,11 @@ class ElasticMachine {
   };
   using State = std::array<double, kSize>;
   struct Acting {
-    double rod{}, rod_loss{};  ///< tension [N], [W]
+    double rod{}, rod_loss{};  ///< tension [N], dissipation [W]
     StruckTool::Answer struck;
     TwoBodies acceleration{};
     Load load;
-    double weight{}, net_torque{};  ///< [W], [N m]
+    double weight{}, net_torque{};  ///< power of the weight [W], torque on the shaft [N m]
   };
 
   static TwoBodies angles(const State& y) noexcept { return {y[kCrank], y[kRocker]}; }
@@ -96,15 +96,15 @@ class ElasticMachine {
   ElasticLinks links_;
   RodSpring rod_;
   StruckTool struck_;
-  State now_{}, slope_{};            ///< at the last step's end
-  State before_{}, before_slope_{};  ///< at its begin
+  State now_{}, slope_{};            ///< at the end of the last step
+  State before_{}, before_slope_{};  ///< at its beginning
   double time_{}, before_time_{}, longest_step_, next_step_;
-  double asked_{};  ///< within the last step
+  double asked_{};  ///< requested time, within the last step [s]
   State view_{};    ///< state at that time
   std::int64_t view_turn_{};
   int contacts_{};
   std::int64_t turn_{};
-  double put_back_{}, view_put_back_{};  ///< energy of tools that were [J]
+  double put_back_{}, view_put_back_{};  ///< energy removed by resetting the tool [J]
 
   struct Turn {
     double start{}, impulse_x{}, impulse_z{};  ///< [s], [N s]

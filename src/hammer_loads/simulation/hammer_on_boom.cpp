@@ -11,9 +11,9 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kFastRod = 0.15;  // of a cylinder [m/s]
+constexpr double kFastRod = 0.15;  // speed of a fast cylinder rod [m/s]
 
-/// From the mechanism frame with its origin at A to the hull's axes with theirs at D; a reflection.
+/// Transforms a vector from the axes of the mechanism frame to those of the hull, by a reflection.
 PlanePoint inHull(double xi, double eta, double com_angle) {
   const double c = std::cos(com_angle), s = std::sin(com_angle);
   return {-(c * xi + s * eta), -s * xi + c * eta};
@@ -59,13 +59,12 @@ void HammerOnBoom::stiffenLinks() {
   link_damping_ = 2.0 * machine_.on_boom.bending_damping * omega * inertia;
 }
 
-/// Subtracts rotor and rocker from the hull's mass of the description, which averages the rocker over the places of a
-/// revolution.
+/// Subtracts rotor and rocker from the hull of the description, which contains the rocker averaged over a revolution.
 void HammerOnBoom::takeMovingPartsOffTheHull() {
   constexpr int kPlaces = 360;
   State held = heldAt(0.0);
   const PlanePoint joint = jointPlace(held, 2), to_hull = std::conj(turnedBy(hullAngle(held)));
-  double mass = 0.0, square = 0.0;  // sums over the distance from the joint
+  double mass = 0.0, square = 0.0;  // square: mean square distance from the joint
   PlanePoint at = 0.0;
   double inertia = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
@@ -85,7 +84,7 @@ void HammerOnBoom::takeMovingPartsOffTheHull() {
   hull.inertia = about_joint - mass * square - inertia - rotor_ * ratio_ * ratio_ - hull.mass * std::norm(com);
 }
 
-/// Every mode keeps its damping ratio wherever the boom goes.
+/// Updates pose and damping, so that every mode keeps its damping ratio in any pose of the boom.
 void HammerOnBoom::followOperator() {
   hold_ = holdAt(now_.time);
   const Eigen::Matrix3d M = massMatrix(heldBodies(hold_.state)).topLeftCorner<3, 3>();
@@ -102,7 +101,7 @@ Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
   return modesOf(holdAt(time).stiffness, M).eigenvalues().cwiseSqrt() / kTwoPi;
 }
 
-/// State in which the operator holds the joints, crank a quarter of a revolution from the blow.
+/// Returns the state in which the operator holds the joints, with the crank a quarter of a revolution from the blow.
 HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
   State s;
   s.time = time;
@@ -174,7 +173,7 @@ HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, co
   return all;
 }
 
-/// Effect of the first joints on a body, and of the bends between them.
+/// Sets the derivatives of a body's position and angle by the first joints and by the bends between them.
 void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) const {
   const auto turn = [&](int i, PlanePoint about) {
     const PlanePoint arm = body.place - about;
@@ -186,7 +185,7 @@ void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) 
   }
 }
 
-/// Inertia of the rotor; links that do not bend have a one, so that the matrix has an inverse.
+/// Returns the inertia of the rotor. The elements of rigid links are 1, so that the matrix is invertible.
 HammerOnBoom::Inertia HammerOnBoom::rotorInertia() const {
   Coordinates rotor;
   const double bent = bends() ? ratio_ : 0.0;
@@ -210,7 +209,7 @@ HammerOnBoom::Coordinates HammerOnBoom::weight(const Bodies& all) const {
   return Q;
 }
 
-/// All that is not inertia: weight, cylinders, motor.
+/// Returns all forces except inertia: weight, cylinders, rock, bending, motor, rod and contact.
 HammerOnBoom::Coordinates HammerOnBoom::force(const State& s, const Bodies& all, const Hold& hold) const {
   Coordinates Q = weight(all);
   Q.head<3>() += holding(s, hold);
@@ -226,11 +225,11 @@ HammerOnBoom::Coordinates HammerOnBoom::force(const State& s, const Bodies& all,
   return Q;
 }
 
-/// Inertia forces of the bodies by the coordinates' speeds alone: centripetal ones, and those of the rocker within a
-/// turning hull.
+/// Returns the inertia terms of the bodies that depend on speeds alone: centripetal ones, and those of the rocker
+/// within a rotating hull.
 HammerOnBoom::Coordinates HammerOnBoom::inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const {
   Coordinates Q = Coordinates::Zero();
-  PlanePoint of_joint = 0.0;  // acceleration
+  PlanePoint of_joint = 0.0;  // acceleration of the joint
   double rate = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Body& link = all.body[k];

@@ -20,55 +20,55 @@ struct OnBoomSensors {
   Eigen::Vector3d angles{Eigen::Vector3d::Zero()};        ///< angles of the joints [rad]
   Eigen::Vector3d rates{Eigen::Vector3d::Zero()};         ///< [rad/s]
   double imu_x{}, imu_z{};                                ///< specific force at the unit, in its axes [m/s2]
-  double imu_rate{};                                      ///< about +y [rad/s]
+  double imu_rate{};                                      ///< angular rate about +y [rad/s]
   std::array<double, 3> bore_pressure{}, rod_pressure{};  ///< gauge [Pa]
 };
 
 /// The truth at one instant.
 struct OnBoomTruth : CrankTruth, OnBoomSensors {
   Eigen::Vector3d displacement{
-      Eigen::Vector3d::Zero()};  ///< displacement of the joints from where the operator holds them [rad]
-  Eigen::Vector3d hold{Eigen::Vector3d::Zero()};  ///< BY the cylinders ON the joints [N m]
-  Load rock;                ///< BY the rock ON the hull's foot, without blows, about D, axes of the hull
-  std::array<Load, 3> cut;  ///< BY the steel beyond each cut ON that before it, about it, axes of the link
+      Eigen::Vector3d::Zero()};  ///< displacement of the joints from the pose in which the operator holds them [rad]
+  Eigen::Vector3d hold{Eigen::Vector3d::Zero()};  ///< torque BY the cylinders ON the joints [N m]
+  Load rock;                ///< load BY the rock ON the hull's foot, without blows, about D, axes of the hull
+  std::array<Load, 3> cut;  ///< load BY the steel beyond each cut ON that before it, about the cut, axes of the link
 };
 
-/// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, their
-/// accelerations for the loads by differences in time. Runge-Kutta of order 4.
+/// The coordinates are the angles of boom, arm, hull and crank. The kinetic energy follows from the positions of all
+/// bodies, the loads from their accelerations by differences in time. Integration by Runge-Kutta of order 4.
 /// The operator's valves move the equilibrium of each joint along settings.boom. The oil is a linear spring about it,
-/// with the stiffness at that place. With air, leakage past the pistons or loose pins, each cylinder has two chambers,
-/// whose pressures follow from the rod's displacement and the leaked volume. Links bend by a spring hinge in their
-/// middle, which turns all beyond it; their own mass does not move. The seals of settings.on_boom.seals act on the
-/// rods: pressures are those of the oil, and the joints are held by oil and seals.
+/// with the stiffness at that pose. With air, leakage past the pistons or loose pins, each cylinder has two chambers,
+/// whose pressures follow from the rod's displacement and the leaked volume. A link bends at a spring hinge in its
+/// middle, which rotates everything beyond it; the link's own mass does not move. The seals of settings.on_boom.seals
+/// act on the rods: the pressures are those of the oil, and oil and seals together hold the joints.
 ///
 /// A blow changes the velocities of the hull and all links; the rocker leaves the tool without an impulse within the
 /// linkage, or with a drawn restitution. settings.on_boom.rock supports a hull that is pressed on the tool; without it
 /// the hull hangs free and the rock supports the tool alone. The boom's swing about the vertical is neglected. With an
-/// elastic settings.rod the rocker is a coordinate of its own and the blow follows from the contact, as in
-/// ElasticMachine: its force acts on rocker, hull and boom; the tool moves as in a hull at rest. Force and impulses of
-/// the revolution in BlowTruth are NaN.
+/// elastic settings.rod the rocker is a separate coordinate and the blow follows from the contact, as in
+/// ElasticMachine. The contact force acts on rocker, hull and boom; the tool moves as in a hull at rest. Force and
+/// impulses of the revolution in BlowTruth are NaN.
 class HammerOnBoom {
  public:
-  /// Level rocker, rigid coupling; throws std::invalid_argument when the hammer's linkage is impossible.
+  /// Uses level rocker and a rigid coupling. Throws std::invalid_argument when the hammer's linkage is impossible.
   explicit HammerOnBoom(const MachineSettings& machine, const OilBoom& boom = oilBoomEo2621());
 
   /// time >= now [s].
   void advanceTo(double time);
   OnBoomTruth truth() const;
-  OnBoomSensors sensors() const;  ///< the part of truth() that takes no loads
-  /// Hands over the blows since the last call.
+  OnBoomSensors sensors() const;  ///< the part of truth() that needs no loads
+  /// Removes and returns the blows since the last call.
   std::vector<BlowTruth> takeBlows();
-  /// Natural frequencies at the operator's pose at a time, by the oil alone; lowest first [Hz].
+  /// Returns the natural frequencies [Hz] on the oil alone at the operator's pose at a time, lowest first.
   Eigen::Vector3d frequencies(double time) const;
 
  private:
-  /// Joints, crank, rocker, bends of boom and arm. Where the rod is rigid the fifth one stays zero, and the crank moves
-  /// the rocker; rigid links leave the last two zero.
+  /// Angles of joints, crank and rocker, and bends of boom and arm. With a rigid rod the fifth stays zero, since the
+  /// crank moves the rocker. With rigid links the last two stay zero.
   using Coordinates = Eigen::Matrix<double, 7, 1>;
   using Inertia = Eigen::Matrix<double, 7, 7>;
   /// Elements of a state after the coordinates and their speeds.
   enum Index {
-    kPressure = 14,            // at the motor [Pa]
+    kPressure = 14,            // pressure at the motor [Pa]
     kLeaked,                   // oil leaked in each cylinder, from bore to rod side [m3]
     kSheared = kLeaked + 3,    // displacement of each cylinder's seals before they slide [m]
     kTool = kSheared + 3,      // ToolState of an elastic machine; its impulses and energy follow
@@ -81,7 +81,7 @@ class HammerOnBoom {
   struct State {
     double time{};
     bool before_blow{};
-    bool resting{};  ///< the crank turned back onto the tool and is held at the dead centre, as by a brake
+    bool resting{};  ///< the crank ran back onto the tool and is held at the dead centre, as by a brake
     Vector y{Vector::Zero()};
     auto x() { return y.head<7>(); }  ///< angles of the joints, crank's offset from its nearest dead centre, rocker
     auto x() const { return y.head<7>(); }
@@ -91,13 +91,13 @@ class HammerOnBoom {
     auto sheared() const { return y.segment<3>(kSheared); }
     ToolState tool() const { return {y[kTool], y[kTool + 1], y[kTool + 2]}; }
   };
-  /// A moving body: its place, and what each coordinate does to place and angle.
+  /// Moving body: its position, and the derivatives of position and angle by each coordinate.
   struct Body {
     double mass{}, inertia{};
     PlanePoint place;
     Coordinates x, z, turn;
   };
-  /// Links, then the rocker, which the crank moves within the hull.
+  /// Links, then the rocker, which moves within the hull.
   struct Bodies {
     std::array<Body, 4> body;
     std::array<PlanePoint, 4> joint;   ///< joints of the links, then the rocker's pivot D
@@ -111,9 +111,9 @@ class HammerOnBoom {
     State state;
     Eigen::Vector3d weight;     ///< torque of all weights on the joints [N m]
     Eigen::Vector3d stiffness;  ///< stiffness of the oil about the joints [N m/rad]
-    Eigen::Vector2d bent;       ///< weight of what bends boom and arm [N m]: their rest is straight under it
+    Eigen::Vector2d bent;       ///< torque of the weights on the bends [N m]; the links are straight under it
   };
-  /// An elastic rod, and what the rocker then strikes.
+  /// Elastic rod and the target of the rocker.
   struct Elastic {
     ElasticLinks links;
     RodSpring rod;
@@ -126,7 +126,7 @@ class HammerOnBoom {
   State heldAt(double time) const;
   Hold holdAt(double time) const;
 
-  int rockerIndex() const { return elastic_ ? 4 : 3; }  ///< index of the coordinate that moves it
+  int rockerIndex() const { return elastic_ ? 4 : 3; }  ///< index of the coordinate that moves the rocker
   Rocker rockerAt(const State& s) const;
   double rockerOf(double crank_angle) const { return elastic_ ? elastic_->links.rockerAngle(crank_angle) : 0.0; }
   Bodies bodies(const State& s, const Links& links, const Rocker& rocker) const;
@@ -156,7 +156,7 @@ class HammerOnBoom {
   /// Position of the hull's foot along the tool, relative to that at the operator's pose.
   struct Foot {
     double height{}, speed{};  ///< [m], [m/s]
-    Coordinates lift;          ///< by the coordinates [m]
+    Coordinates lift;          ///< derivatives of the height by the coordinates [m/rad]
   };
   Foot foot(const State& s, const State& held) const;
   void standOnRock();
@@ -186,12 +186,12 @@ class HammerOnBoom {
 
   bool bends() const { return machine_.on_boom.bending_frequency > 0.0; }
   void stiffenLinks();
-  /// Number of turning places, joints and then the middles of boom and arm; each turns everything beyond it.
+  /// Number of hinges: the joints, then the middles of boom and arm. Each rotates everything beyond it.
   std::size_t turns() const { return bends() ? 5 : 3; }
   static int turnIndex(std::size_t turn) { return static_cast<int>(turn < 3 ? turn : turn + 2); }
   PlanePoint turnPlace(const State& s, std::size_t turn) const;
   static double hullTurning(const Coordinates& c) { return c.head<3>().sum() + c.tail<2>().sum(); }
-  /// Angle of the link that ends in a joint, before its middle; bentAngle: of the part beyond the middle.
+  /// Returns the angle of the link that ends in a joint, up to its middle; bentAngle returns that beyond the middle.
   static double angleBefore(const State& s, std::size_t joint);
   static double bentAngle(const State& s, std::size_t link) {
     return angleBefore(s, link + 1) + (link < 2 ? s.x()[5 + static_cast<int>(link)] : 0.0);
@@ -201,13 +201,13 @@ class HammerOnBoom {
   PlanePoint jointPlace(const State& s, std::size_t joint) const;
   PlanePoint imuPlace(const State& s) const;
   State along(const State& s, const Coordinates& a, double dt) const;
-  /// States at, after and before an instant, for accelerations by differences.
+  /// States at, after and before an instant, for accelerations by differences in time.
   struct Moments {
     State state[3];
     Rocker rocker[3];
   };
   Moments momentsAbout(const Coordinates& a) const;
-  /// Load of the bodies from `first` on, without what holds them, about a place in axes turned by an angle.
+  /// Returns the load of the bodies from `first` on, without supporting forces, about a place in axes at an angle.
   Load loadOf(const Coordinates& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
               double axes) const;
   Load cutLoad(const OnBoomTruth& t, const Coordinates& a, const Moments& m, const OilBoomCut& cut) const;
@@ -218,13 +218,13 @@ class HammerOnBoom {
   OilBoom boom_;
   MovingLinks links_;
   double rotor_{}, ratio_{};  ///< Jc [kg m2], drive_reaction_ratio
-  Rocker held_rocker_{};      ///< rocker of every heldAt()
-  Hold hold_;                 ///< at the beginning of the step in hand
-  Hold hold_later_;           ///< settings.on_boom.step after it; of an elastic machine, which steps between the two
+  Rocker held_rocker_{};      ///< rocker in every state of heldAt()
+  Hold hold_;                 ///< at the beginning of the present step
+  Hold hold_later_;           ///< settings.on_boom.step later; the steps of an elastic machine lie between the two
   Eigen::Matrix3d damping_;
   Eigen::Vector2d link_stiffness_{Eigen::Vector2d::Zero()}, link_damping_{Eigen::Vector2d::Zero()};
-  double rock_height_{};  ///< over the foot of a hull that is held without rock [m]
-  double step_{};         ///< longest [s]
+  double rock_height_{};  ///< height of the rock over the foot of a hull that is held without rock [m]
+  double step_{};         ///< longest step [s]
   State now_;
   std::int64_t turn_{};
   double last_blow_{}, released_{-1.0};  ///< [s]

@@ -42,7 +42,7 @@ HammerOnBoom::State HammerOnBoom::stepped(const State& s, double dt) const {
   return moved((k1 + 2.0 * (k2 + k3) + k4) / 6.0, dt);
 }
 
-/// Part of the step dt, which passes the dead centre, until it is there: Newton.
+/// Returns the part of the step dt up to the dead centre, which the step passes, by Newton's method.
 double HammerOnBoom::timeToDeadCentre(double dt) const {
   double t = dt;
   for (int i = 0; i < 20; ++i) {
@@ -83,7 +83,7 @@ void HammerOnBoom::advanceTo(double time) {
   }
 }
 
-/// Once per instant: a torque that falls through zero lets go of the crank and stops it at once.
+/// Releases the crank at most once per instant: a torque that falls through zero would stop it again at once.
 void HammerOnBoom::release() {
   if (!now_.resting || released_ >= now_.time) return;
   State free = now_;
@@ -93,7 +93,7 @@ void HammerOnBoom::release() {
   released_ = now_.time;
 }
 
-/// Forward a blow, backward a stop on the tool.
+/// Applies a blow when passed forwards and a stop on the tool when passed backwards.
 void HammerOnBoom::passDeadCentre() {
   if (now_.before_blow) {
     blow();

@@ -64,7 +64,7 @@ BlowSettings readBlow(ParameterReader& reader) {
   return b;
 }
 
-/// Stiffness 0 for `rod: rigid`.
+/// Returns stiffness 0 for `rod: rigid`.
 RodSettings readRod(ParameterReader& reader) {
   RodSettings r;
   const bool elastic = reader.choice("rod", kRodNames);
@@ -93,7 +93,7 @@ StrikeSettings readStrike(ParameterReader& reader) {
   return s;
 }
 
-/// Reads how a driver stamps; prefix: of the keys.
+/// Reads the stamps of a driver; `prefix` is that of the keys.
 DriverStamps readDriverStamps(ParameterReader& reader, const std::string& prefix) {
   DriverStamps s;
   s.tick = reader.number(prefix + "stamp_tick_s", "s", NumberRule::within(0.0, 1.0));
@@ -207,7 +207,7 @@ JointMotion readJoint(ParameterReader& reader, const std::string& joint) {
   return motion;
 }
 
-/// Duration and stop; infinite when the file says 0.
+/// Reads duration and stop; both are infinite for a duration of 0.
 void readTimes(ParameterReader& reader, MachineSettings& machine) {
   const double duration = reader.number("duration_s", "s", kNotNegative);
   const double before_end = reader.number("stop_before_end_s", "s", kNotNegative);

@@ -13,17 +13,17 @@ namespace hammer_loads::simulation {
 struct PlaySettings {
   bool publish_clock{};
   double clock_factor{};         ///< simulated seconds per second, with publish_clock [-], > 0
-  double wait_for_subscriber{};  ///< at most, before time 0 [s]
+  double wait_for_subscriber{};  ///< longest wait before time 0 [s]
   std::string truth_prefix;      ///< prefix of TruthFiles; empty: none
 };
 
 struct SimulatorSettings {
-  MachineSettings machine;  ///< start_stamp is left to the player; duration infinite for a file's 0
+  MachineSettings machine;  ///< the player sets start_stamp; duration 0 in the file means infinite
   PlaySettings play;
 };
 
-/// Settings by the given parameters over config_directory's simulated_machine.yaml and, if no hammer key is given, its
-/// hammer_mo100.yaml; or every problem, one line each.
+/// Returns the settings, or every problem, one line each. The given parameters override config_directory's
+/// simulated_machine.yaml and, if no hammer key is given, its hammer_mo100.yaml.
 Checked<SimulatorSettings> loadSimulator(const std::string& config_directory, const ParameterMap& given);
 
 }  // namespace hammer_loads::simulation

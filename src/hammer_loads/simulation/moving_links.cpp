@@ -6,7 +6,7 @@
 namespace hammer_loads::simulation {
 namespace {
 
-/// Cosine and sine of the crank angle phi as jets by phi.
+/// Cosine and sine of the crank angle phi as jets in phi.
 struct CrankPlace {
   Jet cos, sin;
   Jet sin_half;  ///< sine of phi/2 within the revolution, phi in [0, 2 pi]: from the offset, so that it is exact at
@@ -36,8 +36,8 @@ MovingLinks::MovingLinks(const Mechanism& mechanism, Level level)
       cos_a_(std::cos(p_.rocker_com_angle)),
       sin_a_(std::sin(p_.rocker_com_angle)) {}
 
-/// psi = 2 delta - alpha: alpha turns DA into DB, pi - 2 delta is the angle B-D-C of a triangle with sides
-/// c = DB, l3, l2, and sin^2 delta = ((l3 + c)^2 - l2^2)/(4 l3 c), where c - (l2 - l3) = 4 l0 l1 s^2/(c + l0 - l1).
+/// psi = 2 delta - alpha. alpha is the angle from DA to DB, and pi - 2 delta the angle B-D-C of a triangle with sides
+/// c = DB, l3, l2. sin^2 delta = ((l3 + c)^2 - l2^2)/(4 l3 c), where c - (l2 - l3) = 4 l0 l1 s^2/(c + l0 - l1).
 Jet MovingLinks::rockerAngleUp(TurnAngle angle) const noexcept {
   const double l0 = p_.lengths.pivot_distance, l1 = p_.lengths.crank, l2 = p_.lengths.rod, l3 = p_.lengths.rocker;
   const auto [cos_phi, sin_phi, s] = placeOf(angle);
@@ -112,7 +112,7 @@ Load MovingLinks::load(const LinkBodies& links, double speed, double acceleratio
   return {-(cos_a_ * f_xi + sin_a_ * f_eta), -sin_a_ * f_xi + cos_a_ * f_eta, torque};
 }
 
-/// At the blow crank, rod and rocker are in line: the rod passes on no moment but its own inertia about B.
+/// Crank, rod and rocker are in line at the blow, so that the rod transmits only the moment of its inertia about B.
 Strike MovingLinks::strike(double crank_speed) const noexcept {
   const TurnAngle before{0.0, true}, after{0.0, false};
   const double u_before = rockerAngle(before).first, u_after = rockerAngle(after).first;
@@ -132,9 +132,9 @@ Strike MovingLinks::strike(double crank_speed) const noexcept {
   return strike;
 }
 
-/// At the dead centre crank and rocker turn independently: kinetic energy (M11 w^2 + 2 M12 w p + M22 p^2)/2 of crank
-/// speed w and rocker speed p. The tool's impulse works on p alone; then the loop, p = u w, closes without work, which
-/// keeps the momentum along (1, u).
+/// Crank speed w and rocker speed p are independent at the dead centre, with the kinetic energy
+/// (M11 w^2 + 2 M12 w p + M22 p^2)/2. The tool's impulse acts on p alone. Then the loop, p = u w, closes by an internal
+/// impulse, which conserves the momentum along (1, u).
 Strike MovingLinks::strike(double crank_speed, double restitution, double drive_inertia) const noexcept {
   const TurnAngle before{0.0, true}, after{0.0, false};
   const double u_before = rockerAngle(before).first, u = rockerAngle(after).first;

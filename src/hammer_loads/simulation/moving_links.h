@@ -9,14 +9,14 @@
 
 namespace hammer_loads::simulation {
 
-/// A value with its first two derivatives by one variable, f, df/dx, d2f/dx2: kinematics without derived formulas.
+/// Value f with its derivatives df/dx and d2f/dx2 by one variable, for kinematics without derived formulas.
 struct Jet {
   double value{};
   double first{};
   double second{};
 };
 
-/// f(a) from f and its derivatives at a.value.
+/// Returns f(a) from f and its derivatives at a.value.
 inline Jet chain(const Jet& a, double f, double df, double ddf) noexcept {
   return {f, df * a.first, ddf * a.first * a.first + df * a.second};
 }
@@ -60,7 +60,7 @@ inline Jet atan(const Jet& a) noexcept {
   return chain(a, std::atan(a.value), w, -2.0 * a.value * w * w);
 }
 
-/// Crank angle as the signed distance from the nearest dead centre [rad] and the side of it that it belongs to.
+/// Crank angle as the signed distance from the nearest dead centre [rad], and the side on which it lies.
 struct TurnAngle {
   double offset{};
   bool before_blow{};
@@ -87,8 +87,8 @@ struct Strike {
   double rocker_speed_after{};   ///< psi' [rad/s]
   double energy{};               ///< kinetic energy that the links give to the tool [J]
   double tool_impulse{};         ///< along +z BY the tool ON the rocker [N s]
-  double crank_speed_after{};    ///< once the linkage has taken up the rocker's speed [rad/s]
-  double linkage_loss{};         ///< kinetic energy lost within linkage and crank meanwhile [J]
+  double crank_speed_after{};    ///< once rod and crank follow the rocker again [rad/s]
+  double linkage_loss{};         ///< kinetic energy lost in linkage and crank until then [J]
 };
 
 /// Rigid links in the mechanism frame (model.md 1), as functions of the crank angle.
@@ -112,18 +112,18 @@ class MovingLinks {
  public:
   MovingLinks(const Mechanism& mechanism, Level level);
 
-  /// Places of the links at a crank angle.
+  /// Returns the positions of the links at a crank angle.
   LinkBodies at(TurnAngle angle) const noexcept;
   ShaftView shaft(const LinkBodies& links, Gravity gravity) const noexcept;
-  /// At crank speed w [rad/s] and acceleration e [rad/s2]. Newton-Euler in the mechanism frame.
+  /// Returns the load at crank speed [rad/s] and acceleration [rad/s2], by Newton-Euler in the mechanism frame.
   Load load(const LinkBodies& links, double speed, double acceleration, Gravity gravity) const noexcept;
-  /// The crank keeps its speed.
+  /// Returns the strike at which the crank keeps its speed.
   Strike strike(double crank_speed) const noexcept;
-  /// The rocker leaves the tool with a given restitution; drive_inertia [kg m2] is what turns with the crank.
+  /// Returns the strike with a given restitution; drive_inertia [kg m2] is that of the parts rotating with the crank.
   Strike strike(double crank_speed, double restitution, double drive_inertia) const noexcept;
-  /// Strike away from the dead centre, without restitution: the rocker accelerates a tool of a mass [kg] from rest.
+  /// Returns the strike of a tool of a mass [kg] at rest, away from the dead centre and without restitution.
   Strike strikeTool(TurnAngle angle, double crank_speed, double tool_mass, double drive_inertia) const noexcept;
-  /// psi [rad] with its derivatives by the crank angle.
+  /// Returns psi [rad] with its derivatives by the crank angle.
   Jet rockerAngle(TurnAngle angle) const noexcept;
 
  private:

@@ -9,19 +9,19 @@
 
 namespace hammer_loads::simulation {
 
-/// Box-Muller on mt19937_64, whose sequence the standard fixes (std::normal_distribution's is not).
+/// Box-Muller on mt19937_64, whose sequence is standardized, unlike that of std::normal_distribution.
 class NormalNoise {
  public:
   explicit NormalNoise(std::uint64_t seed) : engine_(seed) {}
 
-  /// Standard normal deviate; always consumes two numbers of the generator.
+  /// Returns a standard normal deviate. Always consumes two numbers of the generator.
   double operator()() noexcept {
     const double u = 1.0 - uniform();  // (0, 1]
     const double v = uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(kTwoPi * v);
   }
 
-  /// In [0, 1).
+  /// Returns a uniform deviate in [0, 1).
   double uniform() noexcept { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
  private:

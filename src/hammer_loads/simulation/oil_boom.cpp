@@ -11,14 +11,14 @@ double areaOf(double diameter) { return 0.25 * kPi * diameter * diameter; }
 
 constexpr double kAmbient = 1.013e5;      // [Pa]
 constexpr double kExponent = 1.0 / 1.4;   // exponent of isentropic air
-constexpr double kLeastPressure = 1.0e3;  // absolute [Pa]: oil boils
-constexpr int kIterations = 8;            // Newton's iterations: from 0.02 to 40 MPa in six
+constexpr double kLeastPressure = 1.0e3;  // absolute [Pa]; the oil boils below it
+constexpr int kIterations = 8;            // Newton's iterations; six suffice from 0.02 to 40 MPa
 
 }  // namespace
 
 double OilCylinder::length(double angle) const { return std::abs(pins(angle).rod - base); }
 
-/// The guide's pivot feels no moment: that of the coupler about it is that of the rod.
+/// The guide is free of moment at its pivot, so that the coupler's moment about it equals the rod's.
 OilCylinder::Pins OilCylinder::pins(double angle) const {
   const PlanePoint driven = turnedBy(angle) * rod;
   if (linkage.guide == 0.0) {
@@ -34,7 +34,7 @@ OilCylinder::Pins OilCylinder::pins(double angle) const {
   return {pin, -push, push - by_coupler, by_coupler};
 }
 
-/// By the work of the force on the driven link.
+/// Follows from the virtual work of the force on the driven link.
 double OilCylinder::arm(double angle) const { return momentOf(turnedBy(angle) * rod, pins(angle).on_driven); }
 
 double OilCylinder::boreShare(double angle) const {
@@ -85,7 +85,7 @@ double ChamberOil::bulkModulus(double pressure) const noexcept {
   return -volume(absolute) / slope(absolute);
 }
 
-/// The volume falls ever slower with the pressure: Newton from below stays below.
+/// The volume is convex in the pressure, so that Newton's method from below does not overshoot.
 double ChamberOil::compressed(double pressure, double part) const noexcept {
   const double before = std::max(kLeastPressure, pressure + kAmbient), target = volume(before) * (1.0 - part);
   double absolute = before;

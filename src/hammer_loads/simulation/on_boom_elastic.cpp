@@ -7,12 +7,12 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kNear = 0.005;     // the striking point is so near the tool's place that the steps are short [m]
-constexpr double kShort = 1e-5;     // steps near a blow, which lasts some thirty of them [s]
-constexpr double kBriefest = 1e-7;  // step in which a contact may begin or end [s]
-constexpr double kReach = 1.5;      // step times the rate of the rod's damping; Runge-Kutta is stable up to 2.8
-constexpr double kLong = 4e-5;      // a vibration of 500 Hz has fifty of them [s]
-constexpr double kRings = 0.05;     // for this long after a blow [s]; then steps of twice that
+constexpr double kNear = 0.005;     // height of the striking point over the dead centre below which steps are short [m]
+constexpr double kShort = 1e-5;     // step near a blow, which lasts some thirty of them [s]
+constexpr double kBriefest = 1e-7;  // longest step in which a contact may begin or end [s]
+constexpr double kReach = 1.5;      // step times the decay rate of the rod's damping; Runge-Kutta is stable up to 2.8
+constexpr double kLong = 4e-5;      // step during the vibration after a blow [s]; 50 per period at 500 Hz
+constexpr double kRings = 0.05;     // duration of the vibration after a blow [s]; later the step is doubled
 
 }  // namespace
 
@@ -41,7 +41,7 @@ PlanePoint HammerOnBoom::strikingPlace(const State& s) const {
   return jointPlace(s, 3) + turnedBy(hullAngle(s)) * PlanePoint(-lk * std::cos(s.x()[4]), lk * std::sin(s.x()[4]));
 }
 
-/// Derivatives of the striking point's height along the tool by the coordinates.
+/// Returns the derivatives of the striking point's height along the tool by the coordinates.
 HammerOnBoom::Coordinates HammerOnBoom::toolLift(const State& s) const {
   const PlanePoint place = strikingPlace(s), down = std::conj(turnedBy(hullAngle(s)));
   Coordinates lift = Coordinates::Zero();

@@ -1,4 +1,4 @@
-// Forces that hold the joints: oil in two chambers a cylinder, leakage between them, joint clearance, seals.
+// Forces that hold the joints: oil in two chambers per cylinder, leakage between them, joint clearance, seals.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ double HammerOnBoom::oilOf(std::size_t cylinder) const {
   return boom_.bulk_modulus * machine_.on_boom.cylinder_oil[cylinder];
 }
 
-/// Steady pressures: one chamber carries the steady load, the other has the preload.
+/// Returns the steady pressures. One chamber carries the steady load, the other has the preload.
 HammerOnBoom::Chambers HammerOnBoom::heldChambers(std::size_t k, const State& held, double weight) const {
   const OilCylinder& c = boom_.cylinders[k];
   const double steady = -weight / c.arm(held.x()[static_cast<int>(k)]), preload = machine_.on_boom.pressures.preload;
@@ -19,7 +19,7 @@ HammerOnBoom::Chambers HammerOnBoom::heldChambers(std::size_t k, const State& he
   return {bore_push / c.bore_area, (bore_push - steady) / c.rod_area};
 }
 
-/// Stiffness of the oil about the joints [N m/rad].
+/// Returns the stiffness of the oil about the joints [N m/rad].
 Eigen::Vector3d HammerOnBoom::stiffness(const State& held, const Eigen::Vector3d& weight) const {
   Eigen::Vector3d K;
   for (int j = 0; j < 3; ++j) {
@@ -37,14 +37,14 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held, const Eigen::Vector3d
   return K;
 }
 
-/// Pressures by the rod's way out [m] and the volume leaked from bore to rod side [m3].
+/// Returns the pressures after an extension of the rod [m] and leakage of a volume from bore to rod side [m3].
 HammerOnBoom::Chambers HammerOnBoom::chambersAt(std::size_t k, double way, double leaked, const Hold& hold) const {
   const OilCylinder& c = boom_.cylinders[k];
   const int j = static_cast<int>(k);
   const double angle = hold.state.x()[j];
   const Chambers held = heldChambers(k, hold.state, hold.weight[j]);
   const ChamberOil oil(oilOf(k), machine_.on_boom.air);
-  const double lost = leaked / c.bore_area, won = leaked / c.rod_area;  // in ways of the rod
+  const double lost = leaked / c.bore_area, won = leaked / c.rod_area;  // as displacements of the rod [m]
   return {oil.compressed(held.bore, -c.boreShare(angle) * (way + lost)),
           oil.compressed(held.rod, c.rodShare(angle) * (way + won))};
 }
@@ -53,7 +53,7 @@ double HammerOnBoom::push(std::size_t k, const Chambers& at) const {
   return boom_.cylinders[k].bore_area * at.bore - boom_.cylinders[k].rod_area * at.rod;
 }
 
-/// Pins of a pushing cylinder are loose towards pulling, and the other way round: no force within their clearance.
+/// Pins are loose against the direction of the steady push, so that no force is transmitted within their clearance.
 HammerOnBoom::Chambers HammerOnBoom::chambers(std::size_t k, const State& s, const Hold& hold) const {
   const OilCylinder& c = boom_.cylinders[k];
   const int j = static_cast<int>(k);
@@ -67,7 +67,7 @@ HammerOnBoom::Chambers HammerOnBoom::chambers(std::size_t k, const State& s, con
   return chambersAt(k, way - taken_up * play, leaked, hold);
 }
 
-/// Leakage from bore to rod side in excess of the steady one, which the operator compensates [m3/s].
+/// Returns the leakage from bore to rod side [m3/s] in excess of the steady one, which the operator compensates.
 Eigen::Vector3d HammerOnBoom::leak(const State& s, const Hold& hold) const {
   Eigen::Vector3d flow = Eigen::Vector3d::Zero();
   if (machine_.on_boom.leak == 0.0) return flow;
@@ -79,7 +79,7 @@ Eigen::Vector3d HammerOnBoom::leak(const State& s, const Hold& hold) const {
   return flow;
 }
 
-/// BY the oil ON the joints [N m].
+/// Returns the torques BY the oil ON the joints [N m].
 Eigen::Vector3d HammerOnBoom::oil(const State& s, const Hold& hold) const {
   const Coordinates off = s.x() - hold.state.x(), rate = s.v() - hold.state.v();
   const Eigen::Vector3d damped = damping_ * rate.head<3>();
@@ -94,7 +94,7 @@ Eigen::Vector3d HammerOnBoom::oil(const State& s, const Hold& hold) const {
   return -hold.weight - hold.stiffness.cwiseProduct(off.head<3>()) - damped;
 }
 
-/// BY the cylinders' seals ON the joints, with the oil's torque [N m].
+/// Returns the torques BY the cylinders' seals ON the joints at a torque of the oil [N m].
 Eigen::Vector3d HammerOnBoom::seals(const State& s, const Eigen::Vector3d& oil) const {
   const SealSettings& seal = machine_.on_boom.seals;
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
@@ -111,7 +111,7 @@ Eigen::Vector3d HammerOnBoom::seals(const State& s, const Eigen::Vector3d& oil) 
   return torque;
 }
 
-/// Speed of the displacement of the seals before they slide [m/s].
+/// Returns the rate of the seals' displacement before they slide [m/s].
 Eigen::Vector3d HammerOnBoom::shear(const State& s) const {
   const SealSettings& seal = machine_.on_boom.seals;
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
@@ -128,7 +128,7 @@ Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
   return by_oil + seals(s, by_oil);
 }
 
-/// Reads the pressures. Both chambers share the force beyond the steady push, as they would share the rod's way.
+/// Reads the pressures. Both chambers share the remaining force as they would under a displacement of the rod.
 void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
   const Eigen::Vector3d torque = oil(now_, hold);
   for (std::size_t k = 0; k < 3; ++k) {

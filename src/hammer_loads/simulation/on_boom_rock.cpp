@@ -32,7 +32,7 @@ HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
   return foot;
 }
 
-/// Deflection of the oil of all cylinders and of the rock by the hold-down force.
+/// Returns the deflection of rock and oil of all cylinders by the hold-down force.
 double HammerOnBoom::rockHeight(const Hold& hold) const {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return 0.0;
@@ -40,7 +40,7 @@ double HammerOnBoom::rockHeight(const Hold& hold) const {
   return rock.hold_down_force * (1.0 / rock.stiffness + lift.cwiseAbs2().cwiseQuotient(hold.stiffness).sum());
 }
 
-/// At the start, at rest, with steps that are short enough for the rock.
+/// Initializes the hull at rest on the rock, with steps that are short enough for the rock.
 void HammerOnBoom::standOnRock() {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return;
@@ -51,7 +51,7 @@ void HammerOnBoom::standOnRock() {
   step_ = std::min(step_, kTwoPi * std::sqrt(mass / rock.stiffness) / kStepsPerSwing);
 }
 
-/// Force of the rock, continuous at the contact and never pulling.
+/// Returns the force of the rock, which is continuous at the contact and never pulls.
 double HammerOnBoom::rockForce(const Foot& foot) const {
   const RockSettings& rock = machine_.on_boom.rock;
   const double depth = rock_height_ - foot.height;
@@ -82,8 +82,8 @@ void HammerOnBoom::blow() {
   }
   const PlanePoint to_hull = std::conj(turnedBy(hullAngle(now_)));
   const PlanePoint striker = jointPlace(now_, 3) - machine_.hammer.striking_distance / to_hull;
-  Coordinates J = Coordinates::Zero(), v = now_.v(), loop = J;  // of the striking point along the tool; no speed along
-                                                                // the loop is left by the linkage
+  Coordinates J = Coordinates::Zero(), v = now_.v(), loop = J;  // J: of the striking point along the tool; loop: the
+                                                                // linkage permits no speed along it
   for (std::size_t j = 0; j < turns(); ++j) J[turnIndex(j)] = (to_hull * -kI * (striker - turnPlace(now_, j))).imag();
   J[4] = machine_.hammer.striking_distance;
   v[4] = u_before * now_.v()[3];

@@ -28,7 +28,7 @@ HammerOnBoom::Moments HammerOnBoom::momentsAbout(const Coordinates& a) const {
   return m;
 }
 
-/// Accelerations by differences in time.
+/// Computes the accelerations by differences in time.
 Load HammerOnBoom::loadOf(const Coordinates& a, const Moments& m, const Links& links, std::size_t first,
                           PlanePoint about, double axes) const {
   constexpr double h = kInstant;
@@ -48,7 +48,7 @@ Load HammerOnBoom::loadOf(const Coordinates& a, const Moments& m, const Links& l
   return {turned.real(), turned.imag(), torque};
 }
 
-/// With the forces of the cylinders that have pins on both sides of the cut, on those beyond.
+/// Includes the forces of cylinders with pins on both sides of the cut, on the pins beyond it.
 Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Moments& m, const OilBoomCut& cut) const {
   const double axes = angleBefore(now_, cut.link + 1);
   const PlanePoint turn = turnedBy(axes), about = jointPlace(now_, cut.link) + turn * cut.place;

@@ -10,10 +10,10 @@ namespace hammer_loads::simulation {
 namespace {
 
 constexpr double kJointLag = 0.005;  // first joint sample [s], so that the two streams do not coincide
-constexpr double kImuLag = 0.0004, kPressureLag = 0.0007;  // theirs, so that no two of them do
+constexpr double kImuLag = 0.0004, kPressureLag = 0.0007;  // first samples of the other streams [s], likewise distinct
 constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9, kJointSeed = 0x94d049bb133111eb;
 constexpr std::uint64_t kLossSeed = 0x2545f4914f6cdd1d;
-constexpr double kSensorStep = 1e-4;  // [s] in which a low-pass takes its input for a straight line
+constexpr double kSensorStep = 1e-4;  // step in which the input of a low-pass is taken as linear [s]
 constexpr std::uint64_t kBusSeed = 0x8cb92ba72f3d8dd7;
 constexpr std::uint64_t kDriverSeed = 0xe7037ed1a0b428db, kBoomDriverSeed = 0x589965cc75374cc3;
 constexpr std::uint64_t kImuSeed = 0xd6e8feb86659fd93, kPressureSeed = 0xa0761d6478bd642f;
@@ -39,7 +39,7 @@ bool stampsAreInstants(const CrankSensorSettings& sensor) noexcept {
   return sensor.stamp_noise == 0.0 && sensor.driver.areExact() && sensor.stamp_step == 0.0 && sensor.burst <= 1;
 }
 
-/// Reading of the encoder before any filter.
+/// Returns the reading of the encoder before any filter.
 EncoderReading encoded(const CrankSensorSettings& sensor, const CrankTruth& truth) noexcept {
   const double whole = kTwoPi * static_cast<double>(truth.turn), angle = whole + truth.angle + truth.twist;
   double seen = angle, slope = 1.0;
@@ -79,7 +79,7 @@ SessionStream::SessionStream(const MachineSettings& settings)
   planSample();
 }
 
-/// Instant and errors of the next crank sample. Draws the same numbers whatever is measured or lost, so that such
+/// Draws instant and errors of the next crank sample. The draws do not depend on what is measured or lost, so that such
 /// settings do not change the rest of the noise. Instants are whole nanoseconds, hence exact in a stamp.
 void SessionStream::planSample() noexcept {
   const CrankSensorSettings& sensor = settings_.crank;
@@ -166,7 +166,7 @@ void SessionStream::takeCrank(Session& session) {
   planSample();
 }
 
-/// Whole bursts arrive at once, with the stamp of their last sample.
+/// Takes a sample. A burst arrives as a whole, with the stamp of its last sample.
 void SessionStream::take(Session& session) {
   const CrankSensorSettings& sensor = settings_.crank;
   Taken taken;
@@ -192,7 +192,7 @@ void SessionStream::take(Session& session) {
   burst_.clear();
 }
 
-/// Angle and speed that the sensor shows before it counts. A controller's mean replaces any low-pass.
+/// Returns angle and speed of the sensor before counting. A controller's mean replaces any low-pass.
 EncoderReading SessionStream::shown(const CrankTruth& truth) noexcept {
   const CrankSensorSettings& sensor = settings_.crank;
   EncoderReading shown = encoded(sensor, truth);
@@ -234,7 +234,7 @@ CrankReading SessionStream::read(const CrankTruth& truth) noexcept {
     speed = shown.speed;
   } else if (sensor.counts > 0) {
     const double count = kTwoPi / sensor.counts;
-    // The turn's last count is the encoder's last, however close the angle is to 2 pi.
+    // The last count of a revolution is the encoder's last, however close the angle is to 2 pi.
     const std::int64_t passed =
         std::min<std::int64_t>(static_cast<std::int64_t>(std::floor(truth.angle / count)), sensor.counts - 1);
     reading.angle = static_cast<double>(turn * sensor.counts + passed) * count;
@@ -250,7 +250,7 @@ std::int64_t SessionStream::stampAt(double time) const noexcept {
   return settings_.start_stamp + static_cast<std::int64_t>(std::llround(time * 1e9));
 }
 
-/// Visits the instants in their order in time.
+/// Visits the instants in chronological order.
 std::vector<CrankTruth> truthAt(const MachineSettings& settings, const std::vector<double>& times) {
   std::vector<std::size_t> order(times.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -17,19 +17,19 @@
 
 namespace hammer_loads::simulation {
 
-/// lag y' = u - y; begins at rest, y = u. Between two inputs u is a straight line: exact for such.
+/// First-order low-pass lag y' = u - y, which starts at rest with y = u. It is exact for u linear between two inputs.
 class LowPass {
  public:
-  /// lag [s], >= 0; 0: y is u.
+  /// lag [s], >= 0; with 0, y = u.
   explicit LowPass(double lag) noexcept : lag_(lag) {}
 
-  /// The input at `time` [s], never before the last one.
+  /// Updates the output with the input at `time` [s], which must not precede the last one.
   void follow(double time, double input) noexcept {
     const double dt = time - time_;
     if (!begun_ || !(lag_ > 0.0)) {
       output_ = input;
     } else if (dt > 0.0) {
-      const double behind = lag_ * (input - input_) / dt;  // of an input that has risen so for ever
+      const double behind = lag_ * (input - input_) / dt;  // lag of the steady response to a ramp
       output_ = input - behind + (output_ - input_ + behind) * std::exp(-dt / lag_);
     }
     begun_ = true;
@@ -45,7 +45,7 @@ class LowPass {
   double time_{}, input_{}, output_{};
 };
 
-/// Angle and speed that the encoder shows, over many turns.
+/// Angle and speed indicated by the encoder, accumulated over revolutions.
 struct EncoderReading {
   double angle{}, speed{};  ///< [rad], [rad/s]
 };
@@ -71,7 +71,7 @@ struct HullImuReading {
   std::array<double, 3> rate{};            ///< [rad/s]
 };
 
-/// The messages below `cylinder_pressures` of one instant; order of kBoomCylinders.
+/// Messages below `cylinder_pressures` at one instant; order of kBoomCylinders.
 struct PressureReading {
   std::int64_t stamp{};                 ///< [ns]
   std::array<double, 3> bore{}, rod{};  ///< gauge [Pa]
@@ -79,17 +79,17 @@ struct PressureReading {
 
 struct Session {
   std::vector<CrankReading> crank;  ///< in the order of arrival
-  std::vector<CrankTruth> truth;    ///< one per crank reading; at which instant: see who made it
+  std::vector<CrankTruth> truth;    ///< one per crank reading; its instant is stated by the producing function
   std::vector<double> taken;        ///< instants of the crank readings [s since start]
   std::vector<JointReading> joints;
   std::vector<HullImuReading> imu;
   std::vector<PressureReading> pressures;
   std::vector<BlowTruth> blows;
-  std::vector<OnBoomTruth> on_boom;  ///< truth of a hull on its boom: at the instants `taken`
+  std::vector<OnBoomTruth> on_boom;  ///< truth of a hull on its boom, at the instants `taken`
 };
 
-/// Runs the machine, with its hull at rest or on its boom, and reads its sensors. Same settings, same readings, however
-/// the time is cut into pieces. The truth is that of the instants at which readings are taken.
+/// Runs the machine, with its hull at rest or on its boom, and reads its sensors. Equal settings give equal readings
+/// for any division of the time into calls. The truth is that at the instants at which readings are taken.
 class SessionStream {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
@@ -122,12 +122,12 @@ class SessionStream {
   void takeCrank(Session& session);
   void take(Session& session);
   CrankReading read(const CrankTruth& truth) noexcept;
-  OnBoomSensors onBoomAt(double time);  ///< sensors of a hull on its boom, moved there
+  OnBoomSensors onBoomAt(double time);  ///< advances a hull on its boom and returns its sensors
   JointReading readJoints(double time);
   HullImuReading readImu(double time);
   PressureReading readPressures(double time);
   std::int64_t stampAt(double time) const noexcept;
-  std::int64_t busStamp(double time, std::int64_t& last) noexcept;  ///< stamp of a message that waited for its bus
+  std::int64_t busStamp(double time, std::int64_t& last) noexcept;  ///< stamp of a message delayed by its bus
 
   MachineSettings settings_;
   std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machine_;
@@ -135,11 +135,11 @@ class SessionStream {
   NormalNoise message_draws_, loss_draws_, joint_noise_, imu_noise_, pressure_noise_;
   NormalNoise bus_draws_, driver_draws_, boom_driver_draws_;
   LowPass angle_, speed_;            ///< low-passes of the encoder
-  std::deque<EncoderReading> task_;  ///< readings of the controller in its last mean
-  std::int64_t tasks_{};             ///< number of its readings so far
+  std::deque<EncoderReading> task_;  ///< readings in the controller's last mean
+  std::int64_t tasks_{};             ///< number of the controller's readings so far
   std::optional<double> held_;       ///< angle of an encoder with hysteresis [rad]
   std::array<LowPass, 6> hoses_;     ///< low-passes of bore and rod sides
-  double sensor_time_{};             ///< up to which they have followed [s]
+  double sensor_time_{};             ///< time up to which the low-passes are updated [s]
   std::int64_t last_stamp_{}, last_joints_{}, last_imu_{}, last_pressures_{};
   std::vector<Taken> burst_;
   std::int64_t samples_{};
@@ -147,11 +147,11 @@ class SessionStream {
   double next_sample_{}, stamp_error_{}, speed_error_{};
 };
 
-/// The machine's state at any instants [s since start, >= 0], in their order.
+/// Returns the machine's state at any instants [s since start, >= 0], in their order.
 std::vector<CrankTruth> truthAt(const MachineSettings& settings, const std::vector<double>& times);
 
-/// The whole session of settings.duration. The truth is that at the header stamps less the sensor's latency, which a
-/// user takes for the instants of the samples.
+/// Returns the whole session of settings.duration. The truth is that at the header stamps less the sensor's latency,
+/// which a user takes as the sampling instants.
 Session recordSession(const MachineSettings& settings);
 
 }  // namespace hammer_loads::simulation

@@ -11,7 +11,7 @@ struct Contact {
   double force, loss;  // [N], [W]
 };
 
-/// Force of a spring that is pressed by a depth [m] at a speed [m/s], and its loss.
+/// Returns force and loss of a spring that is compressed by a depth [m] at a speed [m/s].
 Contact press(double stiffness, double damping, double depth, double speed) noexcept {
   if (!(depth > 0.0)) return {0.0, 0.0};
   const double spring = stiffness * depth, force = std::max(0.0, spring * (1.0 + damping * speed));
@@ -22,8 +22,8 @@ double springEnergy(double stiffness, double depth) noexcept {
   return depth > 0.0 ? 0.5 * stiffness * depth * depth : 0.0;
 }
 
-constexpr double kSlowest = 1.0;   // [m/s]; at work it is some 9
-constexpr double kLongest = 0.02;  // [s]
+constexpr double kSlowest = 1.0;   // approach speed of a blow [m/s]; some 9 at work
+constexpr double kLongest = 0.02;  // duration of a blow with its later contacts [s]
 
 }  // namespace
 

@@ -11,25 +11,25 @@
 
 namespace hammer_loads::simulation {
 
-/// Tool along its axis, down positive, from where it stood when the turn began, and the rock below it.
+/// State of tool and rock along the tool's axis, positive downwards, from the beginning of the revolution.
 struct ToolState {
   double way{};      ///< [m]
   double speed{};    ///< [m/s]
   double yielded{};  ///< permanent deformation of the rock [m]
 };
 
-/// Contact forces grow from zero with the depth of pressing, and with its speed (Hunt and Crossley 1975): a spring and
-/// a loss that never pulls. The rock yields above its strength, within some 10 us.
+/// Contact forces grow from zero with the indentation and its rate (Hunt and Crossley 1975): a spring and a loss that
+/// never pulls. The rock yields above its strength, within some 10 us.
 /// Neglects: waves within tool and rocker, friction of the tool's bush, motion of the hull during the blow. The tool is
-/// reset to its place in each turn.
+/// reset to its initial position in each revolution.
 class StruckTool {
  public:
-  /// Depth of the striking point below its place at the dead centre [m], and its speed [m/s].
+  /// Depth of the striking point below its position at the dead centre [m], and its rate [m/s].
   struct Striker {
     double depth{}, speed{};
   };
   struct Answer {
-    double tool{}, retainer{};                            ///< up, on the rocker [N]
+    double tool{}, retainer{};                            ///< forces on the rocker, positive upwards [N]
     ToolState rate;                                       ///< derivative of the tool's state
     double contact_loss{}, rock_loss{}, retainer_loss{};  ///< [W]
   };
@@ -38,10 +38,10 @@ class StruckTool {
 
   Answer answer(Striker striker, const ToolState& tool, double gravity_down) const noexcept;
   double energy(Striker striker, const ToolState& tool) const noexcept;  ///< kinetic and elastic [J]
-  /// Code of the contacts, for a step that must not run over a change: equal means the same contacts.
+  /// Returns a code of the present contacts; a step must not pass a change of it.
   int contacts(Striker striker, const ToolState& tool) const noexcept;
   static bool touches(int contacts) noexcept { return (contacts & 3) != 0; }
-  /// Resets the tool for the turn that begins at a time [s]. It consumes the same random numbers for any settings.
+  /// Resets the tool for the revolution that begins at a time [s]. Consumes the same random numbers for any settings.
   void newTurn(double time) noexcept;
   bool isThere() const noexcept { return there_; }
 
@@ -52,12 +52,12 @@ class StruckTool {
   StrikeSettings s_;
   double blank_share_;
   NormalNoise draws_;
-  double place_{};  ///< place of the tool's top [m]
+  double place_{};  ///< depth of the tool's top [m]
   bool there_{true};
 };
 
 /// Groups the contacts of tool and retainer into blows. A blow begins with a contact at more than 1 m/s and includes
-/// all contacts of the next 20 ms. A rocker that falls onto the tool with the supply shut is slower and makes no blow.
+/// all contacts of the next 20 ms. A rocker that falls onto the tool with the supply shut is slower and is not counted.
 class BlowFollower {
  public:
   struct Instant {
@@ -67,7 +67,7 @@ class BlowFollower {
     double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
     bool touches{};
   };
-  /// After each step. Revolution before the blow that begins now, for the caller to fill in.
+  /// Evaluates a step. Returns the blow that begins now, or null; the caller sets its revolution.
   BlowTruth* follow(const Instant& now);
   /// Removes and returns the blows that ended since the last call.
   std::vector<BlowTruth> take() { return std::exchange(blows_, {}); }
@@ -76,7 +76,7 @@ class BlowFollower {
   struct Meeting {
     BlowTruth truth;
     Instant begun;
-    double touched{};  ///< last time [s]
+    double touched{};  ///< beginning of the last contact [s]
   };
   void end(const Instant& now);
   std::optional<Meeting> meeting_;

@@ -19,8 +19,8 @@ void WorkingMachine::meetEarlyTool() {
   rate_ = rate(now_);
 }
 
-/// now_ is at offset 0: forward it is a blow or, without a tool, the way to the mirrored branch or back from it;
-/// backward a stop on the tool unless the rocker is beyond it.
+/// Handles the dead centre, with now_ at offset 0. Forwards it is a blow or, without a tool, the passage to the
+/// mirrored branch or back. Backwards it is a stop on the tool, unless the rocker is beyond it.
 void WorkingMachine::passDeadCentre() {
   const bool forward = now_.before_blow;
   const bool strikes = forward && !now_.mirrored && !next_blow_.blank;
@@ -48,7 +48,7 @@ void WorkingMachine::passDeadCentre() {
   }
 }
 
-/// Ends the turn; the crank's speed is that after the blow from here on.
+/// Ends the revolution and sets the crank's speed to that after the blow.
 void WorkingMachine::blow() {
   const BlowSettings& b = settings_.blow;
   const double speed = now_.y[kSpeed];
@@ -68,7 +68,7 @@ void WorkingMachine::blow() {
   truth.crank_speed = early_ ? early_crank_speed_ : speed;
   truth.strike = early_.value_or(strike);
   if (early_) {
-    truth.strike.energy += strike.energy;  // its second meeting with the tool
+    truth.strike.energy += strike.energy;  // second contact with the tool
     truth.strike.crank_speed_after = now_.y[kSpeed];
     early_.reset();
   }

@@ -10,10 +10,10 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kSwing = 0.04;  // rotation of the coupling in a step [rad]
+constexpr double kSwing = 0.04;  // phase of the coupling's vibration in a step [rad]
 // Numerical: kSwing
 
-/// Largest value of the parabola through three points with the largest in the middle.
+/// Returns the largest value of the parabola through three points with the largest in the middle.
 double parabolaPeak(const double* t, const double* f, double t2, double f2) noexcept {
   const double a = (f[0] - f[1]) / (t[0] - t[1]), b = (f2 - f[1]) / (t2 - t[1]);
   const double curvature = (b - a) / (t2 - t[0]);
@@ -52,13 +52,13 @@ WorkingMachine::Outside WorkingMachine::outsideAt(double time) const noexcept {
   return {time, hullGravity(settings_, time), supplyFlow(settings_.drive, time)};
 }
 
-/// Motor less friction.
+/// Returns the motor torque less friction.
 double WorkingMachine::netTorque(const State& state) const noexcept {
   return simulation::netTorque(settings_.drive, state.y[kPressure],
                                flexible() ? state.y[kMotorSpeed] : state.y[kSpeed]);
 }
 
-/// Torque that reaches the crank.
+/// Returns the torque that reaches the crank.
 double WorkingMachine::shaftTorque(const State& state) const noexcept {
   if (!flexible()) return netTorque(state);
   return stiffness_ * state.y[kTwist] + damping_ * (state.y[kMotorSpeed] - state.y[kSpeed]);
@@ -97,7 +97,7 @@ WorkingMachine::Vector WorkingMachine::rate(const State& state) const noexcept {
   return r;
 }
 
-/// One Runge-Kutta step from now_, on the present side of the blow.
+/// Returns the state after one Runge-Kutta step from now_, on the present side of the blow.
 WorkingMachine::State WorkingMachine::step(double dt) const noexcept {
   const double start = now_.outside.time;
   const Outside middle = outsideAt(start + 0.5 * dt), end = outsideAt(start + dt);
@@ -115,14 +115,14 @@ WorkingMachine::State WorkingMachine::step(double dt) const noexcept {
   return moved(dt, mean, end);
 }
 
-/// Crank offset at which the step in hand must end: the dead centre, or a tool before it.
+/// Returns the crank offset at which the present step must end: the dead centre, or a tool before it.
 double WorkingMachine::eventOffset() const noexcept {
   const double early = -settings_.blow.tool_early;
   const bool awaited = now_.before_blow && !now_.mirrored && !now_.met && !next_blow_.blank;
   return awaited && early < 0.0 && now_.y[kOffset] < early ? early : 0.0;
 }
 
-/// Part of the step dt, which passes `offset`, until it is there: bisection with false position (Illinois).
+/// Returns the part of the step dt up to `offset`, which the step passes, by false position (Illinois method).
 double WorkingMachine::timeTo(double offset, double dt) const noexcept {
   double low = 0.0, high = dt, f_low = now_.y[kOffset] - offset, f_high = step(dt).y[kOffset] - offset;
   if (f_low == 0.0) return 0.0;
@@ -146,7 +146,7 @@ double WorkingMachine::timeTo(double offset, double dt) const noexcept {
 
 void WorkingMachine::advanceTo(double time) noexcept {
   while (now_.outside.time < time) {
-    // Once per instant: a torque that falls through zero lets go of the crank and stops it at once.
+    // Released at most once per instant: a torque that falls through zero would stop the crank again at once.
     if (now_.resting && released_ < now_.outside.time &&
         shaftTorque(now_) + links_.shaft(links_.at({0.0, false}), now_.outside.gravity).weight_torque > 0.0) {
       now_.resting = false;

@@ -12,10 +12,10 @@
 
 namespace hammer_loads::simulation {
 
-/// Machine at one instant. Loads ON the hull about D, axes of hammer_hull.
+/// State of the machine at one instant. Loads are ON the hull about D, in the axes of hammer_hull.
 struct CrankTruth {
   double time{};              ///< since start [s]
-  std::int64_t turn{};        ///< dead centres passed
+  std::int64_t turn{};        ///< number of dead centres passed
   double angle{};             ///< in [0, 2 pi) [rad]
   double speed{};             ///< [rad/s]
   double twist{};             ///< angle of the motor, where the encoder sits, less the crank's [rad]
@@ -24,30 +24,29 @@ struct CrankTruth {
   double acceleration{};      ///< [rad/s2]
   double pressure{};          ///< at the motor [Pa]
   double hull_pitch{};        ///< [rad]
-  Load load;                  ///< BY the links, weight included
-  double drive_reaction_y{};  ///< BY motor and flywheel about +y [N m]
-  double rocker_angle{};      ///< psi [rad]; of an elastic machine alone, as what follows
+  Load load;                  ///< load BY the links, weight included
+  double drive_reaction_y{};  ///< torque BY motor and flywheel about +y [N m]
+  double rocker_angle{};      ///< psi [rad]; this and the members below only of an elastic machine
   double rocker_speed{};      ///< psi' [rad/s]
-  double rod_force{};         ///< compression > 0 [N]
-  double tool_force{};        ///< along +z BY the tool ON the rocker [N]
-  double retainer_force{};    ///< along +z BY the hull's retainer ON the rocker [N]
-
-  bool touches() const { return tool_force != 0.0 || retainer_force != 0.0; }  ///< the rocker tool or retainer
+  double rod_force{};         ///< positive in compression [N]
+  double tool_force{};        ///< force along +z BY the tool ON the rocker [N]
+  double retainer_force{};
+  bool touches() const { return tool_force != 0.0 || retainer_force != 0.0; }  ///< true if the rocker is in contact
 };
 
-/// One blow and the turn that it ended.
+/// One blow and the revolution that it ended.
 struct BlowTruth {
   double time{};         ///< since start [s]
   double crank_speed{};  ///< [rad/s]
   Strike strike;
   double turn_period{};        ///< [s]
-  double turn_peak_force_z{};  ///< largest Fz of the turn [N]
-  double turn_impulse_x{};     ///< integral of Fx over the turn [N s]
-  double turn_impulse_z{};     ///< [N s]
-  bool whole_turn{};           ///< true if it began with a blow and the crank never turned back
-  double contact{};            ///< time that all its touches lasted [s]; of an elastic machine alone, as what follows
+  double turn_peak_force_z{};  ///< largest Fz of the revolution [N]
+  double turn_impulse_x{};     ///< integral of Fx over the revolution [N s]
+  double turn_impulse_z{};     ///< integral of Fz over the revolution [N s]
+  bool whole_turn{};           ///< true if it began with a blow and the crank never ran backwards
+  double contact{};            ///< duration of all contacts [s]; this and the members below only of an elastic machine
   double retainer_impulse{};   ///< along +z BY the hull's retainer ON the rocker [N s]
-  int touches{};               ///< number of touches of tool and retainer
+  int touches{};               ///< number of contacts with tool and retainer
 };
 
 /// Energy balance since the start [J]. It is tested:
@@ -60,17 +59,17 @@ struct EnergyAccount {
   double valves{};    ///< lost in leakage, relief and bypass
   double blows{};     ///< transferred to the tool
   double losses{};    ///< in linkage and crank at the blows
-  double stops{};     ///< lost when the crank, turning back, comes to rest on the tool
-  double kinetic{};   ///< present energy of links and drive, with the twist of the coupling
-  double stored{};    ///< in the compliance now
+  double stops{};     ///< lost when the crank runs back and comes to rest on the tool
+  double kinetic{};   ///< present energy of links and drive, including the twist of the coupling
+  double stored{};    ///< present energy of the compliance
 };
 
-/// State crank angle, speed, pressure: w' = (tau + weight - J'/2 w^2)/(Jc + J), p' = (flow - D w - losses)/C.
+/// The state is crank angle, speed and pressure: w' = (tau + weight - J'/2 w^2)/(Jc + J), p' = (flow - D w - losses)/C.
 /// The blow is located within a step to rounding; crank speed is continuous there unless settings.blow states
-/// otherwise. A crank that turns back onto the tool stops there until the torque is positive again, since a rebound
-/// would need a restitution above 1. Without a tool the rocker passes onto the mirrored branch and returns a turn
-/// later. Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links. Runge-Kutta of
-/// order 4, steps of at most settings.step, shorter where a coupling swings.
+/// otherwise. A crank that runs back onto the tool stops there until the torque is positive again, since a rebound
+/// would need a restitution above 1. Without a tool the rocker passes onto the mirrored branch and returns a revolution
+/// later. Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links. Integration by
+/// Runge-Kutta of order 4, with steps of at most settings.step and shorter ones for a flexible coupling.
 class WorkingMachine {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
@@ -80,7 +79,7 @@ class WorkingMachine {
   void advanceTo(double time) noexcept;
   CrankTruth truth() const noexcept;
   EnergyAccount energy() const noexcept;
-  /// Hands over the blows since the last call.
+  /// Removes and returns the blows since the last call.
   std::vector<BlowTruth> takeBlows();
 
  private:
@@ -95,12 +94,12 @@ class WorkingMachine {
     kWeight,
     kSupply,
     kValves,
-    kTwist,       // of the coupling
+    kTwist,       // twist of the coupling
     kMotorSpeed,  // stays 0 with a rigid coupling
     kSize
   };
   using Vector = std::array<double, kSize>;
-  /// Inputs from outside at a time.
+  /// External inputs at a time.
   struct Outside {
     double time{};  ///< [s]
     Gravity gravity;
@@ -109,9 +108,9 @@ class WorkingMachine {
   struct State {
     Outside outside;
     bool before_blow{};
-    bool resting{};   ///< on the tool, turned back
-    bool mirrored{};  ///< rocker beyond the tool's place
-    bool met{};       ///< the early tool, in this turn
+    bool resting{};   ///< at rest on the tool after the crank ran back
+    bool mirrored{};  ///< rocker beyond the tool's position
+    bool met{};       ///< the early tool was met in this revolution
     Vector y{};
     TurnAngle angle() const noexcept { return {y[kOffset], before_blow, mirrored}; }
   };
@@ -140,13 +139,13 @@ class WorkingMachine {
   MachineSettings settings_;
   MovingLinks links_;
   State now_;
-  Vector rate_{};  ///< at now_
+  Vector rate_{};  ///< derivative of the state at now_
   std::int64_t turn_{};
   double blow_energy_{}, loss_energy_{}, stop_energy_{};
-  double released_{-1.0};  ///< from the tool, last time [s]
+  double released_{-1.0};  ///< time of the last release from the tool [s]
   std::vector<BlowTruth> blows_;
-  double crank_side_inertia_, motor_inertia_{}, stiffness_{}, damping_{};  ///< about the coupling
-  double step_;                                                            ///< longest [s]
+  double crank_side_inertia_, motor_inertia_{}, stiffness_{}, damping_{};  ///< both sides of the coupling
+  double step_;                                                            ///< longest step [s]
   NormalNoise draws_;
   NextBlow next_blow_;
   std::optional<Strike> early_;  ///< strike of this revolution, at early_time_
@@ -155,7 +154,7 @@ class WorkingMachine {
   struct Turn {
     double start_time{}, impulse_x{}, impulse_z{};  ///< impulses at its beginning
     double peak{};
-    double time[2]{}, force[2]{};  ///< the two last points, for the parabola
+    double time[2]{}, force[2]{};  ///< the last two points, for the parabola
     int points{};
     bool whole{};
   } current_;

@@ -6,7 +6,7 @@
 namespace hammer_loads::simulation {
 namespace {
 
-/// P0, MO-100. Crank and rod are massless there.
+/// Returns the MO-100 of P0, in which crank and rod are massless.
 HammerParameters mo100() {
   HammerParameters p;
   p.lengths = {0.048, 0.150, 0.120, 0.078};
@@ -19,7 +19,7 @@ HammerParameters mo100() {
   return p;
 }
 
-/// Chosen for 1000 J at 4.65 blows a second: a 104 cm3 motor at 11 MPa.
+/// Returns a drive chosen for 1000 J at 4.65 blows per second: a motor of 104 cm3 at 11 MPa.
 DriveSettings drive() {
   DriveSettings d;
   d.motor_displacement = 1.65e-5;
