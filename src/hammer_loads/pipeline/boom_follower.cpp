@@ -140,11 +140,6 @@ void BoomFollower::pose(double since) noexcept {
   }
 }
 
-bool BoomFollower::isUnproven() const noexcept {
-  const std::optional<ModeIdentifier>& identifier = boom_.vibration().identifier();
-  return identifier && identifier->learns() && identifier->imuSpeaks() && !state_.measured && !identifier->isProven();
-}
-
 void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   const bool rigid = !state_.choice.compliant;
   const Wrench w_tip = onTip(rigid ? sample.motion_wrench : sample.motion_wrench + sample.displaced_links);
@@ -156,8 +151,10 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
   addConstants(sample);
+  const std::optional<ModeIdentifier>& identifier = boom_.vibration().identifier();
+  const bool alone = identifier && identifier->learns() && identifier->imuSpeaks() && !state_.measured;
   worth_.add(state_.loads.total, state_.loads.weight, state_.deviations.torque,
-             state_.measured || state_.contact_unknown, isUnproven());
+             state_.measured || state_.contact_unknown, alone, alone && identifier->isProven());
   state_.useless = worth_.isUseless(sample.stamp);
   useless_ += state_.useless;
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);

@@ -117,10 +117,8 @@ class BoomFollower {
   double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
   /// Returns the largest ratio of standard deviation to joint torque, root mean squares over a revolution [-].
   double torqueUncertainty() const noexcept { return worth_.ratio(); }
-  /// Returns true while the loads rest on an IMU alone that has not agreed with hammer and oil for five revolutions:
-  /// until then rock may bear the hull.
-  bool isUnproven() const noexcept;
-  std::uint64_t useless() const noexcept { return useless_; }  ///< samples whose loads were useless
+  bool isUnproven() const noexcept { return worth_.isUnproven(); }  ///< see TorqueWorth
+  std::uint64_t useless() const noexcept { return useless_; }       ///< samples whose loads were useless
   /// Takes the crank's standard deviations. Call once per revolution.
   void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }
   /// Ends a revolution with its pulse and its mean hold-down force [N]. Call once per revolution; it takes some 0.1 ms.

@@ -20,11 +20,12 @@ namespace hammer_loads {
 class TorqueWorth {
  public:
   /// Adds a sample [N m]: total loads on the joints, the part of the weight, standard deviation. by_sensors: pressures
-  /// show the torques, or an IMU shows a force that is not measured. unproven: an IMU alone has not shown yet that no
-  /// rock bears the hull.
+  /// show the torques, or an IMU shows a force that is not measured. alone: the loads rest on an IMU without pressures;
+  /// proven: it has shown that no rock bears the hull.
   void add(const JointVector& total, const JointVector& weight, const JointVector& deviation, bool by_sensors,
-           bool unproven) noexcept {
-    unproven_ = unproven;
+           bool alone, bool proven) noexcept {
+    alone_ = alone;
+    unproven_ = alone && !proven && turns_alone_ < kTurnsToProve;
     if (load_.size() != total.size()) load_ = deviation_ = JointVector::Zero(total.size());
     load_ += (total - weight).cwiseAbs2();
     deviation_ += deviation.cwiseAbs2();
@@ -32,6 +33,7 @@ class TorqueWorth {
   }
   /// Ends a revolution. A sum over a time in which the hammer stood changes nothing.
   void endTurn(StampNs stamp) noexcept {
+    turns_alone_ = alone_ ? turns_alone_ + 1 : 0;
     if (isRecent(std::exchange(ended_, stamp), stamp)) {
       ratio_ = worst();
       useless_.follow(by_sensors_ ? ratio_ : 0.0);
@@ -41,11 +43,15 @@ class TorqueWorth {
   }
   /// Returns the ratio of the worst joint in the last revolution [-]; 0 before.
   double ratio() const noexcept { return ratio_; }
+  /// Returns true while an IMU alone has yet to show that no rock bears the hull. After kTurnsToProve revolutions it
+  /// has shown the rock as a force that is not measured, or has not found any.
+  bool isUnproven() const noexcept { return unproven_; }
   bool isUseless(StampNs stamp) const noexcept {
     return (useless_.isEngaged() || unproven_) && isRecent(ended_, stamp);
   }
 
  private:
+  static constexpr int kTurnsToProve = 15;  ///< the rock shows within 12
   static constexpr double kUseless = 0.6;
   // Limit: kUseless
   static constexpr double kSmall = 0.1;  ///< part of the largest joint torque below which a joint is not judged
@@ -59,7 +65,8 @@ class TorqueWorth {
   }
 
   JointVector load_, deviation_;  ///< sums of squares [N2 m2]
-  bool by_sensors_{}, unproven_{};
+  bool by_sensors_{}, alone_{}, unproven_{};
+  int turns_alone_{};
   StampNs ended_{};
   double ratio_{};
   Latch useless_{kUseless};
