@@ -48,7 +48,7 @@ class BucketLinkage {
   };
   BucketLinkage(const Pins& pins, const BucketLinkageParameters& lengths) noexcept;
 
-  BucketLinkagePosition at(double cosine, double sine) const noexcept;  ///< of the joint angle's cosine and sine
+  BucketLinkagePosition at(double cosine, double sine) const noexcept;  ///< arguments: of the joint angle
   BucketLinkageForces forces(const Eigen::Vector2d& rod_pin, const Eigen::Vector2d& driven_pin) const noexcept;
   /// Least and greatest distance of guide pivot and driven pin that keep kLeastTransmission [m].
   double leastReach() const noexcept { return least_reach_; }

@@ -88,7 +88,7 @@ class Cylinder {
   int joint() const noexcept { return joint_; }  ///< index in the chain
 
   CylinderPosition at(double joint_angle) const noexcept;
-  CylinderPosition at(double cosine, double sine) const noexcept;  ///< of the joint angle's cosine and sine
+  CylinderPosition at(double cosine, double sine) const noexcept;  ///< arguments: of the joint angle
   /// Returns the force that balances a load's torque on the joint [N m], by virtual work: force dL/dq = -torque.
   CylinderForce load(const CylinderPosition& position, double joint_torque) const noexcept;
   /// Returns dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.

@@ -9,9 +9,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kReferenceTolerance = 0.05;  ///< tolerance of the reference angles [rad]: distinguishes poses, no more
-constexpr double kClosedTolerance = 1e-9;     ///< by which P may lie beyond the axis when closed [m]
-constexpr double kSameTheta1 = 1e-6;          ///< [rad]: distinguishes the drive's two assemblies
+constexpr double kReferenceTolerance = 0.05;  ///< tolerance of the reference angles [rad], which only distinguish poses
+constexpr double kClosedTolerance = 1e-9;     ///< largest distance of P beyond the axis when closed [m]
+constexpr double kSameTheta1 = 1e-6;          ///< [rad]; distinguishes the drive's two assemblies
 
 void checkNumbers(GrappleParameters p, std::vector<std::string>& problems) {
   using Range = GrappleKey::Range;

@@ -18,11 +18,11 @@ struct LogSettings {
   bool inputs{true};                           ///< the node's inputs are logged
   LoggedOutputs outputs{LoggedOutputs::kAll};  ///< run_info is logged with any value
   LogCompression compression{LogCompression::kLz4};
-  std::string directory;           ///< directory as given; a leading ~/ means the home directory of the node's user
-  std::string prefix;              ///< beginning of file names, without /; empty: name of the node
-  std::string node;                ///< resolved name of the node that logs, not from a file, e.g. /left/hammer_loads
-  std::uint64_t split_size{};      ///< size above which a bag is closed and a new one begins [byte], > 0
-  std::uint64_t total_size{};      ///< of all bags of this process; above it the oldest is deleted [byte]; 0: no limit
+  std::string directory;       ///< directory as given; a leading ~/ means the home directory of the node's user
+  std::string prefix;          ///< beginning of file names, without /; empty: name of the node
+  std::string node;            ///< resolved name of the node that logs, not from a file, e.g. /left/hammer_loads
+  std::uint64_t split_size{};  ///< size above which a bag is closed and a new one begins [byte], > 0
+  std::uint64_t total_size{};  ///< size of all bags of this process; above it the oldest is deleted [byte]; 0: no limit
   std::uint64_t min_free_space{};  ///< free disk space below which logging stops [byte]
   /// Size of the queue for the disk; beyond it, messages are dropped and counted [byte], > 0.
   std::uint64_t queue_size{};

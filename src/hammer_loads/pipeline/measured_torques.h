@@ -26,8 +26,8 @@ class MeasuredTorques {
     double deviation{};  ///< standard deviation from errors of the last predictions; larger if the readings
                          ///< contradict the vibration (kContradicted), by their difference or as for an unknown lag, or
                          ///< if the next reading is overdue [N m]
-    double constant{};    ///< further standard deviation due to constants: seal friction, offsets [N m]
-    double lasting{};     ///< part of `constant` that stays while the operator drives the joint one way [N m]
+    double constant{};   ///< further standard deviation due to constants: seal friction, offsets [N m]
+    double lasting{};    ///< part of `constant` that stays while the operator drives the joint one way [N m]
     CylinderPosition at;  ///< position from the joint's sensor
   };
 

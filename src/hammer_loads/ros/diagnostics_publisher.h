@@ -15,7 +15,7 @@
 namespace hammer_loads {
 
 /// Publisher with the period `~diagnostic_period` (1 s) in wall time, because it must also report a stopped /clock. It
-/// replaces diagnostic_updater::Updater, which adds its period to the current time. That sum throws within the last
+/// replaces diagnostic_updater::Updater, which adds its period to the current time. The sum throws within the last
 /// second before 2^32 s, also in the constructor, and a /clock may have any value.
 class DiagnosticsPublisher : public diagnostic_updater::DiagnosticTaskVector {
  public:

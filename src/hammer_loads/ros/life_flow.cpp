@@ -110,7 +110,7 @@ void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::Led
   }
 }
 
-constexpr std::uint64_t kNamingMessages = 64;             ///< their readings distinguish runs with one first stamp
+constexpr std::uint64_t kNamingMessages = 64;  ///< messages whose readings distinguish runs with one first stamp
 constexpr StampNs kMarkEvery = 4LL * 1000 * 1000 * 1000;  ///< [ns]: a split is longer; a working day gives 7200 marks
 
 /// Returns a digest of the sensor's reading before any parameter is applied.
@@ -121,8 +121,8 @@ std::uint64_t readingDigest(const sensor_msgs::JointState& message, Digest diges
   return digest.value();
 }
 
-/// Returns a digest of the parameters that turn readings into loads. Those of the machine, of the log, of counting and
-/// of topics are left out.
+/// Returns a digest of the parameters that turn readings into loads. Parameters of the machine, of the log, of counting
+/// and of topics are left out.
 std::string sensorParameters(const std::string& yaml) {
   std::istringstream lines(yaml);
   std::string kept;

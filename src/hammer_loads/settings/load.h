@@ -32,7 +32,7 @@ struct Settings {
   std::string machine;             ///< hammer and boom parameters and robot description: equal for the same machine.
                                    ///< The drive's inertia is left out, since `calibrate` finds a better one
   std::vector<std::string> notes;  ///< accepted peculiarities, one line each
-  InputTopics input_topics;        ///< also at the end of `yaml`
+  InputTopics input_topics;        ///< topics, also at the end of `yaml`
 };
 
 /// Returns the settings from the given parameters over those shipped in `config_directory`. Otherwise returns every

@@ -226,7 +226,7 @@ constexpr std::array<const char*, 4> kBoomJoints{"swing_joint", "boom_joint", "a
 constexpr std::uint64_t kBlowSeed = 0x9e3779b97f4a7c15;
 
 struct MachineSettings {
-  HammerParameters hammer;      ///< its drive_inertia is not used; see drive.inertia
+  HammerParameters hammer;      ///< drive_inertia is not used; see drive.inertia
   Level level{Level::kRocker};  ///< level that decides which links have mass
   DriveSettings drive;
   BlowSettings blow;
